@@ -1,0 +1,2 @@
+//! The `maille` program.
+fn main() {}

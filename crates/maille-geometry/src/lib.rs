@@ -1,0 +1,1 @@
+//! Exact distances, contacts and linking of circles and tori in space.

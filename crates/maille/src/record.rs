@@ -1,0 +1,138 @@
+//! What a run leaves behind: one row a limit, and the state that proves it.
+
+use serde::{Deserialize, Serialize};
+
+/// Version of the record's files.
+pub const RECORD_SCHEMA: u32 = 1;
+
+/// Outcome of the search for one limit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Status {
+    /// Exact, certified, and a proven bound is attained.
+    Global,
+    /// Exact, certified, bound not attained.
+    Local,
+    /// Energy method: the last state within the threshold.
+    ThresholdReached,
+    /// Exact: best feasible state, certificate incomplete.
+    Uncertified,
+    /// The bound proves that no state has this l2.
+    L2Unreachable,
+    /// The search failed; nothing is proved.
+    L2NotReached,
+    /// No chain of links binds this direction.
+    Unbounded,
+    /// The minimisation did not reach its tolerance.
+    NotConverged,
+    /// The starting state overlaps and could not be resolved.
+    InfeasibleStart,
+    /// Stopped by the user.
+    Interrupted,
+}
+
+impl Status {
+    /// All of them, in the order of the documentation.
+    pub const ALL: [Status; 10] = [
+        Status::Global,
+        Status::Local,
+        Status::ThresholdReached,
+        Status::Uncertified,
+        Status::L2Unreachable,
+        Status::L2NotReached,
+        Status::Unbounded,
+        Status::NotConverged,
+        Status::InfeasibleStart,
+        Status::Interrupted,
+    ];
+
+    /// The name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Status::Global => "global",
+            Status::Local => "local",
+            Status::ThresholdReached => "threshold-reached",
+            Status::Uncertified => "uncertified",
+            Status::L2Unreachable => "l2-unreachable",
+            Status::L2NotReached => "l2-not-reached",
+            Status::Unbounded => "unbounded",
+            Status::NotConverged => "not-converged",
+            Status::InfeasibleStart => "infeasible-start",
+            Status::Interrupted => "interrupted",
+        }
+    }
+}
+
+/// One row of `limits.csv`: the field order is the column order. A number that was not earned is `None` and stays empty.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LimitRow {
+    /// Name of the design.
+    pub design: String,
+    /// Common minor radius, in the file's unit (empty where every ring gives its own).
+    pub minor_radius: Option<f64>,
+    /// Direction D of the pull, degrees counter-clockwise from x.
+    pub direction_deg: f64,
+    /// Stretch − 1 held across the pull.
+    pub l2: f64,
+    /// `energy` or `exact`.
+    pub method: String,
+    /// Cell that was solved, as `1x1` or `1,0;-1,2`.
+    pub cell: String,
+    /// Outcome.
+    pub status: Status,
+    /// Measured DᵀFD − 1.
+    pub l1: Option<f64>,
+    /// Larger eigenvalue of C = FᵀF.
+    pub lambda1: Option<f64>,
+    /// Smaller eigenvalue of C = FᵀF.
+    pub lambda2: Option<f64>,
+    /// √λ1.
+    pub stretch1: Option<f64>,
+    /// √λ2.
+    pub stretch2: Option<f64>,
+    /// Deepest overlap of two tori at the limit, in the file's unit (0 if none).
+    pub max_overlap: Option<f64>,
+    /// Smallest gap between two tori at the limit, in the file's unit (negative where they overlap).
+    pub min_gap: Option<f64>,
+    /// Newton iterations of all runs.
+    pub iterations: u64,
+    /// Minimisations.
+    pub runs: u64,
+    /// Wall time of this row in seconds.
+    pub wall_s: f64,
+}
+
+/// Pose of one element: `position + rotation · (offset in the design)`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PoseRecord {
+    /// Name of the element, with the copy's cell in a supercell: `flat`, `flat@1,0`.
+    pub element: String,
+    /// Position of its reference point, in the file's unit.
+    pub position: [f64; 3],
+    /// Rotation from the design's pose, unit quaternion `[w, x, y, z]`.
+    pub rotation: [f64; 4],
+}
+
+/// One line of `states.jsonl`: the state at the limit of one row (or the last state of a failed search).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StateRecord {
+    /// Direction of the row.
+    pub direction_deg: f64,
+    /// l2 of the row.
+    pub l2: f64,
+    /// Status of the row.
+    pub status: Status,
+    /// Deformed lattice vectors of the solved cell, in the file's unit.
+    pub a1: [f64; 3],
+    /// Deformed second lattice vector of the solved cell.
+    pub a2: [f64; 3],
+    /// In-plane deformation gradient, rows `[[Fxx, Fxy], [Fyx, Fyy]]`.
+    pub deformation_gradient: [[f64; 2]; 2],
+    /// Poses of the elements of the solved cell.
+    pub poses: Vec<PoseRecord>,
+    /// Last residual of the search: the distance to the target that the threshold judges.
+    pub residual: Option<f64>,
+    /// A sentence on what happened, where the status alone does not say it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub note: Option<String>,
+}
