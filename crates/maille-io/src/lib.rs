@@ -1,1 +1,12 @@
-//! Formats of maille.
+//! Formats of maille: design files, records, plots.
+//!
+//! Everything here works on text, bytes and readers; only doors open paths. The one exception is
+//! [`record::RecordFolder`], which owns a folder because its writes must be atomic.
+
+pub mod builtin;
+pub mod design_toml;
+pub mod plot;
+pub mod record;
+
+pub use builtin::{Builtin, builtin, builtin_designs};
+pub use design_toml::{DesignError, DesignProblem, DesignSource, read_design, write_design};

@@ -1,0 +1,189 @@
+//! The relative position of two circles in six numbers, and the distance from one circle along the other.
+
+use crate::{Circle, Minimum, PairKind, ROUNDING, Vec3};
+
+/// A pair of circles, a **base** and a **moving** one whose angle is the unknown, reduced to six numbers.
+///
+/// Let `Y` be the unit vector along `N_moving × N_base`, which lies in both planes, `X = Y × N_base`, and `U = Y × N_moving`,
+/// the steepest direction of the moving circle over the base plane. In the axes `(X, Y, N_base)` around the base centre
+/// the moving circle is
+///
+/// `P(θ) = (x₀ + r c cos θ, y₀ + r sin θ, z₀ + r s cos θ)`, `c = N_base·N_moving`, `s = |N_base × N_moving|`.
+///
+/// Lengths are divided by `scale`, the largest of the radii and the distance of the centres. For parallel planes every
+/// `Y` in them serves, and one is chosen.
+pub(crate) struct Relative<'a> {
+    pub base: &'a Circle,
+    pub moving: &'a Circle,
+    /// The unit of length.
+    pub scale: f64,
+    /// `R`, radius of the base.
+    pub base_radius: f64,
+    /// `r`, radius of the moving circle.
+    pub radius: f64,
+    /// `x₀, y₀, z₀`.
+    pub offset: [f64; 3],
+    /// `c`.
+    pub tilt_cos: f64,
+    /// `s`, accurate to rounding in the absolute sense at small tilts too.
+    pub tilt_sin: f64,
+    axes: [Vec3; 2],
+    steepest: Vec3,
+    direct_below: f64,
+}
+
+/// The squared distance along the moving circle: `h(θ) = ½ d²`, `d² = z² + (ρ − R)²`, and its derivatives.
+#[derive(Clone, Copy)]
+pub(crate) struct Sample {
+    /// Height `z` over the base plane.
+    pub z: f64,
+    /// Distance `ρ = |e|` from the axis of the base.
+    pub rho: f64,
+    /// `ρ − R`.
+    pub radial: f64,
+    /// `e`, the position in the base plane.
+    pub e: [f64; 2],
+    /// `e·e′ = ρρ′` and its derivative.
+    pub ee: [f64; 2],
+    /// `h′`.
+    pub slope: f64,
+    /// `h″`.
+    pub curvature: f64,
+}
+
+impl Sample {
+    /// The distance `d`, in units of the pair's scale.
+    pub fn distance(&self) -> f64 {
+        self.z.hypot(self.radial)
+    }
+
+    /// Does the distance change by no more than [`ROUNDING`] per radian here?
+    pub fn is_level(&self) -> bool {
+        self.slope.abs() <= ROUNDING * (self.distance() + ROUNDING)
+    }
+}
+
+impl<'a> Relative<'a> {
+    pub fn new(base: &'a Circle, moving: &'a Circle) -> Self {
+        let offset = moving.center - base.center;
+        let scale = offset.norm().max(base.radius).max(moving.radius);
+        let (n, m) = (&*base.normal, &*moving.normal);
+        let cross = m.cross(n);
+        // At small tilts the rounding of the cross product is a large part of it. Projected once more on the base
+        // plane its rest along `m` is that part times the tilt: rounding again.
+        let y = (cross - n * n.dot(&cross)).try_normalize(1e-300).unwrap_or_else(|| base.frame().1);
+        let x = y.cross(n);
+        let tilt_cos = n.dot(m);
+        let tilt_sin = y.dot(&cross);
+        let offset = [x.dot(&offset) / scale, y.dot(&offset) / scale, n.dot(&offset) / scale];
+        let radius = moving.radius / scale;
+        Self {
+            base,
+            moving,
+            scale,
+            base_radius: base.radius / scale,
+            radius,
+            offset,
+            tilt_cos,
+            tilt_sin,
+            axes: [x, y],
+            steepest: y.cross(m),
+            direct_below: (tilt_cos * offset[0]).hypot(offset[1]) + radius * tilt_sin * tilt_sin,
+        }
+    }
+
+    /// `h` and its derivatives at the angle whose cosine and sine are given:
+    ///
+    /// `h′ = z z′ + (ρ − R) ρ′`, `h″ = z′² + z z″ + ρ′² + (ρ − R) ρ″`, `ρ′ = e·e′/ρ`, `ρ″ = ((e·e′)′ − ρ′²)/ρ`.
+    ///
+    /// The products keep `h′` accurate *relative to its own size* for pairs that are nearly coaxial, where all factors
+    /// are small; for that `e·e′ = r (y₀ cos θ − c x₀ sin θ) + r² s² sin θ cos θ` is taken from its harmonics, except
+    /// near the axis of the base, where the scalar product of the vectors is the more accurate. On the axis `h` has a
+    /// kink upwards (a maximum, if anything), and `ρ′ = ρ″ = 0` are returned.
+    #[inline]
+    pub fn at(&self, cos: f64, sin: f64) -> Sample {
+        let [x0, y0, z0] = self.offset;
+        let (r, c, s) = (self.radius, self.tilt_cos, self.tilt_sin);
+        let e = [x0 + r * c * cos, y0 + r * sin];
+        let z = z0 + r * s * cos;
+        let (z1, z2) = (-r * s * sin, -r * s * cos);
+        let rho = (e[0] * e[0] + e[1] * e[1]).sqrt();
+        let ee1 = if rho < self.direct_below {
+            r * (e[1] * cos - e[0] * c * sin)
+        } else {
+            r * (y0 * cos - c * x0 * sin) + (r * s) * (r * s) * sin * cos
+        };
+        let ee2 = -r * (y0 * sin + c * x0 * cos) + (r * s) * (r * s) * (cos - sin) * (cos + sin);
+        let inverse = if rho > 0.0 { 1.0 / rho } else { 0.0 };
+        let rho1 = ee1 * inverse;
+        let rho2 = (ee2 - rho1 * rho1) * inverse;
+        let radial = rho - self.base_radius;
+        Sample {
+            z,
+            rho,
+            radial,
+            e,
+            ee: [ee1, ee2],
+            slope: z * z1 + radial * rho1,
+            curvature: z1 * z1 + z * z2 + rho1 * rho1 + radial * rho2,
+        }
+    }
+
+    /// [`Self::at`] an angle.
+    pub fn at_angle(&self, angle_rad: f64) -> Sample {
+        let (sin, cos) = angle_rad.sin_cos();
+        self.at(cos, sin)
+    }
+
+    /// The amplitude of `w·w′ = ½ (|P − c_base|²)′`, a harmonic of degree one: `r |(c x₀ + s z₀, y₀)|`.
+    pub fn half_distance_sq_amplitude(&self) -> f64 {
+        let [x0, y0, z0] = self.offset;
+        self.radius * (self.tilt_cos * x0 + self.tilt_sin * z0).hypot(y0)
+    }
+
+    /// The special position that the pair is in, to [`ROUNDING`]; equidistance is found elsewhere, along the circle.
+    pub fn kind(&self) -> PairKind {
+        let [x0, y0, z0] = self.offset.map(f64::abs);
+        let parallel = self.tilt_sin <= ROUNDING;
+        if parallel && x0.max(y0) <= ROUNDING {
+            PairKind::Coaxial
+        } else if parallel && z0 <= ROUNDING {
+            PairKind::Coplanar
+        } else if x0.max(y0).max(z0) <= ROUNDING {
+            PairKind::Concentric
+        } else {
+            PairKind::Generic
+        }
+    }
+
+    /// The minimum at this angle of the moving circle, in the caller's lengths, the base being circle A.
+    ///
+    /// With `g(α, θ) = ½ |A(α) − P(θ)|²` and α the angle of the foot: `g_α = 0` by construction, `g_θ = h′`,
+    /// `g_αα = R ρ`, `g_αθ = −A′·P′ = −R (e × e′)/ρ`, `g_θθ = h″ + g_αθ²/g_αα = |P′|² + (P − A)·P″`.
+    pub fn minimum(&self, angle_rad: f64) -> Minimum {
+        let (sin, cos) = angle_rad.sin_cos();
+        let Sample { z, rho, radial, e, slope, .. } = self.at(cos, sin);
+        let (r, c, s) = (self.radius, self.tilt_cos, self.tilt_sin);
+        let [x, y] = self.axes;
+        let foot = if rho > 0.0 { [e[0] / rho, e[1] / rho] } else { [1.0, 0.0] };
+        let base_direction = x * foot[0] + y * foot[1];
+        let moving_direction = self.steepest * cos + y * sin;
+        let e1 = [-r * c * sin, r * cos];
+        let to_moving = [radial * foot[0], radial * foot[1], z];
+        let second = -r * (to_moving[0] * c * cos + to_moving[1] * sin + to_moving[2] * s * cos);
+        let mixed = -self.base_radius * (foot[0] * e1[1] - foot[1] * e1[0]);
+        let unit_sq = self.scale * self.scale;
+        Minimum {
+            distance: self.scale * z.hypot(radial),
+            point_a: self.base.center + base_direction * self.base.radius,
+            point_b: self.moving.center + moving_direction * self.moving.radius,
+            angle_a_rad: self.base.direction_angle_rad(&base_direction),
+            angle_b_rad: self.moving.direction_angle_rad(&moving_direction),
+            gradient: [0.0, slope * unit_sq],
+            hessian: [
+                [self.base_radius * rho * unit_sq, mixed * unit_sq],
+                [mixed * unit_sq, (r * r + second) * unit_sq],
+            ],
+        }
+    }
+}

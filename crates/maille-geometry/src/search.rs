@@ -1,0 +1,386 @@
+//! Complete enumeration of the minima of `h(θ) = ½ d²` along the moving circle.
+//!
+//! The circle is cut into intervals of centre `m` and half width `σ`, and each is put to these tests in turn. `M` is
+//! a bound of `|h‴|` over the interval.
+//!
+//! 1. `|h′(m)| > σ |h″(m)| + ½ σ² M`: no critical point.
+//! 2. `h″(m) + σ M < 0`: concave, no minimum.
+//! 3. `h″(m) − σ M > 0`: convex, one minimum if h′ goes from − to + between the ends, else none.
+//! 4. Near the axis of the base, where no `M` exists: at a critical point `w·w′ = R ρ′` (w from the base centre), so
+//!    `h″ = (w·w′)′ − R ρ″ = (w·w′)′ − R ((|e′|² − (w·w′)²/R²)/ρ + e·e″/ρ)`, which is negative, a maximum, if
+//!    `(w·w′)² < R² (|e′|² − ρ K)` with `K = (max |(w·w′)′| + R max |e″|)/R`.
+//!
+//! If none decides, the interval is halved. Every interval's ends have one sign of h′, computed from the same numbers
+//! by both neighbours, so that each change of sign counts once. Halving ends at width `2π · 2⁻²⁴`, where the signs alone
+//! decide.
+//!
+//! **Nearly constant distances.** For pairs close to an equidistant one (not a coaxial one) the bounds are far larger
+//! than h′, and halving would go on everywhere. After [`MAX_SAMPLES`] it starts anew, coarsely: intervals of `2π/1024`
+//! are decided by the signs of h′ at their ends and centre, except near the axis of the base, where `h` can vary
+//! within any small angle and halving goes on. There `h` is a constant plus a small smooth function, so the signs show
+//! what there is. Intervals that are level to rounding are no minima but a plateau; it is the answer, a continuum, unless
+//! a minimum below it was found beside it.
+
+use std::f64::consts::TAU;
+use std::sync::LazyLock;
+
+use crate::{MAX_MINIMA, ROUNDING};
+use crate::relative::{Relative, Sample};
+
+/// Intervals at the start.
+const INTERVALS: usize = 16;
+/// Halvings at most: width 2π · 2⁻²⁴.
+const MAX_LEVEL: usize = 20;
+/// Samples after which halving is given up. Pairs at random take 40, near contact up to 150.
+const MAX_SAMPLES: usize = 400;
+/// Halvings after which the signs decide in the coarse search: width 2π/1024.
+const COARSE_LEVEL: usize = 6;
+/// Away from the axis, there: half widths of an interval.
+const AWAY: f64 = 16.0;
+/// Minima nearer to each other than this are one: at `2π · 2⁻¹⁸` two differ by the fourth power, rounding.
+const MERGE_RAD: f64 = TAU / (1 << 18) as f64;
+/// The grid starts at an angle that no symmetric design singles out.
+const START_RAD: f64 = 0.123_456_789_101_112;
+
+/// A direction on the moving circle.
+#[derive(Clone, Copy, Default)]
+struct Direction {
+    cos: f64,
+    sin: f64,
+}
+
+impl Direction {
+    fn at(angle_rad: f64) -> Self {
+        let (sin, cos) = angle_rad.sin_cos();
+        Self { cos, sin }
+    }
+
+    /// Turned by `±` the angle of another.
+    fn turned(self, by: Self) -> [Self; 2] {
+        let (cc, ss) = (self.cos * by.cos, self.sin * by.sin);
+        let (sc, cs) = (self.sin * by.cos, self.cos * by.sin);
+        [Self { cos: cc + ss, sin: sc - cs }, Self { cos: cc - ss, sin: sc + cs }]
+    }
+}
+
+/// Directions that do not depend on the pair: of the first intervals' ends and centres, and of the widths.
+struct Grid {
+    ends: [Direction; INTERVALS + 1],
+    centers: [Direction; INTERVALS],
+    /// Half of the half width of an interval, by level.
+    quarters: [Direction; MAX_LEVEL + 1],
+}
+
+static GRID: LazyLock<Grid> = LazyLock::new(|| {
+    let angle = |index: f64| START_RAD + index * TAU / INTERVALS as f64;
+    // The last end is the first, to the bit.
+    let ends = std::array::from_fn(|i| Direction::at(angle((i % INTERVALS) as f64)));
+    let centers = std::array::from_fn(|i| Direction::at(angle(i as f64 + 0.5)));
+    let quarters = std::array::from_fn(|level| Direction::at(half_width(level) / 2.0));
+    Grid { ends, centers, quarters }
+});
+
+fn half_width(level: usize) -> f64 {
+    TAU / ((2 * INTERVALS) << level) as f64
+}
+
+/// An interval still to be decided.
+#[derive(Clone, Copy, Default)]
+struct Interval {
+    center_rad: f64,
+    center: Direction,
+    ends: [Direction; 2],
+    level: usize,
+}
+
+impl Interval {
+    fn halves(&self, grid: &Grid) -> [Self; 2] {
+        let quarter = half_width(self.level) / 2.0;
+        let [left, right] = self.center.turned(grid.quarters[self.level]);
+        let level = self.level + 1;
+        [
+            Self {
+                center_rad: self.center_rad + quarter,
+                center: right,
+                ends: [self.center, self.ends[1]],
+                level,
+            },
+            Self {
+                center_rad: self.center_rad - quarter,
+                center: left,
+                ends: [self.ends[0], self.center],
+                level,
+            },
+        ]
+    }
+}
+
+/// The angles of the minima, unordered.
+#[derive(Default)]
+pub(crate) struct Angles {
+    angles_rad: [f64; MAX_MINIMA],
+    count: usize,
+    pub continuum: bool,
+}
+
+impl Angles {
+    pub fn as_slice(&self) -> &[f64] {
+        &self.angles_rad[..self.count]
+    }
+
+    /// A continuum, by its representative.
+    fn continuum(angle_rad: f64) -> Self {
+        Self { angles_rad: [angle_rad, 0.0, 0.0, 0.0], count: 1, continuum: true }
+    }
+
+    /// Adds a minimum unless it is there already, in which case the smaller of the two stays. More minima than can
+    /// exist are rounding around a constant.
+    pub fn add(&mut self, pair: &Relative<'_>, angle_rad: f64) {
+        let distance = |angle_rad: f64| pair.at_angle(angle_rad).distance();
+        for known in &mut self.angles_rad[..self.count] {
+            let apart = (angle_rad - *known).rem_euclid(TAU);
+            if apart.min(TAU - apart) < MERGE_RAD {
+                if distance(angle_rad) < distance(*known) {
+                    *known = angle_rad;
+                }
+                return;
+            }
+        }
+        if self.count < MAX_MINIMA {
+            self.angles_rad[self.count] = angle_rad;
+            self.count += 1;
+        } else {
+            let best = self.angles_rad.into_iter().chain([angle_rad]);
+            let best = best.min_by(|p, q| distance(*p).total_cmp(&distance(*q)));
+            *self = Self::continuum(best.unwrap_or(angle_rad));
+        }
+    }
+}
+
+/// All minima of `h`; one representative if `h` is constant.
+pub(crate) fn minima(pair: &Relative<'_>) -> Angles {
+    let level = level(pair);
+    if let Level::Everywhere(angle_rad) = level {
+        return Angles::continuum(angle_rad);
+    }
+    let mut search = Search { pair, bounds: Bounds::new(pair), samples: 0, coarse: false, plateau: None };
+    let mut angles = Angles::default();
+    if level == Level::No && search.run(&mut angles) {
+        return angles;
+    }
+    search.coarse = true;
+    angles = Angles::default();
+    search.run(&mut angles);
+    let distance = |angle_rad: f64| pair.at_angle(angle_rad).distance();
+    let lowest = angles.as_slice().iter().map(|&angle_rad| distance(angle_rad)).fold(f64::INFINITY, f64::min);
+    match search.plateau {
+        Some((plateau, angle_rad)) if plateau <= lowest + ROUNDING => Angles::continuum(angle_rad),
+        _ => angles,
+    }
+}
+
+#[derive(PartialEq)]
+enum Level {
+    No,
+    /// At all samples, but the circle passes near the axis of the base, where anything can be between them.
+    AwayFromAxis,
+    /// With the angle of the smallest sample.
+    Everywhere(f64),
+}
+
+/// Is `h` constant?
+///
+/// Sixteen samples suffice: ρ h′ divides a trigonometric polynomial of degree four, which has eight roots at most
+/// unless it is zero; so where ρ is no small divisor, h′ is small between the samples too.
+fn level(pair: &Relative<'_>) -> Level {
+    let mut best = (f64::INFINITY, 0);
+    let mut near_axis = false;
+    for (index, center) in GRID.centers.iter().enumerate() {
+        let sample = pair.at(center.cos, center.sin);
+        if !sample.is_level() {
+            return Level::No;
+        }
+        near_axis |= sample.rho < half_width(0) * pair.radius;
+        if sample.distance() < best.0 {
+            best = (sample.distance(), index);
+        }
+    }
+    if near_axis {
+        return Level::AwayFromAxis;
+    }
+    Level::Everywhere(START_RAD + (best.1 as f64 + 0.5) * TAU / INTERVALS as f64)
+}
+
+/// One walk around the circle.
+struct Search<'a> {
+    pair: &'a Relative<'a>,
+    bounds: Bounds,
+    samples: usize,
+    coarse: bool,
+    /// Smallest distance of the level intervals, and its angle.
+    plateau: Option<(f64, f64)>,
+}
+
+impl Search<'_> {
+    /// Adds all minima; false if the samples were used up or nothing was found.
+    fn run(&mut self, angles: &mut Angles) -> bool {
+        let (grid, pair) = (&*GRID, self.pair);
+        // Depth first: at most one undecided right half a level, and the interval at hand.
+        let mut stack = [Interval::default(); MAX_LEVEL + 2];
+        for index in 0..INTERVALS {
+            stack[0] = Interval {
+                center_rad: START_RAD + (index as f64 + 0.5) * TAU / INTERVALS as f64,
+                center: grid.centers[index],
+                ends: [grid.ends[index], grid.ends[index + 1]],
+                level: 0,
+            };
+            let mut open = 1;
+            while open > 0 {
+                open -= 1;
+                let interval = &stack[open];
+                self.samples += 1;
+                if self.samples > MAX_SAMPLES && !self.coarse {
+                    return false;
+                }
+                let sample = pair.at(interval.center.cos, interval.center.sin);
+                let half_width = half_width(interval.level);
+                match self.bounds.verdict(pair, &sample, interval.center.sin, half_width) {
+                    Verdict::NoMinimum => {}
+                    Verdict::Convex => self.by_signs(interval, &sample, angles),
+                    Verdict::Unknown if self.is_last(interval.level, &sample) => {
+                        self.by_signs(interval, &sample, angles);
+                    }
+                    Verdict::Unknown => {
+                        [stack[open], stack[open + 1]] = interval.halves(grid);
+                        open += 2;
+                    }
+                }
+            }
+        }
+        angles.count > 0
+    }
+
+    fn is_last(&self, level: usize, sample: &Sample) -> bool {
+        let away = sample.rho > AWAY * half_width(level) * self.pair.radius;
+        level == MAX_LEVEL || self.coarse && level >= COARSE_LEVEL && away
+    }
+
+    /// Adds the minima that the signs of h′ show at the ends and the centre of an interval.
+    fn by_signs(&mut self, interval: &Interval, sample: &Sample, angles: &mut Angles) {
+        let [first, last] = interval.ends.map(|end| self.pair.at(end.cos, end.sin));
+        if self.coarse && sample.is_level() && first.is_level() && last.is_level() {
+            let here = (sample.distance(), interval.center_rad);
+            self.plateau = self.plateau.filter(|plateau| plateau.0 <= here.0).or(Some(here));
+            return;
+        }
+        let half_width = half_width(interval.level);
+        let (left, right) = (interval.center_rad - half_width, interval.center_rad + half_width);
+        // One bracket where there is one minimum: the halves share the centre's sign.
+        if first.slope < 0.0 && sample.slope >= 0.0 {
+            angles.add(self.pair, refine(self.pair, [left, interval.center_rad], sample, interval.center_rad));
+        }
+        if sample.slope < 0.0 && last.slope >= 0.0 {
+            angles.add(self.pair, refine(self.pair, [interval.center_rad, right], sample, interval.center_rad));
+        }
+    }
+}
+
+#[derive(PartialEq)]
+enum Verdict {
+    NoMinimum,
+    Convex,
+    Unknown,
+}
+
+/// Bounds that hold on the whole circle; half the sum over intervals is made from them and the sample at the centre.
+struct Bounds {
+    /// Amplitude of z.
+    rise: f64,
+    /// Amplitudes of `(e·e′)′` and of `(e·e′)″`.
+    ee: [f64; 2],
+    /// Amplitude of `w·w′`.
+    ww: f64,
+}
+
+impl Bounds {
+    fn new(pair: &Relative<'_>) -> Self {
+        let [x0, y0, _] = pair.offset;
+        let rise = pair.radius * pair.tilt_sin;
+        let first = pair.radius * (pair.tilt_cos * x0).hypot(y0);
+        Self {
+            rise,
+            ee: [first + rise * rise, first + 2.0 * rise * rise],
+            ww: pair.half_distance_sq_amplitude(),
+        }
+    }
+
+    /// The tests of the module's head, for the interval of half width σ around a sample.
+    fn verdict(&self, pair: &Relative<'_>, at: &Sample, sin: f64, half_width: f64) -> Verdict {
+        let (r, base_radius) = (pair.radius, pair.base_radius);
+        // e runs at no more than r per radian.
+        let rho_min = at.rho - half_width * r;
+        if rho_min > 0.0 {
+            let third = self.third_derivative(at, base_radius, r, rho_min, half_width);
+            if at.slope.abs() > half_width * (at.curvature.abs() + 0.5 * half_width * third)
+                || at.curvature + half_width * third < 0.0
+            {
+                return Verdict::NoMinimum;
+            }
+            if at.curvature - half_width * third > 0.0 {
+                return Verdict::Convex;
+            }
+        }
+        let rho_max = at.rho + half_width * r;
+        let ww = (at.ee[0] + at.z * -self.rise * sin).abs() + half_width * self.ww;
+        let e1 = r * (1.0 - (pair.tilt_sin * sin) * (pair.tilt_sin * sin)).max(0.0).sqrt() - half_width * r;
+        let k = self.ww / base_radius + r;
+        if e1 > 0.0 && ww * ww < base_radius * base_radius * (e1 * e1 - rho_max * k) {
+            return Verdict::NoMinimum;
+        }
+        Verdict::Unknown
+    }
+
+    /// A bound of `|h‴|`, the smaller one of two. From `h‴ = 3 z′z″ + z z‴ + 3 ρ′ρ″ + (ρ − R) ρ‴`, in which every
+    /// factor is bounded, so that it stays small for nearly coaxial pairs; and from `h‴ = (w·w′)″ − R ρ‴`.
+    ///
+    /// `ρ′ = e·e′/ρ`, `ρ″ = ((e·e′)′ − ρ′²)/ρ`, `ρ‴ = ((e·e′)″ − 3 ρ′ρ″)/ρ`, and `|ρ′| ≤ r`.
+    fn third_derivative(&self, at: &Sample, base_radius: f64, r: f64, rho_min: f64, half_width: f64) -> f64 {
+        let inverse = 1.0 / rho_min;
+        let first = r.min((at.ee[0].abs() + half_width * self.ee[0]) * inverse);
+        let second = (self.ee[0].min(at.ee[1].abs() + half_width * self.ee[1]) + first * first) * inverse;
+        let third = (self.ee[1] + 3.0 * first * second) * inverse;
+        let rise = self.rise;
+        let height = 1.5 * rise * rise + (at.z.abs() + half_width * rise) * rise;
+        let radial = 3.0 * first * second + (at.radial.abs() + half_width * first) * third;
+        (height + radial).min(self.ww + base_radius * third)
+    }
+}
+
+/// The root of `h′` in a bracket where it goes from − to +: Newton's method, kept inside by bisection.
+pub(crate) fn refine(pair: &Relative<'_>, mut bracket: [f64; 2], start: &Sample, start_rad: f64) -> f64 {
+    let (mut angle_rad, mut slope, mut curvature) = (start_rad, start.slope, start.curvature);
+    let mut last_step = bracket[1] - bracket[0];
+    for _ in 0..64 {
+        bracket[usize::from(slope >= 0.0)] = angle_rad;
+        let newton = angle_rad - slope / curvature;
+        let inside = newton > bracket[0] && newton < bracket[1];
+        // Steps that do not halve belong to bisection: quartic minima, and the noise around them.
+        let next = if inside && (newton - angle_rad).abs() < 0.5 * last_step {
+            newton
+        } else {
+            0.5 * (bracket[0] + bracket[1])
+        };
+        last_step = (next - angle_rad).abs();
+        angle_rad = next;
+        // After a quadratic step of this size the next one is below rounding.
+        if last_step < 1e-9 && next == newton || last_step < 1e-16 {
+            break;
+        }
+        let sample = pair.at_angle(angle_rad);
+        (slope, curvature) = (sample.slope, sample.curvature);
+        if slope == 0.0 {
+            break;
+        }
+    }
+    angle_rad
+}

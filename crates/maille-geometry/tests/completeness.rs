@@ -1,0 +1,66 @@
+//! No minimum is missed: the enumeration against dense sampling, on 120,000 pairs.
+
+mod common;
+
+use common::{Along, FAMILIES, oracle, rng, sample_angles, scale};
+use maille_geometry::circle_distance_minima;
+
+const PAIRS_EACH: usize = 20_000;
+
+#[test]
+fn every_sampled_minimum_is_enumerated() {
+    let angles = sample_angles(720);
+    for (seed, (name, family)) in FAMILIES.iter().enumerate() {
+        let mut rng = rng(seed as u64);
+        let (mut missed, mut checked, mut continua, mut counts) = (0, 0, 0, [0usize; 5]);
+        let (mut worst, mut false_ones) = (0.0_f64, 0);
+        for index in 0..PAIRS_EACH {
+            let (a, b) = family(&mut rng);
+            let minima = circle_distance_minima(&a, &b);
+            let unit = scale(&a, &b);
+            counts[minima.as_slice().len()] += 1;
+            continua += usize::from(minima.continuum);
+            // Alternate the circle that is sampled: the minima are those of the pair.
+            let swapped = index % 2 == 1;
+            let along = if swapped { Along::new(&b, &a) } else { Along::new(&a, &b) };
+            let sampled = if swapped { oracle(&b, &a, &angles) } else { oracle(&a, &b, &angles) };
+            let mut lowest = f64::INFINITY;
+            for expected in &sampled {
+                checked += 1;
+                lowest = lowest.min(expected.distance);
+                let hit = minima.as_slice().iter().any(|m| {
+                    let point = if swapped { m.point_a } else { m.point_b };
+                    (m.distance - expected.distance).abs() < 1e-9 * unit
+                        && along.is_level_between(&point, &expected.point_b, 1e-10 * unit)
+                });
+                if !hit {
+                    missed += 1;
+                    println!("{name} {index}: missed {expected:?} of {a:?} {b:?}, have {minima:?}");
+                }
+            }
+            let best = minima.closest().distance;
+            if lowest.is_finite() {
+                worst = worst.max((best - lowest) / unit);
+            }
+            for m in minima.as_slice() {
+                // What was found is a minimum: no smaller distance beside it.
+                let angle = along.angle(if swapped { &m.point_a } else { &m.point_b });
+                let beside = [-1e-4, -1e-6, 1e-6, 1e-4].map(|step| along.distance(angle + step));
+                if beside.iter().any(|&d| d < m.distance - 1e-14 * unit) {
+                    false_ones += 1;
+                    println!("{name} {index}: no minimum {m:?} of {a:?} {b:?}");
+                }
+            }
+        }
+        println!(
+            "{name}: {PAIRS_EACH} pairs, {checked} sampled minima, {missed} missed, {false_ones} false, \
+             distance above the sampled by at most {worst:.1e}, \
+             pairs with 1/2/3/4 minima {}/{}/{}/{}, continua {continua}",
+            counts[1], counts[2], counts[3], counts[4]
+        );
+        assert_eq!((missed, false_ones), (0, 0), "{name}");
+        assert!(worst < 1e-12, "{name}: {worst:e}");
+        // Observed, not proved.
+        assert_eq!((counts[3], counts[4]), (0, 0), "{name}: more than two minima");
+    }
+}

@@ -1,0 +1,70 @@
+//! Design files: TOML to [`Design`] and back, with errors that point at the place.
+
+mod fields;
+mod index;
+mod problem;
+mod read;
+mod write;
+
+pub use problem::{DesignError, DesignProblem};
+pub use write::write_design;
+
+use index::Index;
+use maille::design::Design;
+use maille::error::InvalidInput;
+use std::sync::Arc;
+use toml::de::DeTable;
+
+/// The text of a design file with the name to show for it, so that errors can point into it.
+///
+/// ```
+/// let source = maille_io::DesignSource::new("1.1", maille_io::builtin("1.1").unwrap());
+/// let design = source.read().unwrap();
+/// assert_eq!(design.elements.len(), 3);
+/// ```
+#[derive(Clone, Debug)]
+pub struct DesignSource {
+    name: String,
+    text: Arc<str>,
+}
+
+impl DesignSource {
+    /// The text of a design file; `name` (a path, `<stdin>`) is what errors show.
+    pub fn new(name: impl Into<String>, text: impl Into<Arc<str>>) -> Self {
+        Self { name: name.into(), text: text.into() }
+    }
+
+    /// The design, or everything that is wrong with the file.
+    pub fn read(&self) -> Result<Design, DesignError> {
+        let table = match DeTable::parse(&self.text) {
+            Ok(table) => table.into_inner(),
+            Err(error) => return Err(self.error(vec![DesignProblem::syntax(&error)])),
+        };
+        let index = Index::new(&table, &self.text);
+        let (design, mut problems) = read::design(&table, &self.text, &index);
+        let invalid = design.iter().flat_map(Design::problems).map(|p| DesignProblem::invalid(&p, &index));
+        problems.extend(invalid);
+        match design {
+            Some(design) if problems.is_empty() => Ok(design),
+            _ => Err(self.error(problems)),
+        }
+    }
+
+    /// Attaches problems that were found later, as an overlap in the starting state, to their places in the file.
+    ///
+    /// A field that the file does not contain is shown at its nearest parent; one with no parent, without a place.
+    pub fn explain(&self, problems: &[InvalidInput]) -> DesignError {
+        let index = DeTable::parse(&self.text).map_or_else(|_| Index::empty(), |t| Index::new(t.get_ref(), &self.text));
+        self.error(problems.iter().map(|p| DesignProblem::invalid(p, &index)).collect())
+    }
+
+    fn error(&self, mut problems: Vec<DesignProblem>) -> DesignError {
+        problems.sort_by_key(DesignProblem::start);
+        DesignError::new(&self.name, self.text.clone(), problems)
+    }
+}
+
+/// Reads a design file; `source_name` is what errors show.
+pub fn read_design(source_name: &str, text: &str) -> Result<Design, DesignError> {
+    DesignSource::new(source_name, text).read()
+}

@@ -1,0 +1,50 @@
+//! The keys of each table, and what to say about a key that is not there.
+
+/// Keys of the top of the file.
+pub(super) const TOP: &[&str] = &[
+    "schema",
+    "name",
+    "title",
+    "source",
+    "unit",
+    "minor_radius",
+    "reference_radius",
+    "allow_initial_overlap",
+    "lattice",
+    "elements",
+];
+/// Keys of `[lattice]`.
+pub(super) const LATTICE: &[&str] = &["a1", "a2"];
+/// Keys of `[[elements]]`.
+pub(super) const ELEMENT: &[&str] = &["name", "center", "rings"];
+/// Keys of a ring.
+pub(super) const RING: &[&str] = &["major_radius", "normal", "offset", "minor_radius"];
+
+const TABLES: [(&[&str], &str); 4] = [
+    (TOP, "at the top of the file, above the first [table]"),
+    (LATTICE, "in [lattice]"),
+    (ELEMENT, "in an [[elements]] table"),
+    (RING, "in a ring { … }"),
+];
+
+/// What would be right instead of the unknown `key` in the table that knows `known`.
+pub(super) fn unknown_key_help(key: &str, known: &[&str]) -> String {
+    if let Some(near) = nearest(key, known) {
+        return format!("did you mean `{near}`?");
+    }
+    if let Some((_, place)) = TABLES.iter().find(|(keys, _)| keys.contains(&key)) {
+        return format!("`{key}` stands {place}");
+    }
+    format!("known here: {}", known.join(", "))
+}
+
+/// The word that `word` was probably meant to be.
+pub(super) fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
+    let word = word.to_lowercase();
+    let distance = |k: &str| {
+        let contained = word.len() >= 4 && (k.contains(&word) || word.contains(k));
+        if contained { 1 } else { strsim::damerau_levenshtein(&word, k) }
+    };
+    let best = known.iter().copied().min_by_key(|k| distance(k))?;
+    (distance(best) <= 1 + word.chars().count() / 4).then_some(best)
+}

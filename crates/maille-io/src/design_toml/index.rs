@@ -1,0 +1,77 @@
+//! Where each field stands in the file.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// Byte ranges of the values by path: `elements[2].rings[0].normal`.
+pub(super) struct Index {
+    places: BTreeMap<String, Range<usize>>,
+    first: usize,
+}
+
+/// Where to point for a path.
+pub(super) enum Place {
+    /// The value itself.
+    Exact(Range<usize>),
+    /// The nearest parent that the file contains.
+    Parent(Range<usize>),
+    /// The path's parent is the whole file.
+    None,
+}
+
+impl Index {
+    /// An index that knows no place, for a text that is no TOML.
+    pub(super) fn empty() -> Self {
+        Self { places: BTreeMap::new(), first: 0 }
+    }
+
+    pub(super) fn new(table: &DeTable<'_>, text: &str) -> Self {
+        let mut places = BTreeMap::new();
+        add_table(table, "", &mut places);
+        let first = table.iter().map(|(key, value)| key.span().start.min(value.span().start)).min();
+        // The key of [table] starts after its bracket: go back to the start of the line.
+        let first = first.map_or(text.len(), |at| text[..at].rfind('\n').map_or(0, |i| i + 1));
+        Self { places, first }
+    }
+
+    /// Start of the line of the first key: where a missing top-level key would stand.
+    pub(super) fn first_line(&self) -> usize {
+        self.first
+    }
+
+    pub(super) fn find(&self, path: &str) -> Place {
+        if let Some(range) = self.places.get(path) {
+            return Place::Exact(range.clone());
+        }
+        let mut path = path;
+        while let Some(cut) = path.rfind(['.', '[']) {
+            path = &path[..cut];
+            if let Some(range) = self.places.get(path) {
+                return Place::Parent(range.clone());
+            }
+        }
+        Place::None
+    }
+}
+
+fn add(value: &Spanned<DeValue<'_>>, path: &str, places: &mut BTreeMap<String, Range<usize>>) {
+    places.insert(path.to_owned(), value.span());
+    match value.get_ref() {
+        DeValue::Table(table) => add_table(table, path, places),
+        DeValue::Array(array) => {
+            for (i, item) in array.iter().enumerate() {
+                add(item, &format!("{path}[{i}]"), places);
+            }
+        }
+        _ => {}
+    }
+}
+
+fn add_table(table: &DeTable<'_>, path: &str, places: &mut BTreeMap<String, Range<usize>>) {
+    for (key, value) in table {
+        let path = if path.is_empty() { key.get_ref().to_string() } else { format!("{path}.{}", key.get_ref()) };
+        add(value, &path, places);
+    }
+}

@@ -1,0 +1,151 @@
+//! What is wrong with a design file, and where.
+
+use super::index::{Index, Place};
+use maille::error::InvalidInput;
+use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
+use std::fmt;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// One thing that is wrong with a design file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct DesignProblem {
+    field: String,
+    problem: String,
+    help: String,
+    span: Option<Range<usize>>,
+    label: Option<String>,
+}
+
+impl DesignProblem {
+    pub(super) fn new(field: &str, problem: impl Into<String>, help: impl Into<String>, span: Range<usize>) -> Self {
+        Self { field: field.into(), problem: problem.into(), help: help.into(), span: Some(span), label: None }
+    }
+
+    /// A field that is not there: `span` is where it would stand.
+    pub(super) fn missing(field: &str, key: &str, help: &str, span: Range<usize>) -> Self {
+        let label = Some(format!("`{key}` belongs here"));
+        Self { label, ..Self::new(field, "is missing", help, span) }
+    }
+
+    pub(super) fn syntax(error: &toml::de::Error) -> Self {
+        let help = "see https://toml.io for how TOML is written";
+        let mut out = Self::new("", format!("not valid TOML: {}", error.message()), help, 0..0);
+        out.span = error.span();
+        out
+    }
+
+    pub(super) fn invalid(input: &InvalidInput, index: &Index) -> Self {
+        let (span, label) = match index.find(&input.field) {
+            Place::Exact(span) => (Some(span), None),
+            Place::Parent(span) => (Some(span), Some("in here".to_owned())),
+            Place::None => (None, None),
+        };
+        Self { field: input.field.clone(), problem: input.problem.clone(), help: input.help.clone(), span, label }
+    }
+
+    pub(super) fn start(&self) -> usize {
+        self.span.as_ref().map_or(0, |s| s.start)
+    }
+
+    /// Path of the field, as `elements[2].rings[0].normal`; empty where the file is no TOML.
+    pub fn field(&self) -> &str {
+        &self.field
+    }
+
+    /// What would be right.
+    pub fn help_text(&self) -> &str {
+        &self.help
+    }
+
+    /// Bytes of the file that the problem is about; none where the file does not contain the field.
+    pub fn span(&self) -> Option<Range<usize>> {
+        self.span.clone()
+    }
+}
+
+impl fmt::Display for DesignProblem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.field.as_str() {
+            "" => f.write_str(&self.problem),
+            field => write!(f, "{field}: {}", self.problem),
+        }
+    }
+}
+
+impl std::error::Error for DesignProblem {}
+
+impl Diagnostic for DesignProblem {
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        Some(Box::new(&self.help))
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        let span = self.span.clone()?;
+        Some(Box::new(std::iter::once(LabeledSpan::new_with_span(self.label.clone(), span))))
+    }
+}
+
+/// Everything that is wrong with a design file.
+///
+/// Shown by miette: with one problem as that problem, with several as a list.
+#[derive(Debug)]
+pub struct DesignError {
+    source: NamedSource<Arc<str>>,
+    problems: Vec<DesignProblem>,
+}
+
+impl DesignError {
+    pub(super) fn new(name: &str, text: Arc<str>, problems: Vec<DesignProblem>) -> Self {
+        Self { source: NamedSource::new(name, text), problems }
+    }
+
+    /// The problems, in the order of the file.
+    pub fn problems(&self) -> &[DesignProblem] {
+        &self.problems
+    }
+
+    /// Line and column of a problem, from 1; columns count characters.
+    pub fn line_column(&self, problem: &DesignProblem) -> Option<(usize, usize)> {
+        let before = self.source.inner().get(..problem.span.as_ref()?.start)?;
+        let line = before.rsplit('\n').next().unwrap_or_default();
+        Some((before.matches('\n').count() + 1, line.chars().count() + 1))
+    }
+
+    fn only(&self) -> Option<&DesignProblem> {
+        match self.problems.as_slice() {
+            [one] => Some(one),
+            _ => None,
+        }
+    }
+}
+
+impl fmt::Display for DesignError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.only() {
+            Some(one) => one.fmt(f),
+            None => write!(f, "{} has {} problems", self.source.name(), self.problems.len()),
+        }
+    }
+}
+
+impl std::error::Error for DesignError {}
+
+impl Diagnostic for DesignError {
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        self.only().and_then(Diagnostic::help)
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        self.only().and_then(Diagnostic::labels)
+    }
+
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        Some(&self.source)
+    }
+
+    fn related<'a>(&'a self) -> Option<Box<dyn Iterator<Item = &'a dyn Diagnostic> + 'a>> {
+        let several = self.only().is_none();
+        several.then(|| Box::new(self.problems.iter().map(|p| p as &dyn Diagnostic)) as _)
+    }
+}

@@ -1,0 +1,279 @@
+//! From a TOML table to a [`Design`], collecting every problem on the way.
+
+use super::fields::{self, ELEMENT, LATTICE, RING, TOP};
+use super::index::Index;
+use super::problem::DesignProblem;
+use maille::design::{DESIGN_SCHEMA, Design, ElementSpec, LatticeSpec, RingSpec, Source};
+use std::ops::Range;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+const SOURCES: [(&str, Source); 4] = [
+    ("thesis-text", Source::ThesisText),
+    ("reconstruction", Source::Reconstruction),
+    ("literature", Source::Literature),
+    ("own", Source::Own),
+];
+
+/// The name of a source in the file.
+pub(super) fn source_name(source: Source) -> &'static str {
+    SOURCES.iter().find(|(_, s)| *s == source).map_or("own", |(name, _)| name)
+}
+
+type Value<'t> = Spanned<DeValue<'t>>;
+
+/// The design, if all its fields could be read, and what is wrong with the form of the file.
+pub(super) fn design(table: &DeTable<'_>, text: &str, index: &Index) -> (Option<Design>, Vec<DesignProblem>) {
+    let mut reader = Reader { text, problems: Vec::new() };
+    let first = index.first_line();
+    let top = At { table, path: String::new(), span: first..first };
+    let design = reader.design(&top);
+    (design, reader.problems)
+}
+
+/// A table with its path and the place to point at where something is missing in it.
+struct At<'a, 't> {
+    table: &'a DeTable<'t>,
+    path: String,
+    span: Range<usize>,
+}
+
+impl<'a, 't> At<'a, 't> {
+    fn path(&self, key: &str) -> String {
+        if self.path.is_empty() { key.to_owned() } else { format!("{}.{key}", self.path) }
+    }
+
+    fn get(&self, key: &str) -> Option<(&'a Value<'t>, String)> {
+        self.table.get(key).map(|value| (value, self.path(key)))
+    }
+}
+
+struct Reader<'s> {
+    text: &'s str,
+    problems: Vec<DesignProblem>,
+}
+
+impl Reader<'_> {
+    fn design(&mut self, top: &At<'_, '_>) -> Option<Design> {
+        let schema = match top.get("schema") {
+            Some((value, path)) => self.integer(value, &path),
+            None => Some(DESIGN_SCHEMA),
+        };
+        if schema.is_some_and(|s| s != DESIGN_SCHEMA) {
+            // Nothing else can be judged by the rules of another version.
+            let (value, path) = top.get("schema")?;
+            let problem = format!("version {} is not known", &self.text[value.span()]);
+            let help = format!("this program reads schema = {DESIGN_SCHEMA}");
+            self.problems.push(DesignProblem::new(&path, problem, help, value.span()));
+            return None;
+        }
+        self.known_keys(top, TOP);
+        let name = self.required(top, "name", "name = \"my-weave\"").and_then(|(v, p)| self.string(v, &p));
+        let title = self.optional(top, "title", Self::string);
+        let source = self.optional(top, "source", Self::source);
+        let unit = self.optional(top, "unit", Self::string);
+        let minor_radius = self.optional(top, "minor_radius", Self::number);
+        let help = "reference_radius = 1.0, the major radius that ratios such as r = R/10 refer to";
+        let reference_radius = self.required(top, "reference_radius", help).and_then(|(v, p)| self.number(v, &p));
+        let allow_initial_overlap = self.optional(top, "allow_initial_overlap", Self::boolean);
+        let help = "[lattice] with a1 = [2.5, 0.0, 0.0] and a2 = [0.0, 2.5, 0.0], the translations to the next cells";
+        let lattice = self.required(top, "lattice", help).and_then(|(v, p)| self.lattice(v, &p));
+        let help = "[[elements]] with name, center and rings = [{ major_radius = 1.0, normal = [0.0, 0.0, 1.0] }]";
+        let elements = self.required(top, "elements", help).and_then(|(v, p)| {
+            self.list(v, &p, "write a table [[elements]] for each element", Self::element)
+        });
+        Some(Design {
+            schema: schema?,
+            name: name?,
+            title: title?.unwrap_or_default(),
+            source: source?.unwrap_or_default(),
+            unit: unit?,
+            minor_radius: minor_radius?,
+            reference_radius: reference_radius?,
+            allow_initial_overlap: allow_initial_overlap?.unwrap_or_default(),
+            lattice: lattice?,
+            elements: elements?,
+        })
+    }
+
+    fn lattice(&mut self, value: &Value<'_>, path: &str) -> Option<LatticeSpec> {
+        let at = self.table(value, path, LATTICE, "write [lattice] with a1 and a2")?;
+        let a1 = self.required(&at, "a1", "a1 = [2.5, 0.0, 0.0]").and_then(|(v, p)| self.vector(v, &p));
+        let a2 = self.required(&at, "a2", "a2 = [0.0, 2.5, 0.0]").and_then(|(v, p)| self.vector(v, &p));
+        Some(LatticeSpec { a1: a1?, a2: a2? })
+    }
+
+    fn element(&mut self, value: &Value<'_>, path: &str) -> Option<ElementSpec> {
+        let at = self.table(value, path, ELEMENT, "write a table [[elements]] with name, center and rings")?;
+        let name = self.required(&at, "name", "name = \"flat\"").and_then(|(v, p)| self.string(v, &p));
+        let center = self.required(&at, "center", "center = [0.0, 0.0, 0.0]").and_then(|(v, p)| self.vector(v, &p));
+        let help = "rings = [{ major_radius = 1.0, normal = [0.0, 0.0, 1.0] }]";
+        let rings = self.required(&at, "rings", help).and_then(|(v, p)| {
+            self.list(v, &p, "write rings = [{ major_radius = 1.0, normal = [0.0, 0.0, 1.0] }]", Self::ring)
+        });
+        Some(ElementSpec { name: name?, center: center?, rings: rings? })
+    }
+
+    fn ring(&mut self, value: &Value<'_>, path: &str) -> Option<RingSpec> {
+        let at = self.table(value, path, RING, "write { major_radius = 1.0, normal = [0.0, 0.0, 1.0] }")?;
+        let help = "major_radius = 1.0, the radius of the ring's core circle";
+        let major_radius = self.required(&at, "major_radius", help).and_then(|(v, p)| self.number(v, &p));
+        let help = "normal = [0.0, 0.0, 1.0] for a ring that lies in the sheet; any non-zero vector";
+        let normal = self.required(&at, "normal", help).and_then(|(v, p)| self.vector(v, &p));
+        let offset = self.optional(&at, "offset", Self::vector);
+        let minor_radius = self.optional(&at, "minor_radius", Self::number);
+        Some(RingSpec {
+            major_radius: major_radius?,
+            normal: normal?,
+            offset: offset?.unwrap_or_default(),
+            minor_radius: minor_radius?,
+        })
+    }
+
+    fn known_keys(&mut self, at: &At<'_, '_>, known: &[&str]) {
+        for key in at.table.keys().filter(|k| !known.contains(&k.get_ref().as_ref())) {
+            let help = fields::unknown_key_help(key.get_ref(), known);
+            self.problems.push(DesignProblem::new(&at.path(key.get_ref()), "unknown key", help, key.span()));
+        }
+    }
+
+    fn required<'a, 't>(&mut self, at: &At<'a, 't>, key: &str, help: &str) -> Option<(&'a Value<'t>, String)> {
+        let found = at.get(key);
+        if found.is_none() {
+            self.problems.push(DesignProblem::missing(&at.path(key), key, &format!("add {help}"), at.span.clone()));
+        }
+        found
+    }
+
+    /// `None`: there, but wrong; `Some(None)`: not there.
+    fn optional<T>(
+        &mut self,
+        at: &At<'_, '_>,
+        key: &str,
+        read: fn(&mut Self, &Value<'_>, &str) -> Option<T>,
+    ) -> Option<Option<T>> {
+        match at.get(key) {
+            None => Some(None),
+            Some((value, path)) => read(self, value, &path).map(Some),
+        }
+    }
+
+    fn table<'a, 't>(&mut self, value: &'a Value<'t>, path: &str, known: &[&str], help: &str) -> Option<At<'a, 't>> {
+        let DeValue::Table(table) = value.get_ref() else {
+            return self.wrong_type(value, path, "a table", help);
+        };
+        let at = At { table, path: path.to_owned(), span: value.span() };
+        self.known_keys(&at, known);
+        Some(at)
+    }
+
+    /// All items, or nothing if one of them is wrong; each is read, so that all problems are found.
+    fn list<T>(
+        &mut self,
+        value: &Value<'_>,
+        path: &str,
+        help: &str,
+        read: fn(&mut Self, &Value<'_>, &str) -> Option<T>,
+    ) -> Option<Vec<T>> {
+        let DeValue::Array(array) = value.get_ref() else {
+            return self.wrong_type(value, path, "an array of tables", help);
+        };
+        let items: Vec<_> = array.iter().enumerate().map(|(i, v)| read(self, v, &format!("{path}[{i}]"))).collect();
+        items.into_iter().collect()
+    }
+
+    fn vector(&mut self, value: &Value<'_>, path: &str) -> Option<[f64; 3]> {
+        let key = path.rsplit('.').next().unwrap_or(path);
+        let help = format!("write {key} = [x, y, z]");
+        let DeValue::Array(array) = value.get_ref() else {
+            return self.wrong_type(value, path, "an array of three numbers", &help);
+        };
+        let numbers: Option<Vec<f64>> = array.iter().enumerate().map(|(i, v)| self.number(v, &format!("{path}[{i}]"))).collect();
+        let numbers = numbers?;
+        let three = <[f64; 3]>::try_from(numbers);
+        if let Err(found) = &three {
+            let problem = format!("expected three numbers, found {}", found.len());
+            self.problems.push(DesignProblem::new(path, problem, help, value.span()));
+        }
+        three.ok()
+    }
+
+    fn number(&mut self, value: &Value<'_>, path: &str) -> Option<f64> {
+        match value.get_ref() {
+            DeValue::Float(x) => x.as_str().parse().ok(),
+            DeValue::Integer(i) => i64::from_str_radix(i.as_str(), i.radix()).ok().map(|i| i as f64),
+            DeValue::String(s) if s.trim().parse::<f64>().is_ok() => {
+                return self.wrong_type(value, path, "a number", &format!("write {} without quotes", s.trim()));
+            }
+            _ => None,
+        }
+        .or_else(|| self.wrong_type(value, path, "a number", "write a number, as 1.0"))
+    }
+
+    fn integer(&mut self, value: &Value<'_>, path: &str) -> Option<u32> {
+        let number = match value.get_ref() {
+            DeValue::Integer(i) => u32::from_str_radix(i.as_str(), i.radix()).ok(),
+            _ => None,
+        };
+        number.or_else(|| self.wrong_type(value, path, "a version number", &format!("write schema = {DESIGN_SCHEMA}")))
+    }
+
+    fn boolean(&mut self, value: &Value<'_>, path: &str) -> Option<bool> {
+        match value.get_ref() {
+            DeValue::Boolean(b) => Some(*b),
+            _ => self.wrong_type(value, path, "true or false", "write true or false, without quotes"),
+        }
+    }
+
+    fn string(&mut self, value: &Value<'_>, path: &str) -> Option<String> {
+        match value.get_ref() {
+            DeValue::String(s) => Some(s.to_string()),
+            _ => {
+                let written = self.text[value.span()].replace('"', "'");
+                let key = path.rsplit('.').next().unwrap_or(path);
+                self.wrong_type(value, path, "a string", &format!("write {key} = \"{written}\""))
+            }
+        }
+    }
+
+    fn source(&mut self, value: &Value<'_>, path: &str) -> Option<Source> {
+        let name = self.string(value, path)?;
+        let found = SOURCES.iter().find(|(known, _)| *known == name).map(|(_, source)| *source);
+        if found.is_none() {
+            let known = SOURCES.map(|(known, _)| known);
+            let mut help = format!("known: {}", known.join(", "));
+            if let Some(near) = fields::nearest(&name, &known) {
+                help = format!("did you mean \"{near}\"? {help}");
+            }
+            let problem = format!("\"{name}\" is no source");
+            self.problems.push(DesignProblem::new(path, problem, help, value.span()));
+        }
+        found
+    }
+
+    fn wrong_type<T>(&mut self, value: &Value<'_>, path: &str, expected: &str, help: &str) -> Option<T> {
+        let written = self.text.get(value.span()).unwrap_or_default();
+        let found = match value.get_ref() {
+            DeValue::Table(_) => "a table".to_owned(),
+            DeValue::Array(_) => "an array".to_owned(),
+            DeValue::String(_) => format!("the string {written}"),
+            _ => written.to_owned(),
+        };
+        let problem = format!("expected {expected}, found {found}");
+        self.problems.push(DesignProblem::new(path, problem, help, value.span()));
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sources_are_those_of_the_record() {
+        for (name, source) in SOURCES {
+            assert_eq!(serde_json::to_value(source).unwrap(), name);
+            assert_eq!(source_name(source), name);
+        }
+    }
+}

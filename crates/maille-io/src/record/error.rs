@@ -1,0 +1,81 @@
+//! What can be wrong with a record.
+
+use miette::Diagnostic;
+use std::path::PathBuf;
+use thiserror::Error;
+
+/// A record that cannot be read, written or continued.
+#[derive(Debug, Error, Diagnostic)]
+pub enum RecordError {
+    /// The file system refused.
+    #[error("cannot {action} {}: {source}", path.display())]
+    Io {
+        /// What was tried: `read`, `write`, `create`, `remove`.
+        action: &'static str,
+        /// On what.
+        path: PathBuf,
+        /// Why not.
+        source: std::io::Error,
+    },
+    /// A file of the record does not hold what it should.
+    #[error("{file}:{line}: {problem}")]
+    #[diagnostic(help("the file is damaged or was edited: restore it, or compute the record again with --overwrite"))]
+    Malformed {
+        /// Path or name of the file.
+        file: String,
+        /// Line, from 1.
+        line: u64,
+        /// Column and value, and what was expected.
+        problem: String,
+    },
+    /// The folder holds the record of another computation.
+    #[error("{} holds a record of other inputs: {difference}", folder.display())]
+    #[diagnostic(help("name another folder with --out, or replace this record with --overwrite"))]
+    OtherInputs {
+        /// The folder.
+        folder: PathBuf,
+        /// The first fields that differ, with both values.
+        difference: String,
+    },
+    /// The folder holds files, but no record.
+    #[error("{} is not empty and holds no record of maille (found {found})", folder.display())]
+    #[diagnostic(help("name a new or empty folder with --out; files of others are never replaced"))]
+    NotARecord {
+        /// The folder.
+        folder: PathBuf,
+        /// Some names in it.
+        found: String,
+    },
+    /// A number that JSON and the table's readers cannot hold.
+    #[error("direction {direction_deg}°, l2 {l2}: {field} is {value}")]
+    #[diagnostic(help("a record holds finite numbers only, and nothing where a number was not earned; please report this"))]
+    NotFinite {
+        /// Direction of the row.
+        direction_deg: f64,
+        /// l2 of the row.
+        l2: f64,
+        /// Field of the row or the state.
+        field: &'static str,
+        /// The number.
+        value: f64,
+    },
+}
+
+impl RecordError {
+    pub(super) fn io(action: &'static str, path: impl Into<PathBuf>) -> impl FnOnce(std::io::Error) -> Self {
+        let path = path.into();
+        move |source| Self::Io { action, path, source }
+    }
+
+    pub(super) fn malformed(file: &str, line: usize, problem: impl Into<String>) -> Self {
+        Self::Malformed { file: file.to_owned(), line: line as u64, problem: problem.into() }
+    }
+}
+
+/// A text file of the record ends with a newline; otherwise its last line may have lost its end.
+pub(super) fn complete(file: &str, text: &str) -> Result<(), RecordError> {
+    if text.is_empty() || text.ends_with('\n') {
+        return Ok(());
+    }
+    Err(RecordError::malformed(file, text.matches('\n').count() + 1, "the file ends within this line"))
+}

@@ -1,0 +1,445 @@
+//! The folder of a record, consistent at every moment.
+//!
+//! A file is written under a temporary name in the same folder and then renamed, so each file is whole at all times. Between
+//! files, the order keeps this invariant: **`run.json` names the inputs of every row in `limits.csv`, and a row counts as
+//! finished only if `states.jsonl` holds its state.**
+//!
+//! - A new record: `run.json` first, so that the folder is known as ours before anything else is in it.
+//! - A replaced record: `limits.csv` is removed first, then the states and plots, then `run.json` is replaced. Until that
+//!   last step the folder is the old record with fewer rows, never a mixture.
+//! - More rows: `states.jsonl`, then `limits.csv`, then `run.json` (only its counters change). A kill in between leaves
+//!   states without rows, which are ignored, or counters that lag until the next write.
+
+use super::error::RecordError;
+use super::limits::{read_limits, write_limits};
+use super::run::{Counters, RunRecord, input_hash, read_run, write_run};
+use super::states::{read_states, write_states};
+use maille::design::Design;
+use maille::record::{LimitRow, RECORD_SCHEMA, StateRecord, Status};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+const RUN: &str = "run.json";
+const LIMITS: &str = "limits.csv";
+const STATES: &str = "states.jsonl";
+const SVG: &str = "polar.svg";
+const PNG: &str = "polar.png";
+const TEMPORARY: (&str, &str) = (".maille-", ".tmp");
+
+/// What a record's folder holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Record {
+    /// Inputs and counters.
+    pub run: RunRecord,
+    /// The rows of `limits.csv`.
+    pub rows: Vec<LimitRow>,
+    /// The lines of `states.jsonl`.
+    pub states: Vec<StateRecord>,
+}
+
+impl Record {
+    /// Reads a folder. A record that has no table or no states yet has no rows or states.
+    pub fn read(folder: &Path) -> Result<Self, RecordError> {
+        let run = folder.join(RUN);
+        let Some(text) = read_if_there(&run)? else {
+            return Err(RecordError::NotARecord { folder: folder.into(), found: some_names(&names(folder)?) });
+        };
+        let run = read_run(&run.display().to_string(), &text)?;
+        let path = folder.join(LIMITS);
+        let rows = match read_if_there(&path)? {
+            Some(text) => read_limits(&path.display().to_string(), &text)?,
+            None => Vec::new(),
+        };
+        let path = folder.join(STATES);
+        let states = match read_if_there(&path)? {
+            Some(text) => read_states(&path.display().to_string(), &text)?,
+            None => Vec::new(),
+        };
+        Ok(Self { run, rows, states })
+    }
+
+    /// The rows that need no computing again, each with its state: those with a state and not `interrupted`.
+    pub fn finished(self) -> (Vec<LimitRow>, Vec<StateRecord>) {
+        let key = |direction: f64, l2: f64, status: Status| (direction.to_bits(), l2.to_bits(), status.name());
+        let states = self.states.into_iter();
+        let mut states: BTreeMap<_, _> = states.map(|s| (key(s.direction_deg, s.l2, s.status), s)).collect();
+        let rows = self.rows.into_iter().filter(|row| row.status != Status::Interrupted);
+        rows.filter_map(|row| states.remove(&key(row.direction_deg, row.l2, row.status)).map(|state| (row, state))).unzip()
+    }
+}
+
+/// A folder that a run writes its record to.
+#[derive(Debug)]
+pub struct RecordFolder {
+    path: PathBuf,
+    run: RunRecord,
+}
+
+/// One change of the folder that happens wholly or not at all.
+#[derive(Debug)]
+enum Step {
+    Remove(&'static str),
+    Write(&'static str, Vec<u8>),
+}
+
+impl RecordFolder {
+    /// Opens or creates the folder for a run with these inputs; gives the finished rows of an earlier run and their states.
+    ///
+    /// A missing or empty folder becomes a new record. A record of the same inputs and program version is continued; any
+    /// other is an error, or replaced with `overwrite`. A folder with other files and no record is always an error.
+    pub fn open(
+        path: &Path,
+        design: &Design,
+        parameters: &Value,
+        program_version: &str,
+        overwrite: bool,
+    ) -> Result<(Self, Vec<LimitRow>, Vec<StateRecord>), RecordError> {
+        let run = RunRecord {
+            schema: RECORD_SCHEMA,
+            program_version: program_version.to_owned(),
+            input_hash: input_hash(design, parameters),
+            design: design.clone(),
+            parameters: parameters.clone(),
+            counters: Counters::default(),
+        };
+        fs::create_dir_all(path).map_err(RecordError::io("create", path))?;
+        let mut found = names(path)?;
+        found.retain(|name| !is_temporary(name));
+        remove_temporary(path)?;
+        let mut folder = Self { path: path.to_owned(), run };
+        if !found.is_empty() {
+            if overwrite {
+                folder.may_replace(&found)?;
+            } else {
+                let record = Record::read(path)?;
+                folder.same_inputs(&record.run)?;
+                let (rows, states) = record.finished();
+                folder.run.counters = Counters::of(&rows);
+                return Ok((folder, rows, states));
+            }
+        }
+        for step in folder.steps_to_replace() {
+            folder.apply(step)?;
+        }
+        Ok((folder, Vec::new(), Vec::new()))
+    }
+
+    /// The folder.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Inputs and counters, as last written.
+    pub fn run(&self) -> &RunRecord {
+        &self.run
+    }
+
+    /// Replaces rows and states by all those of the run so far.
+    pub fn write(&mut self, rows: &[LimitRow], states: &[StateRecord]) -> Result<(), RecordError> {
+        self.run.counters = Counters::of(rows);
+        for step in self.steps_to_write(rows, states)? {
+            self.apply(step)?;
+        }
+        Ok(())
+    }
+
+    /// Writes the plot.
+    pub fn write_polar(&self, svg: &str, png: &[u8]) -> Result<(), RecordError> {
+        self.apply(Step::Write(SVG, svg.into()))?;
+        self.apply(Step::Write(PNG, png.into()))
+    }
+
+    fn steps_to_replace(&self) -> Vec<Step> {
+        let mut steps: Vec<_> = [LIMITS, STATES, SVG, PNG].map(Step::Remove).into();
+        steps.push(Step::Write(RUN, write_run(&self.run).into()));
+        steps
+    }
+
+    fn steps_to_write(&self, rows: &[LimitRow], states: &[StateRecord]) -> Result<Vec<Step>, RecordError> {
+        Ok(vec![
+            Step::Write(STATES, write_states(states)?.into()),
+            Step::Write(LIMITS, write_limits(rows)?.into()),
+            Step::Write(RUN, write_run(&self.run).into()),
+        ])
+    }
+
+    fn apply(&self, step: Step) -> Result<(), RecordError> {
+        match step {
+            Step::Remove(name) => {
+                let path = self.path.join(name);
+                match fs::remove_file(&path) {
+                    Err(e) if e.kind() != ErrorKind::NotFound => Err(RecordError::io("remove", path)(e)),
+                    _ => Ok(()),
+                }
+            }
+            Step::Write(name, bytes) => self.write_file(name, &bytes),
+        }
+    }
+
+    fn write_file(&self, name: &str, bytes: &[u8]) -> Result<(), RecordError> {
+        let path = self.path.join(name);
+        let write = || {
+            let mut builder = tempfile::Builder::new();
+            builder.prefix(TEMPORARY.0).suffix(TEMPORARY.1);
+            #[cfg(unix)]
+            let mode = std::os::unix::fs::PermissionsExt::from_mode(0o666); // the umask applies, as to any new file
+            #[cfg(unix)]
+            builder.permissions(mode);
+            let mut file = builder.tempfile_in(&self.path)?;
+            file.write_all(bytes)?;
+            file.as_file().sync_all()?;
+            file.persist(&path)?;
+            Ok(())
+        };
+        write().map_err(RecordError::io("write", &path))
+    }
+
+    fn same_inputs(&self, old: &RunRecord) -> Result<(), RecordError> {
+        let (a, b) = (&old.program_version, &self.run.program_version);
+        let difference = if a != b {
+            format!("computed by version {a}, this is {b}")
+        } else if old.input_hash != self.run.input_hash {
+            difference(old, &self.run)
+        } else {
+            return Ok(());
+        };
+        Err(RecordError::OtherInputs { folder: self.path.clone(), difference })
+    }
+
+    /// Whether the files may be replaced: those of a record, even of a damaged one, if its `run.json` was ours.
+    fn may_replace(&self, found: &[String]) -> Result<(), RecordError> {
+        let run = fs::read(self.path.join(RUN)).unwrap_or_default();
+        let head = String::from_utf8_lossy(&run[..run.len().min(200)]).into_owned();
+        if head.contains("\"schema\"") && head.contains("\"program_version\"") {
+            return Ok(());
+        }
+        Err(RecordError::NotARecord { folder: self.path.clone(), found: some_names(found) })
+    }
+}
+
+/// The first fields in which the inputs of two runs differ.
+fn difference(old: &RunRecord, new: &RunRecord) -> String {
+    let json = |run: &RunRecord| serde_json::json!({ "design": run.design, "parameters": run.parameters });
+    let mut out = Vec::new();
+    differences(&json(old), &json(new), String::new(), &mut out);
+    let more = out.len().saturating_sub(3);
+    out.truncate(3);
+    match (out.is_empty(), more) {
+        (true, _) => "its input hash differs".to_owned(),
+        (false, 0) => out.join("; "),
+        (false, more) => format!("{}; {more} more", out.join("; ")),
+    }
+}
+
+fn differences(old: &Value, new: &Value, path: String, out: &mut Vec<String>) {
+    match (old, new) {
+        (Value::Object(a), Value::Object(b)) => {
+            let mut keys: Vec<_> = a.keys().chain(b.keys()).collect();
+            keys.sort();
+            keys.dedup();
+            for key in keys {
+                let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
+                differences(a.get(key).unwrap_or(&Value::Null), b.get(key).unwrap_or(&Value::Null), path, out);
+            }
+        }
+        (a, b) if a == b => {}
+        (a, b) => out.push(format!("{path} is {} there, {} here", short(a), short(b))),
+    }
+}
+
+fn short(value: &Value) -> String {
+    let text = value.to_string();
+    match text.char_indices().nth(40) {
+        Some((cut, _)) => format!("{}…", &text[..cut]),
+        None => text,
+    }
+}
+
+fn read_if_there(path: &Path) -> Result<Option<String>, RecordError> {
+    match fs::read_to_string(path) {
+        Ok(text) => Ok(Some(text)),
+        Err(e) if e.kind() == ErrorKind::NotFound => Ok(None),
+        Err(e) => Err(RecordError::io("read", path)(e)),
+    }
+}
+
+fn names(folder: &Path) -> Result<Vec<String>, RecordError> {
+    let read = || -> std::io::Result<Vec<String>> {
+        let names = fs::read_dir(folder)?.map(|e| Ok(e?.file_name().to_string_lossy().into_owned()));
+        let mut names = names.collect::<std::io::Result<Vec<_>>>()?;
+        names.sort();
+        Ok(names)
+    };
+    read().map_err(RecordError::io("read", folder))
+}
+
+fn some_names(names: &[String]) -> String {
+    match names {
+        [] => "nothing".to_owned(),
+        few if few.len() <= 3 => few.join(", "),
+        many => format!("{}, … {} files", many[..3].join(", "), many.len()),
+    }
+}
+
+fn is_temporary(name: &str) -> bool {
+    name.starts_with(TEMPORARY.0) && name.ends_with(TEMPORARY.1)
+}
+
+/// Removes what a killed run left half written.
+fn remove_temporary(folder: &Path) -> Result<(), RecordError> {
+    for name in names(folder)?.iter().filter(|name| is_temporary(name)) {
+        let path = folder.join(name);
+        fs::remove_file(&path).map_err(RecordError::io("remove", path))?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn design() -> Design {
+        crate::read_design("1.1", crate::builtin("1.1").unwrap()).unwrap()
+    }
+
+    fn row(direction_deg: f64, status: Status) -> LimitRow {
+        LimitRow {
+            design: "1.1".into(),
+            minor_radius: Some(0.1),
+            direction_deg,
+            l2: 0.0,
+            method: "energy".into(),
+            cell: "1x1".into(),
+            status,
+            l1: Some(0.44),
+            lambda1: None,
+            lambda2: None,
+            stretch1: None,
+            stretch2: None,
+            max_overlap: None,
+            min_gap: None,
+            iterations: 7,
+            runs: 2,
+            wall_s: 0.5,
+        }
+    }
+
+    fn state(direction_deg: f64, status: Status) -> StateRecord {
+        StateRecord {
+            direction_deg,
+            l2: 0.0,
+            status,
+            a1: [2.5, 0.0, 0.0],
+            a2: [0.0, 2.5, 0.0],
+            deformation_gradient: [[1.0, 0.0], [0.0, 1.0]],
+            poses: Vec::new(),
+            residual: None,
+            note: None,
+        }
+    }
+
+    fn rows(n: usize) -> (Vec<LimitRow>, Vec<StateRecord>) {
+        let at = |i: usize| (row(i as f64, Status::ThresholdReached), state(i as f64, Status::ThresholdReached));
+        (0..n).map(at).unzip()
+    }
+
+    /// Runs the steps up to each point at which a kill can happen, and hands the folder to `check`.
+    fn killed_anywhere(
+        before: impl Fn(&Path) -> RecordFolder,
+        steps: impl Fn(&mut RecordFolder) -> Vec<Step>,
+        check: impl Fn(&Path, usize),
+    ) {
+        let count = {
+            let dir = tempfile::tempdir().unwrap();
+            steps(&mut before(dir.path())).len()
+        };
+        for done in 0..=count {
+            let dir = tempfile::tempdir().unwrap();
+            let mut folder = before(dir.path());
+            for step in steps(&mut folder).into_iter().take(done) {
+                folder.apply(step).unwrap();
+            }
+            fs::write(dir.path().join(".maille-x1.tmp"), "half a fi").unwrap();
+            check(dir.path(), done);
+        }
+    }
+
+    #[test]
+    fn kill_while_adding_rows_leaves_old_or_new_rows() {
+        let (old, old_states) = rows(2);
+        let (new, new_states) = rows(5);
+        let inputs = json!({ "tau": 0.01 });
+        let before = |path: &Path| {
+            let (mut folder, ..) = RecordFolder::open(path, &design(), &inputs, "0.1.0", false).unwrap();
+            folder.write(&old, &old_states).unwrap();
+            folder
+        };
+        let steps = |folder: &mut RecordFolder| folder.steps_to_write(&new, &new_states).unwrap();
+        killed_anywhere(before, steps, |path, done| {
+            let (_, rows, states) = RecordFolder::open(path, &design(), &inputs, "0.1.0", false).unwrap();
+            let expected = if done < 2 { 2 } else { 5 };
+            assert_eq!((rows.len(), states.len()), (expected, expected));
+            assert_eq!((&rows[..], &states[..]), (&new[..expected], &new_states[..expected]));
+        });
+    }
+
+    #[test]
+    fn kill_while_replacing_an_interrupted_row_computes_it_again() {
+        let (mut old, mut old_states) = rows(2);
+        old[1].status = Status::Interrupted;
+        old_states[1].status = Status::Interrupted;
+        let (new, new_states) = rows(2);
+        let inputs = json!({});
+        let before = |path: &Path| {
+            let (mut folder, ..) = RecordFolder::open(path, &design(), &inputs, "0.1.0", false).unwrap();
+            folder.write(&old, &old_states).unwrap();
+            folder
+        };
+        let steps = |folder: &mut RecordFolder| folder.steps_to_write(&new, &new_states).unwrap();
+        killed_anywhere(before, steps, |path, done| {
+            let (_, rows, _) = RecordFolder::open(path, &design(), &inputs, "0.1.0", false).unwrap();
+            assert_eq!(rows.len(), if done < 2 { 1 } else { 2 });
+        });
+    }
+
+    #[test]
+    fn kill_while_overwriting_never_mixes_two_computations() {
+        let (old, old_states) = rows(3);
+        let (old_inputs, new_inputs) = (json!({ "tau": 0.01 }), json!({ "tau": 0.02 }));
+        let before = |path: &Path| {
+            let (mut folder, ..) = RecordFolder::open(path, &design(), &old_inputs, "0.1.0", false).unwrap();
+            folder.write(&old, &old_states).unwrap();
+            folder.write_polar("<svg/>", b"png").unwrap();
+            fs::write(path.join("notes.txt"), "mine").unwrap();
+            folder
+        };
+        let steps = |folder: &mut RecordFolder| {
+            folder.run.parameters = new_inputs.clone();
+            folder.run.input_hash = input_hash(&design(), &new_inputs);
+            folder.steps_to_replace()
+        };
+        killed_anywhere(before, steps, |path, done| {
+            let record = Record::read(path).unwrap();
+            let old_run = record.run.parameters == old_inputs;
+            assert_eq!(old_run, done < 5);
+            assert_eq!(record.finished().0.len(), if done == 0 { 3 } else { 0 });
+            let (.., rows, _) = RecordFolder::open(path, &design(), &new_inputs, "0.1.0", true).unwrap();
+            assert!(rows.is_empty());
+            assert_eq!(fs::read_to_string(path.join("notes.txt")).unwrap(), "mine");
+            assert!(!path.join(SVG).exists());
+        });
+    }
+
+    #[test]
+    fn kill_while_creating_leaves_a_folder_that_opens() {
+        let dir = tempfile::tempdir().unwrap();
+        fs::write(dir.path().join(".maille-x1.tmp"), "{").unwrap();
+        let (folder, rows, _) = RecordFolder::open(dir.path(), &design(), &json!({}), "0.1.0", false).unwrap();
+        assert!(rows.is_empty());
+        assert_eq!(names(folder.path()).unwrap(), [RUN]);
+    }
+}

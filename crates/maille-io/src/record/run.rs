@@ -1,0 +1,111 @@
+//! `run.json`: the inputs of a run, and what it has done.
+
+use super::error::RecordError;
+use maille::design::Design;
+use maille::record::{LimitRow, RECORD_SCHEMA};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
+
+/// Enough to repeat a run. No time of day and no machine in it: the same run gives the same file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RunRecord {
+    /// Version of the record's files.
+    pub schema: u32,
+    /// Version of the program that computed it.
+    pub program_version: String,
+    /// [`input_hash`] of `design` and `parameters`.
+    pub input_hash: String,
+    /// The design as computed.
+    pub design: Design,
+    /// Every parameter and tolerance that was used.
+    pub parameters: Value,
+    /// What was done.
+    pub counters: Counters,
+}
+
+/// Sums over the rows of a record.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Counters {
+    /// Rows of each status.
+    pub rows: BTreeMap<String, u64>,
+    /// Newton iterations of all rows.
+    pub iterations: u64,
+    /// Minimisations of all rows.
+    pub runs: u64,
+}
+
+impl Counters {
+    /// The sums over `rows`.
+    pub fn of(rows: &[LimitRow]) -> Self {
+        let mut out = Self::default();
+        for row in rows {
+            *out.rows.entry(row.status.name().to_owned()).or_default() += 1;
+            out.iterations += row.iterations;
+            out.runs += row.runs;
+        }
+        out
+    }
+}
+
+/// SHA-256, in hexadecimal, of the record's schema, the design and the parameters as JSON with sorted keys.
+pub fn input_hash(design: &Design, parameters: &Value) -> String {
+    let inputs = serde_json::json!({ "schema": RECORD_SCHEMA, "design": design, "parameters": parameters });
+    let mut text = String::new();
+    canonical(&inputs, &mut text);
+    Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+fn canonical(value: &Value, out: &mut String) {
+    match value {
+        Value::Object(map) => {
+            let sorted: BTreeMap<_, _> = map.iter().collect();
+            out.push('{');
+            for (i, (key, value)) in sorted.into_iter().enumerate() {
+                if i > 0 {
+                    out.push(',');
+                }
+                out.push_str(&Value::from(key.as_str()).to_string());
+                out.push(':');
+                canonical(value, out);
+            }
+            out.push('}');
+        }
+        Value::Array(items) => {
+            out.push('[');
+            for (i, item) in items.iter().enumerate() {
+                if i > 0 {
+                    out.push(',');
+                }
+                canonical(item, out);
+            }
+            out.push(']');
+        }
+        leaf => out.push_str(&leaf.to_string()),
+    }
+}
+
+/// The file's text.
+pub fn write_run(run: &RunRecord) -> String {
+    serde_json::to_string_pretty(run).expect("a run has no map with odd keys") + "\n"
+}
+
+/// Reads the file; `file` is the name to show in errors.
+pub fn read_run(file: &str, text: &str) -> Result<RunRecord, RecordError> {
+    let bad = |e: serde_json::Error| {
+        let reason = e.to_string();
+        let reason = reason.split(" at line ").next().unwrap_or_default();
+        RecordError::malformed(file, e.line().max(1), format!("{reason} (character {})", e.column()))
+    };
+    let schema = serde_json::from_str::<Value>(text).map_err(bad)?.get("schema").cloned();
+    match schema.as_ref().and_then(Value::as_u64) {
+        Some(known) if known == u64::from(RECORD_SCHEMA) => serde_json::from_str(text).map_err(bad),
+        Some(other) => {
+            Err(RecordError::malformed(file, 1, format!("schema {other}; this program reads schema {RECORD_SCHEMA}")))
+        }
+        None => Err(RecordError::malformed(file, 1, "no schema: not the run of a record")),
+    }
+}

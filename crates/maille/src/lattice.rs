@@ -1,0 +1,170 @@
+//! Cells of a plane lattice: supercells, and the images within reach.
+
+use crate::error::InvalidInput;
+use maille_geometry::Vec3;
+use std::{fmt, str::FromStr};
+
+/// Shift of an image: the number of lattice vectors a1 and a2 from the main cell.
+pub type Shift = [i32; 2];
+
+/// A cell of the design's lattice: rows of integers (m11, m12; m21, m22) with
+/// a1' = m11 a1 + m12 a2 and a2' = m21 a1 + m22 a2. Its elements are |det| copies of the primitive cell's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cell {
+    rows: [[i32; 2]; 2],
+}
+
+impl Cell {
+    /// The design's own cell.
+    pub const PRIMITIVE: Cell = Cell { rows: [[1, 0], [0, 1]] };
+
+    /// A cell from its rows; refused where they are dependent or of more than 10,000 copies.
+    pub fn new(rows: [[i32; 2]; 2]) -> Result<Self, InvalidInput> {
+        let wide = rows.map(|row| row.map(i64::from));
+        let det = wide[0][0].saturating_mul(wide[1][1]).saturating_sub(wide[0][1].saturating_mul(wide[1][0]));
+        match det.unsigned_abs() {
+            0 => Err(InvalidInput::new("cell", format!("{rows:?} has determinant 0"), "give two independent rows, as \"1,0;-1,2\"")),
+            1..=10_000 => Ok(Cell { rows }),
+            n => Err(InvalidInput::new("cell", format!("{rows:?} has {n} copies of the cell"), "at most 10,000 are possible")),
+        }
+    }
+
+    /// Number of primitive cells in this one: |det|.
+    pub fn copies(&self) -> usize {
+        self.det().unsigned_abs() as usize
+    }
+
+    fn det(&self) -> i64 {
+        let m = self.rows.map(|row| row.map(i64::from));
+        m[0][0] * m[1][1] - m[0][1] * m[1][0]
+    }
+
+    /// The lattice vectors of this cell for those of the primitive one.
+    pub fn vectors(&self, a1: Vec3, a2: Vec3) -> [Vec3; 2] {
+        self.rows.map(|[m, n]| f64::from(m) * a1 + f64::from(n) * a2)
+    }
+
+    /// One primitive shift for each copy, (0, 0) first, in lexicographic order after it.
+    ///
+    /// Two primitive shifts are the same copy when they differ by a vector of this cell's lattice: their
+    /// coordinates in it (adjugate · shift mod det) agree.
+    pub fn cosets(&self) -> Vec<Shift> {
+        let [[m11, m12], [m21, m22]] = self.rows.map(|row| row.map(i64::from));
+        let det = self.det();
+        let key = |p: i64, q: i64| ((p * m22 - q * m21).rem_euclid(det.abs()), (q * m11 - p * m12).rem_euclid(det.abs()));
+        let (mut seen, mut out) = (std::collections::BTreeSet::new(), Vec::new());
+        let copies = self.copies() as i64;
+        'shells: for shell in 0..=copies {
+            for p in 0..=shell {
+                for q in 0..=shell {
+                    if (p == shell || q == shell) && seen.insert(key(p, q)) {
+                        out.push([p as i32, q as i32]);
+                        if out.len() as i64 == copies {
+                            break 'shells;
+                        }
+                    }
+                }
+            }
+        }
+        out.sort_unstable();
+        out
+    }
+}
+
+impl fmt::Display for Cell {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.rows {
+            [[m, 0], [0, n]] if m > 0 && n > 0 => write!(f, "{m}x{n}"),
+            [[a, b], [c, d]] => write!(f, "{a},{b};{c},{d}"),
+        }
+    }
+}
+
+impl FromStr for Cell {
+    type Err = InvalidInput;
+
+    fn from_str(text: &str) -> Result<Self, InvalidInput> {
+        let wrong = || InvalidInput::new("cell", format!("\"{text}\" is no cell"), "give 2x1, or an integer matrix as \"1,0;-1,2\"");
+        let integer = |t: &str| t.trim().parse::<i32>().map_err(|_| wrong());
+        if let Some((m, n)) = text.split_once('x') {
+            let (m, n) = (integer(m)?, integer(n)?);
+            if m < 1 || n < 1 {
+                return Err(wrong());
+            }
+            return Cell::new([[m, 0], [0, n]]);
+        }
+        let (first, second) = text.split_once(';').ok_or_else(wrong)?;
+        let row = |t: &str| -> Result<[i32; 2], InvalidInput> {
+            let (a, b) = t.split_once(',').ok_or_else(wrong)?;
+            Ok([integer(a)?, integer(b)?])
+        };
+        Cell::new([row(first)?, row(second)?])
+    }
+}
+
+/// All shifts s with |offset + s1 a1 + s2 a2| ≤ reach, in lexicographic order.
+///
+/// Listed by distance, not by layers of cells: in a strongly sheared cell a linked image can be many layers away.
+/// With the dual vectors b_k of the plane lattice (b_k · a_l = δ_kl), |s_k + b_k · offset| ≤ reach |b_k|.
+pub fn shifts_within(offset: &Vec3, a1: &Vec3, a2: &Vec3, reach: f64) -> Vec<Shift> {
+    let (g11, g12, g22) = (a1.norm_squared(), a1.dot(a2), a2.norm_squared());
+    let det = g11 * g22 - g12 * g12;
+    let b1 = (a1 * g22 - a2 * g12) / det;
+    let b2 = (a2 * g11 - a1 * g12) / det;
+    let range = |b: &Vec3| {
+        let (mid, half) = (-b.dot(offset), reach * b.norm());
+        (mid - half).ceil() as i32..=(mid + half).floor() as i32
+    };
+    let mut out = Vec::new();
+    for m in range(&b1) {
+        for n in range(&b2) {
+            if (offset + a1 * f64::from(m) + a2 * f64::from(n)).norm_squared() <= reach * reach {
+                out.push([m, n]);
+            }
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_read_as_they_are_written() {
+        for text in ["1x1", "2x1", "3x3", "1,0;-1,2", "0,1;1,0"] {
+            assert_eq!(text.parse::<Cell>().unwrap().to_string(), text);
+        }
+        for text in ["", "2", "0x1", "x", "1,2;2,4", "1,0", "a,b;c,d", "-1x2", "200x200"] {
+            assert!(text.parse::<Cell>().is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn cosets_are_all_the_copies() {
+        for (text, n) in [("1x1", 1), ("2x3", 6), ("1,0;-1,2", 2), ("2,1;-1,2", 5), ("-2,0;0,2", 4)] {
+            let cell: Cell = text.parse().unwrap();
+            let cosets = cell.cosets();
+            assert_eq!(cosets.len(), n, "{text}: {cosets:?}");
+            assert_eq!(cosets[0], [0, 0]);
+        }
+    }
+
+    #[test]
+    fn sheared_basis_lists_the_same_images() {
+        let (a1, a2) = (Vec3::new(2.5, 0.0, 0.0), Vec3::new(0.0, 2.5, 0.0));
+        let sheared = a2 + 7.0 * a1;
+        let offset = Vec3::new(0.3, -0.4, 0.2);
+        let points = |b2: &Vec3| {
+            let mut p: Vec<_> = shifts_within(&offset, &a1, b2, 6.0)
+                .iter()
+                .map(|s| a1 * f64::from(s[0]) + b2 * f64::from(s[1]))
+                .map(|v| ((v.x * 1e6).round() as i64, (v.y * 1e6).round() as i64))
+                .collect();
+            p.sort_unstable();
+            p
+        };
+        assert_eq!(points(&a2), points(&sheared));
+        assert!(points(&a2).len() > 15);
+    }
+}

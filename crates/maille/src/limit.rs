@@ -1,0 +1,278 @@
+//! The limit of one pull by the energy method (chapter 5): l1 is raised step by step, the elements reset each time,
+//! until the target is missed by more than τ; then the last step is bisected.
+
+use crate::{
+    energy::{
+        Configuration, ContactOptions, HessianMethod, MinimaMethod, SheetEnergy,
+        target::{Protocol, Target, direction, target_gradient},
+    },
+    model::Model,
+    record::Status,
+    solve::newton::{Minimization, NewtonOptions, Outcome, minimize},
+    state::State,
+    topology,
+};
+use nalgebra::Matrix2;
+use std::sync::atomic::AtomicBool;
+
+/// Parameters of the energy method. Lengths are in units of the design's reference radius R, energies in β R².
+#[derive(Clone, Debug, PartialEq)]
+pub struct EnergyOptions {
+    /// How a deformation is imposed and judged.
+    pub protocol: Protocol,
+    /// Weight of the contacts, α/β.
+    pub alpha: f64,
+    /// Weight of E_b, k_b/β (corner protocol).
+    pub corner_weight: f64,
+    /// Threshold τ: on |F − F_target| (strain protocol), or on a corner's distance in R (corner protocol).
+    pub tau: f64,
+    /// Step of l1.
+    pub l1_step: f64,
+    /// The bisection stops at this width of l1.
+    pub l1_resolution: f64,
+    /// Non-minimal points on each side of a contact (§4.1.2).
+    pub samples: usize,
+    /// Spacing of those points, radians; `None`: from the expected width of an overlap.
+    pub sample_spacing_rad: Option<f64>,
+    /// How the Hessian is found.
+    pub hessian: HessianMethod,
+    /// How minima are found.
+    pub minima: MinimaMethod,
+    /// Newton iterations of one run at most.
+    pub max_iterations: usize,
+    /// Seed of the kicks that end stalls.
+    pub seed: u64,
+}
+
+impl Default for EnergyOptions {
+    fn default() -> Self {
+        EnergyOptions {
+            protocol: Protocol::Strain,
+            alpha: 1e5,
+            corner_weight: 100.0,
+            tau: 0.002,
+            l1_step: 0.05,
+            l1_resolution: 5e-4,
+            samples: 1,
+            sample_spacing_rad: None,
+            hessian: HessianMethod::Analytic,
+            minima: MinimaMethod::Enumeration,
+            max_iterations: 400,
+            seed: 1,
+        }
+    }
+}
+
+/// l1 is not raised beyond this.
+const L1_MOST: f64 = 20.0;
+/// l1 is not lowered beyond this.
+const L1_LEAST: f64 = -0.95;
+/// |gradient| of a converged run, in β R.
+const GRADIENT_TOLERANCE: f64 = 1e-6;
+/// Floor of the curvature in Newton's step, in β.
+const CURVATURE_FLOOR: f64 = 1e-3;
+/// Negative curvature that makes a saddle, in β.
+const SADDLE_TOLERANCE: f64 = 1e-5;
+/// Random kicks in a run.
+const MAX_KICKS: usize = 3;
+
+impl EnergyOptions {
+    /// Offsets of the non-minimal points. The default spacing follows the overlap that balances the pull at the
+    /// threshold: depth p = √(4 β τ r̂ / (3 α)), half width √(2 r̂ p) / R; the points divide the half width evenly.
+    pub fn sample_offsets_rad(&self, model: &Model) -> Vec<f64> {
+        let touching = 2.0 * model.rings.iter().map(|r| r.minor_radius).sum::<f64>() / model.rings.len() as f64;
+        let depth = (4.0 * self.tau * touching / (3.0 * self.alpha)).sqrt();
+        let half_width = (2.0 * touching * depth).sqrt() / model.largest_radius;
+        let spacing = self.sample_spacing_rad.unwrap_or(half_width / (self.samples as f64 + 1.0));
+        (1..=self.samples).flat_map(|k| [-(k as f64) * spacing, k as f64 * spacing]).collect()
+    }
+}
+
+/// What the search for one limit found.
+#[derive(Clone, Debug)]
+pub struct LimitOutcome {
+    /// Outcome.
+    pub status: Status,
+    /// The state at the limit, or the last one of a failed search.
+    pub state: State,
+    /// Measured F of that state.
+    pub gradient: Matrix2<f64>,
+    /// Last residual: how far that state is from its target.
+    pub residual: f64,
+    /// Newton iterations of all runs.
+    pub iterations: u64,
+    /// Minimisations.
+    pub runs: u64,
+    /// What happened, where the status does not say it.
+    pub note: Option<String>,
+}
+
+/// Searches limits of one model by the energy method.
+pub struct EnergyMethod<'a> {
+    model: &'a Model,
+    options: EnergyOptions,
+    contacts: ContactOptions,
+    start: State,
+    start_note: Option<String>,
+}
+
+impl<'a> EnergyMethod<'a> {
+    /// Prepares the start of every run: the design's state, or, where that overlaps, the state in which the contact
+    /// energy has resolved the overlap with the lattice held by the target energy.
+    pub fn new(model: &'a Model, options: EnergyOptions, cancel: &AtomicBool) -> Self {
+        let contacts = ContactOptions {
+            alpha: options.alpha,
+            sample_offsets_rad: options.sample_offsets_rad(model),
+            minima: options.minima,
+        };
+        let mut method = EnergyMethod { model, options, contacts, start: model.start.clone(), start_note: None };
+        if topology::smallest_gap(model, &model.start).is_some_and(|(gap, _)| gap < 0.0) {
+            let (run, _, _) = method.run(Matrix2::identity(), cancel);
+            if run.outcome == Outcome::Minimum {
+                method.start = run.point.state;
+            } else {
+                method.start_note = Some(format!(
+                    "the overlap of the starting state was not resolved: {:?}, |gradient| {:.2e}",
+                    run.outcome, run.gradient_norm
+                ));
+            }
+        }
+        method
+    }
+
+    /// One minimisation towards the deformation `target`, from the start; with the residual and the measured F.
+    fn run(&self, target: Matrix2<f64>, cancel: &AtomicBool) -> (Minimization<Configuration>, f64, Matrix2<f64>) {
+        let target = Target::new(self.model, self.options.protocol, target, 1.0, self.options.corner_weight);
+        let energy = SheetEnergy {
+            model: self.model,
+            target: &target,
+            contacts: &self.contacts,
+            hessian: self.options.hessian,
+            seed: self.options.seed,
+        };
+        let newton = NewtonOptions {
+            gradient_tolerance: GRADIENT_TOLERANCE,
+            curvature_floor: CURVATURE_FLOOR,
+            saddle_tolerance: SADDLE_TOLERANCE,
+            max_iterations: self.options.max_iterations,
+            max_kicks: MAX_KICKS,
+        };
+        let end = minimize(&energy, Configuration::start(self.start.clone()), &newton, cancel);
+        let residual = target.residual(self.model, &end.point.state, &end.point.corner);
+        let measured = target.measured(self.model, &end.point.state, &end.point.corner);
+        (end, residual, measured)
+    }
+
+    /// The limit of l1 along `direction_deg` with l2 held.
+    pub fn limit(&self, direction_deg: f64, l2: f64, cancel: &AtomicBool) -> LimitOutcome {
+        let mut search = Search { method: self, direction_deg, l2, cancel, iterations: 0, runs: 0 };
+        let along = direction(direction_deg);
+        if !topology::binds(self.model, [along.x, along.y]) {
+            return search.end(Status::Unbounded, None, Some("no chain of links joins lattice vectors along this direction".into()));
+        }
+        if let Some(note) = &self.start_note {
+            return search.end(Status::InfeasibleStart, None, Some(note.clone()));
+        }
+        search.climb()
+    }
+}
+
+/// One run of a search, as far as the search needs it.
+#[derive(Clone)]
+struct Trial {
+    l1: f64,
+    state: State,
+    gradient: Matrix2<f64>,
+    residual: f64,
+    outcome: Outcome,
+    gradient_norm: f64,
+}
+
+struct Search<'a> {
+    method: &'a EnergyMethod<'a>,
+    direction_deg: f64,
+    l2: f64,
+    cancel: &'a AtomicBool,
+    iterations: u64,
+    runs: u64,
+}
+
+impl Search<'_> {
+    fn trial(&mut self, l1: f64) -> Trial {
+        let (end, residual, gradient) = self.method.run(target_gradient(self.direction_deg, l1, self.l2), self.cancel);
+        self.iterations += end.iterations as u64;
+        self.runs += 1;
+        Trial { l1, state: end.point.state, gradient, residual, outcome: end.outcome, gradient_norm: end.gradient_norm }
+    }
+
+    fn reached(&self, trial: &Trial) -> bool {
+        trial.outcome == Outcome::Minimum && trial.residual <= self.method.options.tau
+    }
+
+    /// Steps up from 0 (or down, where 0 itself is missed), then bisects between the last target that was reached and
+    /// the first that was missed.
+    fn climb(&mut self) -> LimitOutcome {
+        let options = &self.method.options;
+        let first = self.trial(0.0);
+        let upward = self.reached(&first);
+        let (mut low, mut high) = if upward { (Some(first), None) } else { (None, Some(first)) };
+        let mut steps = 0;
+        while low.is_none() || high.is_none() {
+            if let Some(stopped) = high.as_ref().filter(|t| t.outcome == Outcome::Interrupted) {
+                return self.end(Status::Interrupted, Some(stopped.clone()), None);
+            }
+            steps += 1;
+            let l1 = f64::from(steps) * if upward { options.l1_step } else { -options.l1_step };
+            if l1 > L1_MOST {
+                return self.end(Status::NotConverged, low, Some(format!("still within τ at l1 = {L1_MOST}")));
+            }
+            if l1 < L1_LEAST {
+                let note = "no l1 down to −0.95 reaches its target at this l2; nothing is proved".to_string();
+                return self.end(Status::L2NotReached, high, Some(note));
+            }
+            let trial = self.trial(l1);
+            if self.reached(&trial) {
+                low = Some(trial);
+            } else {
+                high = Some(trial);
+            }
+        }
+        let (mut low, mut high) = match (low, high) {
+            (Some(low), Some(high)) => (low, high),
+            _ => unreachable!("the loop ends with both"),
+        };
+        while (high.l1 - low.l1) > options.l1_resolution && high.outcome != Outcome::Interrupted {
+            let trial = self.trial(0.5 * (low.l1 + high.l1));
+            if self.reached(&trial) {
+                low = trial;
+            } else {
+                high = trial;
+            }
+        }
+        match &high.outcome {
+            Outcome::Interrupted => self.end(Status::Interrupted, Some(high), None),
+            Outcome::Minimum => {
+                if topology::links_kept(self.method.model, &low.state) {
+                    self.end(Status::ThresholdReached, Some(low), None)
+                } else {
+                    self.end(Status::NotConverged, Some(low), Some("the links of the starting state were not kept".into()))
+                }
+            }
+            other => {
+                let why = format!(
+                    "the run towards l1 = {} decides the limit and did not converge ({other:?}, |gradient| {:.2e})",
+                    high.l1, high.gradient_norm
+                );
+                self.end(Status::NotConverged, Some(high), Some(why))
+            }
+        }
+    }
+
+    fn end(&self, status: Status, trial: Option<Trial>, note: Option<String>) -> LimitOutcome {
+        let (state, gradient, residual) = match trial {
+            Some(t) => (t.state, t.gradient, t.residual),
+            None => (self.method.start.clone(), Matrix2::identity(), f64::NAN),
+        };
+        LimitOutcome { status, state, gradient, residual, iterations: self.iterations, runs: self.runs, note }
+    }
+}

@@ -1,0 +1,158 @@
+//! The model: a design compiled for one cell. Validated, indexed, in units of the reference radius, immutable.
+
+use crate::{
+    design::Design,
+    error::InvalidInput,
+    lattice::{Cell, Shift},
+    state::{Pose, State},
+    topology::{self, Link},
+};
+use maille_geometry::Vec3;
+use nalgebra::{Matrix2, Unit, UnitQuaternion, UnitVector3};
+use std::ops::Range;
+
+/// A torus of an element, in the element's frame at the starting state.
+#[derive(Clone, Debug)]
+pub struct Ring {
+    /// Index of the element that it belongs to.
+    pub element: usize,
+    /// Centre relative to the element's reference point.
+    pub offset: Vec3,
+    /// Normal of the core circle.
+    pub normal: UnitVector3<f64>,
+    /// Major radius R.
+    pub major_radius: f64,
+    /// Minor radius r.
+    pub minor_radius: f64,
+}
+
+/// A rigid element of the cell.
+#[derive(Clone, Debug)]
+pub struct Element {
+    /// Name in the design, with the copy in a supercell: `flat@1,0`.
+    pub name: String,
+    /// Its rings, as indices into [`Model::rings`].
+    pub rings: Range<usize>,
+    /// Radius about the reference point that holds all core circles: max |offset| + R.
+    pub reach: f64,
+}
+
+/// A design compiled for one cell.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// Name of the design.
+    pub name: String,
+    /// The cell that is solved.
+    pub cell: Cell,
+    /// Length of one unit of the model, in the file's unit: the reference radius R.
+    pub unit: f64,
+    /// Elements of the cell.
+    pub elements: Vec<Element>,
+    /// Rings of all elements.
+    pub rings: Vec<Ring>,
+    /// The starting state; its lattice is the reference of F.
+    pub start: State,
+    /// Inverse of the reference lattice [a1 a2] (columns), in the plane.
+    pub reference_inverse: Matrix2<f64>,
+    /// Links of the starting state: the topology that every state keeps.
+    pub links: Vec<Link>,
+    /// Largest major radius.
+    pub largest_radius: f64,
+}
+
+impl Model {
+    /// Compiles `design` for `cell`, or returns everything that is wrong with it.
+    pub fn compile(design: &Design, cell: Cell) -> Result<Model, Vec<InvalidInput>> {
+        let problems = design.problems();
+        if !problems.is_empty() {
+            return Err(problems);
+        }
+        let unit = design.reference_radius;
+        let vector = |x: [f64; 3]| Vec3::from(x) / unit;
+        let (p1, p2) = (vector(design.lattice.a1), vector(design.lattice.a2));
+        let [a1, a2] = cell.vectors(p1, p2);
+        let (mut elements, mut rings, mut poses) = (Vec::new(), Vec::new(), Vec::new());
+        for coset in cell.cosets() {
+            for spec in &design.elements {
+                let first = rings.len();
+                for ring in &spec.rings {
+                    rings.push(Ring {
+                        element: elements.len(),
+                        offset: vector(ring.offset),
+                        normal: Unit::new_normalize(Vec3::from(ring.normal) / Vec3::from(ring.normal).amax()),
+                        major_radius: ring.major_radius / unit,
+                        minor_radius: ring.minor_radius.or(design.minor_radius).unwrap_or(f64::NAN) / unit,
+                    });
+                }
+                let reach = rings[first..].iter().map(|r| r.offset.norm() + r.major_radius).fold(0.0, f64::max);
+                let name = if cell.copies() == 1 {
+                    spec.name.clone()
+                } else {
+                    format!("{}@{},{}", spec.name, coset[0], coset[1])
+                };
+                elements.push(Element { name, rings: first..rings.len(), reach });
+                let shift = p1 * f64::from(coset[0]) + p2 * f64::from(coset[1]);
+                poses.push(Pose { position: vector(spec.center) + shift, rotation: UnitQuaternion::identity() });
+            }
+        }
+        let reference_inverse = Matrix2::new(a1.x, a2.x, a1.y, a2.y).try_inverse().ok_or_else(|| {
+            vec![InvalidInput::new("lattice.a2", "is parallel to a1", "give two independent translations")]
+        })?;
+        let largest_radius = rings.iter().map(|r| r.major_radius).fold(0.0, f64::max);
+        let start = State { poses, a1, a2 };
+        let name = design.name.clone();
+        let mut model =
+            Model { name, cell, unit, elements, rings, start, reference_inverse, links: Vec::new(), largest_radius };
+        let pairs = topology::close_pairs(&model, &model.start, 0.0);
+        let overlaps = model.overlaps(&pairs, design);
+        if !overlaps.is_empty() {
+            return Err(overlaps);
+        }
+        model.links = topology::links(&model, &model.start, &pairs);
+        Ok(model)
+    }
+
+    /// Sum of the minor radii of two rings: the core distance r̂ at which their tori touch.
+    pub fn contact_distance(&self, ring_a: usize, ring_b: usize) -> f64 {
+        self.rings[ring_a].minor_radius + self.rings[ring_b].minor_radius
+    }
+
+    /// Overlaps of the starting state that the design does not allow; core circles that meet are never allowed,
+    /// because then there is no topology to keep.
+    fn overlaps(&self, pairs: &[topology::RingPair], design: &Design) -> Vec<InvalidInput> {
+        let mut out = Vec::new();
+        for pair in pairs {
+            let distance = topology::core_distance(self, &self.start, pair);
+            let gap = (distance - self.contact_distance(pair.ring_a, pair.ring_b)) * self.unit;
+            let (a, b) = (self.ring_label(pair.ring_a, [0, 0]), self.ring_label(pair.ring_b, pair.shift));
+            let field = format!("elements[{}].center", self.rings[pair.ring_b].element % design.elements.len());
+            if distance < 1e-9 {
+                out.push(InvalidInput::new(
+                    field,
+                    format!("the core circles of {a} and {b} meet in the starting state"),
+                    "move the elements apart: whether such rings are linked is undefined",
+                ));
+            } else if gap < 0.0 && !design.allow_initial_overlap {
+                out.push(InvalidInput::new(
+                    field,
+                    format!("{a} and {b} overlap by {:.6} in the starting state", -gap),
+                    "move them apart, take a smaller minor_radius, or set allow_initial_overlap = true at the top of the file",
+                ));
+            }
+        }
+        out
+    }
+
+    /// A name for a ring of an image: `gyroscope ring 2 (+1,0)`.
+    pub fn ring_label(&self, ring: usize, shift: Shift) -> String {
+        let element = &self.elements[self.rings[ring].element];
+        let mut label = format!("\"{}\"", element.name);
+        if element.rings.len() > 1 {
+            label += &format!(" ring {}", ring - element.rings.start);
+        }
+        if shift != [0, 0] {
+            label += &format!(" in cell ({:+},{:+})", shift[0], shift[1]);
+        }
+        label
+    }
+}

@@ -1,0 +1,4 @@
+//! Solvers' outer loops. They know no ring: they see an objective.
+
+pub mod eigen;
+pub mod newton;

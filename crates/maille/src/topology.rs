@@ -1,0 +1,145 @@
+//! Which rings are near, which are linked, and in which directions chains of links bind the sheet.
+
+use crate::{
+    lattice::{Shift, shifts_within},
+    model::Model,
+    state::State,
+};
+use maille_geometry::{circle_distance_minima, linking_number};
+
+/// Ring `ring_a` of the main cell and ring `ring_b` of the image `shift`; each pair of the sheet stands once per cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct RingPair {
+    /// Ring of the main cell.
+    pub ring_a: usize,
+    /// Ring of the image.
+    pub ring_b: usize,
+    /// The image's shift.
+    pub shift: Shift,
+}
+
+/// Two linked rings with their signed linking number (the signs follow the normals given in the design).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Link {
+    /// The rings.
+    pub pair: RingPair,
+    /// Signed linking number, never 0.
+    pub number: i32,
+}
+
+/// All pairs of rings of different elements whose tori may be within `margin` of each other.
+///
+/// An element's images are other elements; rings of one element make no pair. Of (a, b, s) and (b, a, −s) one is
+/// listed: the lower element first, and for an element's own images the lexicographically positive shift.
+pub fn close_pairs(model: &Model, state: &State, margin: f64) -> Vec<RingPair> {
+    let mut out = Vec::new();
+    let thickest = model.rings.iter().map(|r| r.minor_radius).fold(0.0, f64::max);
+    for (i, first) in model.elements.iter().enumerate() {
+        for (j, second) in model.elements.iter().enumerate().skip(i) {
+            let offset = state.poses[j].position - state.poses[i].position;
+            let reach = first.reach + second.reach + 2.0 * thickest + margin;
+            for shift in shifts_within(&offset, &state.a1, &state.a2, reach) {
+                if i == j && shift <= [0, 0] {
+                    continue;
+                }
+                for ring_a in first.rings.clone() {
+                    for ring_b in second.rings.clone() {
+                        let (ra, rb) = (&model.rings[ring_a], &model.rings[ring_b]);
+                        let centers = offset + state.arm(model, ring_b) - state.arm(model, ring_a) + state.translation(shift);
+                        let near = ra.major_radius + rb.major_radius + ra.minor_radius + rb.minor_radius + margin;
+                        if centers.norm_squared() <= near * near {
+                            out.push(RingPair { ring_a, ring_b, shift });
+                        }
+                    }
+                }
+            }
+        }
+    }
+    out
+}
+
+/// Least distance of the pair's core circles.
+pub fn core_distance(model: &Model, state: &State, pair: &RingPair) -> f64 {
+    let a = state.circle(model, pair.ring_a, [0, 0]);
+    let b = state.circle(model, pair.ring_b, pair.shift);
+    circle_distance_minima(&a, &b).closest().distance
+}
+
+/// Smallest gap of all pairs (negative where tori overlap), with its pair; `None` where no two rings are near.
+pub fn smallest_gap(model: &Model, state: &State) -> Option<(f64, RingPair)> {
+    close_pairs(model, state, model.largest_radius)
+        .into_iter()
+        .map(|p| (core_distance(model, state, &p) - model.contact_distance(p.ring_a, p.ring_b), p))
+        .min_by(|x, y| x.0.total_cmp(&y.0))
+}
+
+/// The links among `pairs`, sorted.
+pub fn links(model: &Model, state: &State, pairs: &[RingPair]) -> Vec<Link> {
+    let mut out: Vec<Link> = pairs
+        .iter()
+        .map(|&pair| {
+            let a = state.circle(model, pair.ring_a, [0, 0]);
+            let b = state.circle(model, pair.ring_b, pair.shift);
+            Link { pair, number: linking_number(&a, &b) }
+        })
+        .filter(|link| link.number != 0)
+        .collect();
+    out.sort_unstable();
+    out
+}
+
+/// Whether `state` has exactly the links of the starting state.
+pub fn links_kept(model: &Model, state: &State) -> bool {
+    links(model, state, &close_pairs(model, state, 0.0)) == model.links
+}
+
+/// How the links bind the sheet: generators of the group of lattice vectors that chains of links join, for every
+/// connected component of the periodic link graph (the elements are its nodes, the links its edges with shifts).
+///
+/// A direction D is bound iff some generator v has v·D ≠ 0. Spanning trees give every element an offset; an edge
+/// that closes a loop gives the lattice vector by which it misses.
+pub fn binding_vectors(model: &Model) -> Vec<Shift> {
+    let n = model.elements.len();
+    let mut edges = vec![Vec::new(); n];
+    for link in &model.links {
+        let (i, j) = (model.rings[link.pair.ring_a].element, model.rings[link.pair.ring_b].element);
+        let [p, q] = link.pair.shift;
+        edges[i].push((j, [p, q]));
+        edges[j].push((i, [-p, -q]));
+    }
+    let mut offset: Vec<Option<Shift>> = vec![None; n];
+    let mut out = std::collections::BTreeSet::new();
+    for root in 0..n {
+        if offset[root].is_some() {
+            continue;
+        }
+        offset[root] = Some([0, 0]);
+        let mut queue = vec![(root, [0, 0])];
+        while let Some((i, at)) = queue.pop() {
+            for &(j, [p, q]) in &edges[i] {
+                let here = [at[0] + p, at[1] + q];
+                match offset[j] {
+                    None => {
+                        offset[j] = Some(here);
+                        queue.push((j, here));
+                    }
+                    Some(there) => {
+                        let loop_shift = [here[0] - there[0], here[1] - there[1]];
+                        if loop_shift > [0, 0] {
+                            out.insert(loop_shift);
+                        }
+                    }
+                }
+            }
+        }
+    }
+    out.into_iter().collect()
+}
+
+/// Whether a chain of links binds a pull along `direction` (a unit vector in the plane).
+pub fn binds(model: &Model, direction: [f64; 2]) -> bool {
+    binding_vectors(model).into_iter().any(|s| {
+        let v = model.start.translation(s);
+        (v.x * direction[0] + v.y * direction[1]).abs() > 1e-9 * v.norm()
+    })
+}
