@@ -37,6 +37,10 @@ pub(crate) struct Relative<'a> {
 pub(crate) struct Sample {
     /// Height `z` over the base plane.
     pub z: f64,
+    /// `z′`.
+    pub z1: f64,
+    /// `z″`.
+    pub z2: f64,
     /// Distance `ρ = |e|` from the axis of the base.
     pub rho: f64,
     /// `ρ − R`.
@@ -120,6 +124,8 @@ impl<'a> Relative<'a> {
         let radial = rho - self.base_radius;
         Sample {
             z,
+            z1,
+            z2,
             rho,
             radial,
             e,
@@ -133,6 +139,11 @@ impl<'a> Relative<'a> {
     pub fn at_angle(&self, angle_rad: f64) -> Sample {
         let (sin, cos) = angle_rad.sin_cos();
         self.at(cos, sin)
+    }
+
+    /// The angle of `θ = 0` in the moving circle's own frame.
+    pub fn moving_frame_angle_rad(&self) -> f64 {
+        self.moving.direction_angle_rad(&self.steepest)
     }
 
     /// The amplitude of `w·w′ = ½ (|P − c_base|²)′`, a harmonic of degree one: `r |(c x₀ + s z₀, y₀)|`.

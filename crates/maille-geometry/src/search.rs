@@ -15,7 +15,7 @@
 //! decide.
 //!
 //! **Nearly constant distances.** For pairs close to an equidistant one (not a coaxial one) the bounds are far larger
-//! than h′, and halving would go on everywhere. After [`MAX_SAMPLES`] it starts anew, coarsely: intervals of `2π/1024`
+//! than h′, and halving would go on everywhere. After [`MAX_SAMPLES`] it starts anew, coarsely: intervals of `2π/256`
 //! are decided by the signs of h′ at their ends and centre, except near the axis of the base, where `h` can vary
 //! within any small angle and halving goes on. There `h` is a constant plus a small smooth function, so the signs show
 //! what there is. Intervals that are level to rounding are no minima but a plateau; it is the answer, a continuum, unless
@@ -33,9 +33,9 @@ const INTERVALS: usize = 16;
 const MAX_LEVEL: usize = 20;
 /// Samples after which halving is given up. Pairs at random take 40, near contact up to 150.
 const MAX_SAMPLES: usize = 400;
-/// Halvings after which the signs decide in the coarse search: width 2π/1024.
-const COARSE_LEVEL: usize = 6;
-/// Away from the axis, there: half widths of an interval.
+/// Halvings after which the signs decide in the coarse search: width 2π/256.
+const COARSE_LEVEL: usize = 4;
+/// Away from the axis, there: ρ over its change in half an interval.
 const AWAY: f64 = 16.0;
 /// Minima nearer to each other than this are one: at `2π · 2⁻¹⁸` two differ by the fourth power, rounding.
 const MERGE_RAD: f64 = TAU / (1 << 18) as f64;
@@ -172,10 +172,17 @@ pub(crate) fn minima(pair: &Relative<'_>) -> Angles {
     angles = Angles::default();
     search.run(&mut angles);
     let distance = |angle_rad: f64| pair.at_angle(angle_rad).distance();
+    let by_distance = |p: &f64, q: &f64| distance(*p).total_cmp(&distance(*q));
     let lowest = angles.as_slice().iter().map(|&angle_rad| distance(angle_rad)).fold(f64::INFINITY, f64::min);
     match search.plateau {
         Some((plateau, angle_rad)) if plateau <= lowest + ROUNDING => Angles::continuum(angle_rad),
-        _ => angles,
+        _ if angles.count > 0 => angles,
+        // Rounding hides every minimum: give the lowest of many samples rather than none.
+        _ => {
+            let samples = (0..1024).map(|i| START_RAD + f64::from(i) * TAU / 1024.0);
+            angles.add(pair, samples.min_by(by_distance).unwrap_or(START_RAD));
+            angles
+        }
     }
 }
 
@@ -244,7 +251,7 @@ impl Search<'_> {
                 }
                 let sample = pair.at(interval.center.cos, interval.center.sin);
                 let half_width = half_width(interval.level);
-                match self.bounds.verdict(pair, &sample, interval.center.sin, half_width) {
+                match self.bounds.verdict(pair, &sample, half_width) {
                     Verdict::NoMinimum => {}
                     Verdict::Convex => self.by_signs(interval, &sample, angles),
                     Verdict::Unknown if self.is_last(interval.level, &sample) => {
@@ -261,7 +268,9 @@ impl Search<'_> {
     }
 
     fn is_last(&self, level: usize, sample: &Sample) -> bool {
-        let away = sample.rho > AWAY * half_width(level) * self.pair.radius;
+        let half_width = half_width(level);
+        let rate = sample.ee[0].abs() / sample.rho;
+        let away = sample.rho > AWAY * half_width * (rate + half_width * self.pair.radius);
         level == MAX_LEVEL || self.coarse && level >= COARSE_LEVEL && away
     }
 
@@ -276,11 +285,18 @@ impl Search<'_> {
         let half_width = half_width(interval.level);
         let (left, right) = (interval.center_rad - half_width, interval.center_rad + half_width);
         // One bracket where there is one minimum: the halves share the centre's sign.
+        let mut add = |bracket| {
+            let angle_rad = refine(self.pair, bracket, sample, interval.center_rad);
+            // A kink on the axis can look like a minimum, by rounding: not in h″.
+            if self.pair.at_angle(angle_rad).curvature >= -ROUNDING {
+                angles.add(self.pair, angle_rad);
+            }
+        };
         if first.slope < 0.0 && sample.slope >= 0.0 {
-            angles.add(self.pair, refine(self.pair, [left, interval.center_rad], sample, interval.center_rad));
+            add([left, interval.center_rad]);
         }
         if sample.slope < 0.0 && last.slope >= 0.0 {
-            angles.add(self.pair, refine(self.pair, [interval.center_rad, right], sample, interval.center_rad));
+            add([interval.center_rad, right]);
         }
     }
 }
@@ -292,13 +308,13 @@ enum Verdict {
     Unknown,
 }
 
-/// Bounds that hold on the whole circle; half the sum over intervals is made from them and the sample at the centre.
+/// Amplitudes on the whole circle; bounds on an interval are made from them and the sample at its centre.
 struct Bounds {
-    /// Amplitude of z.
+    /// Of z.
     rise: f64,
-    /// Amplitudes of `(e·e′)′` and of `(e·e′)″`.
-    ee: [f64; 2],
-    /// Amplitude of `w·w′`.
+    /// Of `(e·e′)′`, `(e·e′)″` and `(e·e′)‴`.
+    ee: [f64; 3],
+    /// Of `w·w′`.
     ww: f64,
 }
 
@@ -307,20 +323,23 @@ impl Bounds {
         let [x0, y0, _] = pair.offset;
         let rise = pair.radius * pair.tilt_sin;
         let first = pair.radius * (pair.tilt_cos * x0).hypot(y0);
+        let second = rise * rise;
         Self {
             rise,
-            ee: [first + rise * rise, first + 2.0 * rise * rise],
+            ee: [first + second, first + 2.0 * second, first + 4.0 * second],
             ww: pair.half_distance_sq_amplitude(),
         }
     }
 
     /// The tests of the module's head, for the interval of half width σ around a sample.
-    fn verdict(&self, pair: &Relative<'_>, at: &Sample, sin: f64, half_width: f64) -> Verdict {
+    fn verdict(&self, pair: &Relative<'_>, at: &Sample, half_width: f64) -> Verdict {
         let (r, base_radius) = (pair.radius, pair.base_radius);
-        // e runs at no more than r per radian.
-        let rho_min = at.rho - half_width * r;
-        if rho_min > 0.0 {
-            let third = self.third_derivative(at, base_radius, r, rho_min, half_width);
+        // |e′|² + z′² = r²: the speed of e at the centre, and its bounds.
+        let speed = (r * r - at.z1 * at.z1).max(0.0).sqrt();
+        let travel = half_width * (speed + 0.5 * half_width * r).min(r);
+        if at.rho > travel {
+            let speed_max = (speed + half_width * r).min(r);
+            let third = self.third_derivative(pair, at, at.rho - travel, speed_max, half_width);
             if at.slope.abs() > half_width * (at.curvature.abs() + 0.5 * half_width * third)
                 || at.curvature + half_width * third < 0.0
             {
@@ -330,11 +349,10 @@ impl Bounds {
                 return Verdict::Convex;
             }
         }
-        let rho_max = at.rho + half_width * r;
-        let ww = (at.ee[0] + at.z * -self.rise * sin).abs() + half_width * self.ww;
-        let e1 = r * (1.0 - (pair.tilt_sin * sin) * (pair.tilt_sin * sin)).max(0.0).sqrt() - half_width * r;
+        let ww = (at.ee[0] + at.z * at.z1).abs() + half_width * self.ww;
+        let speed_min = speed - half_width * r;
         let k = self.ww / base_radius + r;
-        if e1 > 0.0 && ww * ww < base_radius * base_radius * (e1 * e1 - rho_max * k) {
+        if speed_min > 0.0 && ww * ww < base_radius * base_radius * (speed_min * speed_min - (at.rho + travel) * k) {
             return Verdict::NoMinimum;
         }
         Verdict::Unknown
@@ -343,27 +361,31 @@ impl Bounds {
     /// A bound of `|h‴|`, the smaller one of two. From `h‴ = 3 z′z″ + z z‴ + 3 ρ′ρ″ + (ρ − R) ρ‴`, in which every
     /// factor is bounded, so that it stays small for nearly coaxial pairs; and from `h‴ = (w·w′)″ − R ρ‴`.
     ///
-    /// `ρ′ = e·e′/ρ`, `ρ″ = ((e·e′)′ − ρ′²)/ρ`, `ρ‴ = ((e·e′)″ − 3 ρ′ρ″)/ρ`, and `|ρ′| ≤ r`.
-    fn third_derivative(&self, at: &Sample, base_radius: f64, r: f64, rho_min: f64, half_width: f64) -> f64 {
+    /// `ρ′ = e·e′/ρ`, `ρ″ = ((e·e′)′ − ρ′²)/ρ`, `ρ‴ = ((e·e′)″ − 3 ρ′ρ″)/ρ`, and `|ρ′| ≤ |e′|`.
+    fn third_derivative(&self, pair: &Relative<'_>, at: &Sample, rho_min: f64, speed_max: f64, half_width: f64) -> f64 {
         let inverse = 1.0 / rho_min;
-        let first = r.min((at.ee[0].abs() + half_width * self.ee[0]) * inverse);
-        let second = (self.ee[0].min(at.ee[1].abs() + half_width * self.ee[1]) + first * first) * inverse;
-        let third = (self.ee[1] + 3.0 * first * second) * inverse;
-        let rise = self.rise;
-        let height = 1.5 * rise * rise + (at.z.abs() + half_width * rise) * rise;
+        let ee2 = self.ee[1].min((at.ee[0] + 3.0 * at.z1 * at.z2).abs() + half_width * self.ee[2]);
+        let ee1 = self.ee[0].min(at.ee[1].abs() + half_width * ee2);
+        let ee0 = at.ee[0].abs() + half_width * ee1;
+        let first = speed_max.min(ee0 * inverse);
+        // −ρ′² only takes away.
+        let second = (at.ee[1].max(first * first - at.ee[1]) + half_width * ee2) * inverse;
+        let third = (ee2 + 3.0 * first * second) * inverse;
+        let (rise, z1) = (self.rise, at.z1.abs() + half_width * self.rise);
+        let height = (1.5 * rise * rise).min(3.0 * z1 * rise) + (at.z.abs() + half_width * z1) * z1;
         let radial = 3.0 * first * second + (at.radial.abs() + half_width * first) * third;
-        (height + radial).min(self.ww + base_radius * third)
+        (height + radial).min(self.ww + pair.base_radius * third)
     }
 }
 
 /// The root of `h′` in a bracket where it goes from − to +: Newton's method, kept inside by bisection.
 pub(crate) fn refine(pair: &Relative<'_>, mut bracket: [f64; 2], start: &Sample, start_rad: f64) -> f64 {
     let (mut angle_rad, mut slope, mut curvature) = (start_rad, start.slope, start.curvature);
-    let mut last_step = bracket[1] - bracket[0];
+    let mut last_step = 2.0 * (bracket[1] - bracket[0]);
     for _ in 0..64 {
         bracket[usize::from(slope >= 0.0)] = angle_rad;
         let newton = angle_rad - slope / curvature;
-        let inside = newton > bracket[0] && newton < bracket[1];
+        let inside = newton >= bracket[0] && newton <= bracket[1];
         // Steps that do not halve belong to bisection: quartic minima, and the noise around them.
         let next = if inside && (newton - angle_rad).abs() < 0.5 * last_step {
             newton

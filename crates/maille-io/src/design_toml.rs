@@ -4,6 +4,7 @@ mod fields;
 mod index;
 mod problem;
 mod read;
+mod syntax;
 mod write;
 
 pub use problem::{DesignError, DesignProblem};
@@ -38,8 +39,11 @@ impl DesignSource {
     pub fn read(&self) -> Result<Design, DesignError> {
         let table = match DeTable::parse(&self.text) {
             Ok(table) => table.into_inner(),
-            Err(error) => return Err(self.error(vec![DesignProblem::syntax(&error)])),
+            Err(error) => return Err(self.error(vec![DesignProblem::syntax(&error, &self.text)])),
         };
+        if table.is_empty() {
+            return Err(self.error(vec![DesignProblem::empty(&self.text)]));
+        }
         let index = Index::new(&table, &self.text);
         let (design, mut problems) = read::design(&table, &self.text, &index);
         let invalid = design.iter().flat_map(Design::problems).map(|p| DesignProblem::invalid(&p, &index));

@@ -121,6 +121,11 @@ impl Design {
                 "give the major radius that ratios such as r = R/10 refer to",
             );
         }
+        let mut rings = self.elements.iter().flat_map(|e| &e.rings);
+        let no_minor_radius = self.minor_radius.is_none() && rings.all(|ring| ring.minor_radius.is_none());
+        if no_minor_radius && self.elements.iter().any(|e| !e.rings.is_empty()) {
+            bad("minor_radius".into(), "is missing".into(), "add minor_radius = 0.1, the wire's radius, or give each ring its own");
+        }
         if let Some(r) = self.minor_radius
             && !positive(r)
         {
@@ -177,6 +182,7 @@ impl Design {
                     bad(format!("{at}.offset"), format!("{:?} is not finite", ring.offset), "give three finite numbers");
                 }
                 match ring.minor_radius.or(self.minor_radius) {
+                    None if no_minor_radius => {}
                     None => bad(
                         format!("{at}.minor_radius"),
                         "is given neither here nor for the whole design".into(),

@@ -1,5 +1,6 @@
 //! Where each field stands in the file.
 
+use super::fields;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use toml::Spanned;
@@ -9,6 +10,7 @@ use toml::de::{DeTable, DeValue};
 pub(super) struct Index {
     places: BTreeMap<String, Range<usize>>,
     first: usize,
+    last: usize,
 }
 
 /// Where to point for a path.
@@ -17,14 +19,16 @@ pub(super) enum Place {
     Exact(Range<usize>),
     /// The nearest parent that the file contains.
     Parent(Range<usize>),
-    /// The path's parent is the whole file.
+    /// A key of the top of the file that is not there: where it would stand.
+    Top(Range<usize>),
+    /// No field of a design file.
     None,
 }
 
 impl Index {
     /// An index that knows no place, for a text that is no TOML.
     pub(super) fn empty() -> Self {
-        Self { places: BTreeMap::new(), first: 0 }
+        Self { places: BTreeMap::new(), first: 0, last: 0 }
     }
 
     pub(super) fn new(table: &DeTable<'_>, text: &str) -> Self {
@@ -33,12 +37,18 @@ impl Index {
         let first = table.iter().map(|(key, value)| key.span().start.min(value.span().start)).min();
         // The key of [table] starts after its bracket: go back to the start of the line.
         let first = first.map_or(text.len(), |at| text[..at].rfind('\n').map_or(0, |i| i + 1));
-        Self { places, first }
+        let last = text.trim_end().rfind('\n').map_or(0, |i| i + 1);
+        Self { places, first, last }
     }
 
     /// Start of the line of the first key: where a missing top-level key would stand.
     pub(super) fn first_line(&self) -> usize {
         self.first
+    }
+
+    /// Start of the last line: a missing table would stand below.
+    pub(super) fn last_line(&self) -> usize {
+        self.last
     }
 
     pub(super) fn find(&self, path: &str) -> Place {
@@ -52,7 +62,7 @@ impl Index {
                 return Place::Parent(range.clone());
             }
         }
-        Place::None
+        if fields::TOP.contains(&path) { Place::Top(self.first..self.first) } else { Place::None }
     }
 }
 

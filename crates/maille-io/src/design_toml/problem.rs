@@ -1,6 +1,7 @@
 //! What is wrong with a design file, and where.
 
 use super::index::{Index, Place};
+use super::syntax;
 use maille::error::InvalidInput;
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
 use std::fmt;
@@ -22,23 +23,28 @@ impl DesignProblem {
         Self { field: field.into(), problem: problem.into(), help: help.into(), span: Some(span), label: None }
     }
 
-    /// A field that is not there: `span` is where it would stand.
-    pub(super) fn missing(field: &str, key: &str, help: &str, span: Range<usize>) -> Self {
-        let label = Some(format!("`{key}` belongs here"));
-        Self { label, ..Self::new(field, "is missing", help, span) }
+    /// A field that is not there: `span` is where it would stand, `place` how to say so.
+    pub(super) fn missing(field: &str, help: &str, span: Range<usize>, place: &str) -> Self {
+        let key = field.rsplit('.').next().unwrap_or(field);
+        Self { label: Some(format!("`{key}` {place}")), ..Self::new(field, "is missing", help, span) }
     }
 
-    pub(super) fn syntax(error: &toml::de::Error) -> Self {
-        let help = "see https://toml.io for how TOML is written";
-        let mut out = Self::new("", format!("not valid TOML: {}", error.message()), help, 0..0);
-        out.span = error.span();
-        out
+    pub(super) fn syntax(error: &toml::de::Error, text: &str) -> Self {
+        let span = error.span().unwrap_or_default();
+        let (problem, help) = syntax::describe(error.message(), text, &span);
+        Self::new("", problem, help, span)
+    }
+
+    pub(super) fn empty(text: &str) -> Self {
+        let help = "give name, reference_radius, minor_radius, [lattice] and [[elements]]";
+        Self::new("", "the file holds no design", help, 0..text.len())
     }
 
     pub(super) fn invalid(input: &InvalidInput, index: &Index) -> Self {
         let (span, label) = match index.find(&input.field) {
             Place::Exact(span) => (Some(span), None),
             Place::Parent(span) => (Some(span), Some("in here".to_owned())),
+            Place::Top(span) => (Some(span), Some(format!("`{}` belongs here", input.field))),
             Place::None => (None, None),
         };
         Self { field: input.field.clone(), problem: input.problem.clone(), help: input.help.clone(), span, label }

@@ -24,9 +24,9 @@ type Value<'t> = Spanned<DeValue<'t>>;
 
 /// The design, if all its fields could be read, and what is wrong with the form of the file.
 pub(super) fn design(table: &DeTable<'_>, text: &str, index: &Index) -> (Option<Design>, Vec<DesignProblem>) {
-    let mut reader = Reader { text, problems: Vec::new() };
+    let mut reader = Reader { text, problems: Vec::new(), last_line: index.last_line() };
     let first = index.first_line();
-    let top = At { table, path: String::new(), span: first..first };
+    let top = At { table, path: String::new(), known: TOP, span: first..first };
     let design = reader.design(&top);
     (design, reader.problems)
 }
@@ -35,6 +35,7 @@ pub(super) fn design(table: &DeTable<'_>, text: &str, index: &Index) -> (Option<
 struct At<'a, 't> {
     table: &'a DeTable<'t>,
     path: String,
+    known: &'static [&'static str],
     span: Range<usize>,
 }
 
@@ -43,14 +44,26 @@ impl<'a, 't> At<'a, 't> {
         if self.path.is_empty() { key.to_owned() } else { format!("{}.{key}", self.path) }
     }
 
+    /// The value of `key`, or of a misspelling of it: that is reported as such, and not as a missing key too.
     fn get(&self, key: &str) -> Option<(&'a Value<'t>, String)> {
-        self.table.get(key).map(|value| (value, self.path(key)))
+        let written = if self.table.contains_key(key) { Some(key) } else { self.unknown().find(|k| self.meant(k) == Some(key)) };
+        written.and_then(|k| self.table.get(k).map(|value| (value, self.path(k))))
+    }
+
+    fn unknown(&self) -> impl Iterator<Item = &'a str> {
+        let known = self.known;
+        self.table.keys().map(|k| k.get_ref().as_ref()).filter(move |k| !known.contains(k))
+    }
+
+    fn meant(&self, key: &str) -> Option<&'static str> {
+        fields::nearest(key, self.known)
     }
 }
 
 struct Reader<'s> {
     text: &'s str,
     problems: Vec<DesignProblem>,
+    last_line: usize,
 }
 
 impl Reader<'_> {
@@ -67,7 +80,7 @@ impl Reader<'_> {
             self.problems.push(DesignProblem::new(&path, problem, help, value.span()));
             return None;
         }
-        self.known_keys(top, TOP);
+        self.known_keys(top);
         let name = self.required(top, "name", "name = \"my-weave\"").and_then(|(v, p)| self.string(v, &p));
         let title = self.optional(top, "title", Self::string);
         let source = self.optional(top, "source", Self::source);
@@ -130,9 +143,9 @@ impl Reader<'_> {
         })
     }
 
-    fn known_keys(&mut self, at: &At<'_, '_>, known: &[&str]) {
-        for key in at.table.keys().filter(|k| !known.contains(&k.get_ref().as_ref())) {
-            let help = fields::unknown_key_help(key.get_ref(), known);
+    fn known_keys(&mut self, at: &At<'_, '_>) {
+        for key in at.table.keys().filter(|k| !at.known.contains(&k.get_ref().as_ref())) {
+            let help = fields::unknown_key_help(key.get_ref(), at.known);
             self.problems.push(DesignProblem::new(&at.path(key.get_ref()), "unknown key", help, key.span()));
         }
     }
@@ -140,7 +153,10 @@ impl Reader<'_> {
     fn required<'a, 't>(&mut self, at: &At<'a, 't>, key: &str, help: &str) -> Option<(&'a Value<'t>, String)> {
         let found = at.get(key);
         if found.is_none() {
-            self.problems.push(DesignProblem::missing(&at.path(key), key, &format!("add {help}"), at.span.clone()));
+            let table = at.path.is_empty() && (key == "lattice" || key == "elements");
+            let last = self.last_line..self.last_line;
+            let (span, place) = if table { (last, "belongs below") } else { (at.span.clone(), "belongs here") };
+            self.problems.push(DesignProblem::missing(&at.path(key), &format!("add {help}"), span, place));
         }
         found
     }
@@ -158,12 +174,18 @@ impl Reader<'_> {
         }
     }
 
-    fn table<'a, 't>(&mut self, value: &'a Value<'t>, path: &str, known: &[&str], help: &str) -> Option<At<'a, 't>> {
+    fn table<'a, 't>(
+        &mut self,
+        value: &'a Value<'t>,
+        path: &str,
+        known: &'static [&'static str],
+        help: &str,
+    ) -> Option<At<'a, 't>> {
         let DeValue::Table(table) = value.get_ref() else {
             return self.wrong_type(value, path, "a table", help);
         };
-        let at = At { table, path: path.to_owned(), span: value.span() };
-        self.known_keys(&at, known);
+        let at = At { table, path: path.to_owned(), known, span: value.span() };
+        self.known_keys(&at);
         Some(at)
     }
 

@@ -1,0 +1,45 @@
+//! The polynomial of degree 8 against the enumeration: two ways that share the last polishing only.
+
+mod common;
+
+use common::{degenerate, linked, near_degenerate, rng, scale, symmetric, thin_gap, unequal, uniform};
+use maille_geometry::{circle_distance_minima, circle_distance_minima_polynomial};
+
+/// The share of pairs with the same minima, and with the same smallest distance, in `count` pairs of a family.
+fn agreement(name: &str, family: fn(&mut common::Rng) -> common::Pair, count: usize) -> [f64; 2] {
+    let mut rng = rng(4242);
+    let (mut same, mut same_closest) = (0, 0);
+    for _ in 0..count {
+        let (a, b) = family(&mut rng);
+        let unit = scale(&a, &b);
+        let exact = circle_distance_minima(&a, &b);
+        let other = circle_distance_minima_polynomial(&a, &b);
+        assert!(!other.as_slice().is_empty() && other.closest().distance.is_finite());
+        let distances = |m: &maille_geometry::Minima| m.as_slice().iter().map(|m| m.distance).collect::<Vec<_>>();
+        let (exact, other) = (distances(&exact), distances(&other));
+        let near = |(p, q): (&f64, &f64)| (p - q).abs() < 1e-9 * unit;
+        same += usize::from(exact.len() == other.len() && exact.iter().zip(&other).all(near));
+        same_closest += usize::from(near((&exact[0], &other[0])));
+        // The enumeration never loses: no distance of the polynomial is below its own.
+        assert!(other[0] > exact[0] - 1e-12 * unit, "{name}: {exact:?} {other:?}");
+    }
+    let share = [same, same_closest].map(|n| n as f64 / count as f64);
+    println!("{name}: {count} pairs, same minima {:.5}, same distance {:.5}", share[0], share[1]);
+    share
+}
+
+#[test]
+fn agrees_on_generic_pairs() {
+    for (name, family) in [("uniform", uniform as fn(&mut _) -> _), ("linked", linked), ("thin gap", thin_gap)] {
+        let [same, same_closest] = agreement(name, family, 20_000);
+        assert!(same > 0.999 && same_closest > 0.999, "{name}");
+    }
+}
+
+#[test]
+fn answers_degenerate_pairs_without_promise() {
+    agreement("unequal", unequal, 5_000);
+    agreement("symmetric", symmetric, 5_000);
+    agreement("near degenerate", near_degenerate, 5_000);
+    agreement("degenerate", degenerate, 5_000);
+}

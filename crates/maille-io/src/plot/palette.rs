@@ -1,0 +1,40 @@
+//! Colours and markers that stay apart for colour-blind readers and in grey print.
+
+/// Colour of each of `count` curves on the negative side, from the one nearest to zero outward.
+pub(super) fn negative(count: usize) -> Vec<String> {
+    shades(count, &[[0x56, 0xa0, 0xd3], [0x2a, 0x72, 0xb5], [0x15, 0x49, 0x8c], [0x0b, 0x27, 0x5c]])
+}
+
+/// Colour of each of `count` curves on the positive side, from the one nearest to zero outward.
+pub(super) fn positive(count: usize) -> Vec<String> {
+    shades(count, &[[0xf0, 0x9c, 0x42], [0xdb, 0x69, 0x17], [0xa8, 0x40, 0x10], [0x66, 0x22, 0x08]])
+}
+
+/// Colour of the curve at zero.
+pub(super) const NEUTRAL: &str = "#222222";
+
+fn shades(count: usize, ramp: &[[u8; 3]; 4]) -> Vec<String> {
+    // Few curves keep away from the ends, many fill the ramp.
+    let margin = 0.3 * 4usize.saturating_sub(count) as f64;
+    let at = |i: usize| if count == 1 { 1.3 } else { margin + (3.0 - 2.0 * margin) * i as f64 / (count - 1) as f64 };
+    (0..count).map(|i| color(ramp, at(i))).collect()
+}
+
+fn color(ramp: &[[u8; 3]; 4], t: f64) -> String {
+    let i = (t.floor() as usize).min(2);
+    let mix = |a: u8, b: u8| (f64::from(a) + (f64::from(b) - f64::from(a)) * (t - i as f64)).round() as u8;
+    let [r, g, b] = [0, 1, 2].map(|k| mix(ramp[i][k], ramp[i + 1][k]));
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+/// Shape of a marker, as a polygon around the origin; a circle if empty.
+pub(super) fn marker(rank: i32) -> &'static [[f64; 2]] {
+    const SQUARE: &[[f64; 2]] = &[[-0.9, -0.9], [0.9, -0.9], [0.9, 0.9], [-0.9, 0.9]];
+    const DIAMOND: &[[f64; 2]] = &[[0.0, -1.3], [1.3, 0.0], [0.0, 1.3], [-1.3, 0.0]];
+    const DOWN: &[[f64; 2]] = &[[-1.2, -0.8], [1.2, -0.8], [0.0, 1.3]];
+    const UP: &[[f64; 2]] = &[[-1.2, 0.8], [1.2, 0.8], [0.0, -1.3]];
+    match rank {
+        0 => &[],
+        n => [SQUARE, DIAMOND, DOWN, UP][(n.unsigned_abs() as usize - 1) % 4],
+    }
+}

@@ -1,0 +1,112 @@
+//! Bounds of every attainable limit: what a certified limit is compared with.
+//!
+//! Both bounds rest on the links alone and are proofs: no state of any cell of the sheet, reached on any path that
+//! keeps the links, has a larger l1. A limit that attains its bound is therefore global.
+//!
+//! | bound | idea | cost |
+//! | --- | --- | --- |
+//! | [`ChainBound`] | a lattice vector is no longer than the chain of links that joins its ends | microseconds |
+//! | [`LinkBound`] | all links at once, poses relaxed to a convex set; the value of a dual solution | a millisecond |
+//!
+//! The lemma behind both. Let the circles a and b be linked, their tori disjoint: core distance ≥ r_a + r_b. Then a
+//! crosses b's disc at some point p; p lies in b's plane, so its distance to b's core is R_b − |p − c_b|, hence
+//! |p − c_b| ≤ R_b − r_a − r_b, and |c_a − c_b| ≤ |c_a − p| + |p − c_b| ≤ R_a + R_b − r_a − r_b.
+//!
+//! Every inequality used is convex in the centres, in matrices of rotation relaxed to their convex hull, and in F, and
+//! holds in each cell alike. So for a state of any supercell the average over its primitive cells, with the same F,
+//! satisfies the inequalities of the primitive cell: what is proved for the primitive cell holds for every cell.
+
+mod chain;
+pub mod cone;
+mod link;
+
+pub use chain::{BindingChain, ChainBound};
+pub use link::{LinkBound, LinkSolution};
+
+use std::fmt;
+
+/// Which bound is meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum BoundKind {
+    /// Chains of links, [`ChainBound`].
+    Chain,
+    /// The convex program over all links, [`LinkBound`].
+    Link,
+}
+
+impl fmt::Display for BoundKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            BoundKind::Chain => "chain",
+            BoundKind::Link => "link",
+        })
+    }
+}
+
+/// What a bound says of one direction and one l2.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Bound {
+    /// No state has a larger l1.
+    Finite {
+        /// The bound.
+        l1: f64,
+        /// The bound that gives it.
+        kind: BoundKind,
+        /// The chain that binds, from the chain bound: also where the link bound is lower.
+        chain: Option<BindingChain>,
+    },
+    /// No state with l1 > −1 has this l2 in this direction.
+    L2Unreachable {
+        /// The bound that proves it.
+        kind: BoundKind,
+        /// The chain that is too short, where one is.
+        chain: Option<BindingChain>,
+    },
+    /// No chain of links joins lattice vectors along the direction: l1 has no limit.
+    Unbounded,
+}
+
+impl Bound {
+    /// The bound of l1, where there is one.
+    pub fn l1(&self) -> Option<f64> {
+        match self {
+            Bound::Finite { l1, .. } => Some(*l1),
+            _ => None,
+        }
+    }
+
+    /// The bound that speaks.
+    pub fn kind(&self) -> Option<BoundKind> {
+        match self {
+            Bound::Finite { kind, .. } | Bound::L2Unreachable { kind, .. } => Some(*kind),
+            Bound::Unbounded => None,
+        }
+    }
+
+    /// The binding chain.
+    pub fn chain(&self) -> Option<&BindingChain> {
+        match self {
+            Bound::Finite { chain, .. } | Bound::L2Unreachable { chain, .. } => chain.as_ref(),
+            Bound::Unbounded => None,
+        }
+    }
+}
+
+/// The link bound counts as lower than the chain bound from this difference on; below it they are the same number.
+const SAME: f64 = 1e-10;
+
+/// The lower of the two bounds; the link bound is solved only where it is asked for and the chain bound is finite.
+pub fn best_bound(chain: &ChainBound, link: Option<&LinkBound>, direction_deg: f64, l2: f64) -> Bound {
+    let first = chain.limit(direction_deg, l2);
+    let (Some(link), Bound::Finite { l1: chain_l1, chain: path, .. }) = (link, &first) else {
+        return first;
+    };
+    let solution = link.limit(direction_deg, l2);
+    if solution.l2_unreachable() {
+        Bound::L2Unreachable { kind: BoundKind::Link, chain: path.clone() }
+    } else if solution.l1 < chain_l1 - SAME {
+        Bound::Finite { l1: solution.l1, kind: BoundKind::Link, chain: path.clone() }
+    } else {
+        first
+    }
+}

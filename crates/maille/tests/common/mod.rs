@@ -1,0 +1,45 @@
+//! Shared by the tests: designs, and random states near a start.
+#![allow(dead_code, reason = "each test file uses its part")]
+
+use maille::{design::Design, lattice::Cell, model::Model, state::State};
+use maille_geometry::Vec3;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// A built-in design with the given minor radius.
+pub fn design(name: &str, minor_radius: f64) -> Design {
+    let text = maille_io::builtin(name).expect("a built-in design");
+    maille_io::read_design(name, text).expect("built-in designs are valid").with_minor_radius(minor_radius)
+}
+
+/// The same design compiled for its own cell.
+pub fn model(name: &str, minor_radius: f64) -> Model {
+    Model::compile(&design(name, minor_radius), Cell::PRIMITIVE).expect("built-in designs compile")
+}
+
+/// Every length of a design multiplied by `factor`.
+pub fn scaled(design: &Design, factor: f64) -> Design {
+    let mut out = design.clone();
+    let scale = |v: &mut [f64; 3]| v.iter_mut().for_each(|x| *x *= factor);
+    out.minor_radius = out.minor_radius.map(|r| r * factor);
+    out.reference_radius *= factor;
+    scale(&mut out.lattice.a1);
+    scale(&mut out.lattice.a2);
+    for element in &mut out.elements {
+        scale(&mut element.center);
+        for ring in &mut element.rings {
+            ring.major_radius *= factor;
+            ring.minor_radius = ring.minor_radius.map(|r| r * factor);
+            scale(&mut ring.offset);
+        }
+    }
+    out
+}
+
+/// A state near the start: poses and lattice moved at random by up to `size`.
+pub fn shaken(model: &Model, size: f64, seed: u64) -> State {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let mut vector = |size: f64| Vec3::from_fn(|_, _| size * rng.random_range(-1.0..1.0));
+    let poses = model.start.poses.iter().map(|p| p.moved(&vector(size), &vector(size))).collect();
+    State { poses, a1: model.start.a1 + vector(size), a2: model.start.a2 + vector(size) }
+}

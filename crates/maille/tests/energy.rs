@@ -1,0 +1,161 @@
+//! The energy's derivatives against finite differences, and its invariances.
+
+mod common;
+
+use common::{design, model, shaken};
+use maille::{
+    design::Design,
+    energy::{
+        Configuration, ContactOptions, HessianMethod, MinimaMethod, SheetEnergy,
+        target::{Protocol, Target, target_gradient},
+    },
+    lattice::Cell,
+    model::Model,
+    solve::newton::Objective,
+    state::State,
+};
+use maille_geometry::Vec3;
+use nalgebra::UnitQuaternion;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+type Count = std::cell::Cell<usize>;
+
+/// Rings thick enough that a shaken state overlaps in many places; the overlap of the start is allowed.
+fn thick(name: &str, minor_radius: f64) -> Model {
+    let design = Design { allow_initial_overlap: true, ..design(name, minor_radius) };
+    Model::compile(&design, Cell::PRIMITIVE).unwrap()
+}
+
+fn options() -> ContactOptions {
+    ContactOptions { alpha: 30.0, sample_offsets_rad: vec![-0.1, 0.1], minima: MinimaMethod::Enumeration }
+}
+
+/// Runs `check` on shaken states of single-ring and multi-ring designs under both protocols.
+fn for_random_states(check: impl Fn(&SheetEnergy<'_>, &Configuration, &str)) {
+    let contacts = options();
+    for (name, radius) in [("1.1", 0.2), ("2", 0.16), ("3.1", 0.2), ("1.3", 0.16), ("4.2", 0.2), ("5.1", 0.13)] {
+        let model = thick(name, radius);
+        for protocol in [Protocol::Strain, Protocol::Corners] {
+            let target = Target::new(&model, protocol, target_gradient(20.0, 0.3, -0.1), 1.0, 100.0);
+            let energy = SheetEnergy {
+                model: &model,
+                target: &target,
+                contacts: &contacts,
+                hessian: HessianMethod::Analytic,
+                seed: 1,
+            };
+            for seed in 0..3 {
+                let mut x = Configuration::start(shaken(&model, 0.05, seed));
+                if protocol == Protocol::Corners {
+                    x.corner += Vec3::new(0.02, -0.01, 0.03);
+                }
+                check(&energy, &x, &format!("{name} {protocol:?} seed {seed}"));
+            }
+        }
+    }
+}
+
+#[test]
+fn gradient_matches_differences_of_the_energy() {
+    let (overlapping, checked, jumps) = (Count::new(0), Count::new(0), Count::new(0));
+    for_random_states(|energy, x, what| {
+        let (value, gradient) = energy.gradient(x);
+        assert!((value - energy.energy(x)).abs() <= 1e-12 * value.abs(), "{what}: two energies");
+        let contact = value - energy.target.energy(&x.state, &x.corner);
+        overlapping.set(overlapping.get() + usize::from(contact > 1e-3));
+        let size = gradient.iter().fold(0.0f64, |m, g| m.max(g.abs()));
+        for k in 0..energy.unknowns() {
+            let mut unit = vec![0.0; energy.unknowns()];
+            unit[k] = 1.0;
+            let at = |e: f64| energy.energy(&energy.moved(x, &unit, e));
+            // Five-point differences: the error is of fourth order.
+            let differences = |e: f64| (8.0 * (at(e) - at(-e)) - (at(2.0 * e) - at(-2.0 * e))) / (12.0 * e);
+            let difference = differences(2e-5);
+            checked.set(checked.get() + 1);
+            if (difference - differences(1e-5)).abs() > 1e-6 * size {
+                // A minimum is born or dies within the stencil, where the energy jumps: no derivative to compare with.
+                jumps.set(jumps.get() + 1);
+                continue;
+            }
+            assert!((gradient[k] - difference).abs() < 1e-6 * size, "{what}, unknown {k}: {} {difference}", gradient[k]);
+        }
+    });
+    assert!(jumps.get() * 25 < checked.get(), "{} of {} unknowns at a jump", jumps.get(), checked.get());
+    assert!(overlapping.get() >= 30, "only {} states overlap: the test tests little", overlapping.get());
+}
+
+#[test]
+fn analytic_hessian_matches_the_thesis_difference() {
+    let (states, agreeing) = (Count::new(0), Count::new(0));
+    for_random_states(|energy, x, what| {
+        let analytic = energy.derivatives(x).hessian;
+        let difference = energy.finite_difference_hessian(x);
+        let error = (&analytic - &difference).norm_max() / analytic.norm_max();
+        states.set(states.get() + 1);
+        if error < 2e-6 {
+            agreeing.set(agreeing.get() + 1);
+        } else {
+            println!("{what}: {error:e}"); // a minimum about to be born or to die within ε
+        }
+    });
+    assert!(agreeing.get() + 2 >= states.get(), "{} of {} agree", agreeing.get(), states.get());
+}
+
+/// A rotation of the whole sheet about z, lattice included, changes no contact energy.
+#[test]
+fn contact_energy_is_invariant_under_rigid_motion() {
+    let model = thick("1.3", 0.16);
+    let contacts = options();
+    let target = Target::new(&model, Protocol::Strain, target_gradient(0.0, 0.0, 0.0), 0.0, 0.0);
+    let energy =
+        SheetEnergy { model: &model, target: &target, contacts: &contacts, hessian: HessianMethod::Analytic, seed: 1 };
+    let state = shaken(&model, 0.05, 4);
+    let turn = UnitQuaternion::from_scaled_axis(Vec3::new(0.4, -1.0, 0.7));
+    let shift = Vec3::new(3.0, -2.0, 1.0);
+    let mut turned: State = state.clone();
+    for pose in &mut turned.poses {
+        pose.position = turn * pose.position + shift;
+        pose.rotation = turn * pose.rotation;
+    }
+    turned.a1 = turn * state.a1;
+    turned.a2 = turn * state.a2;
+    let (before, after) = (energy.energy(&Configuration::start(state)), energy.energy(&Configuration::start(turned)));
+    assert!(before > 1e-3 && (before - after).abs() < 1e-10 * before, "{before} {after}");
+}
+
+#[test]
+fn rotations_stay_orthonormal_over_ten_thousand_updates() {
+    let mut pose = model("1.1", 0.1).start.poses[0];
+    let mut rng = ChaCha8Rng::seed_from_u64(3);
+    for _ in 0..10_000 {
+        pose = pose.moved(&Vec3::zeros(), &Vec3::from_fn(|_, _| rng.random_range(-0.3..0.3)));
+    }
+    let r = pose.rotation.to_rotation_matrix().into_inner();
+    assert!((r * r.transpose() - nalgebra::Matrix3::identity()).amax() < 1e-12);
+}
+
+/// Along any step that the bound lets through, no pair of circles crosses: checked on 200 points of long random steps.
+#[test]
+fn the_step_bound_keeps_every_link() {
+    for name in ["1.1", "2", "3.1", "1.3", "5.1"] {
+        let model = model(name, if name == "5.1" { 0.05 } else { 0.1 });
+        let contacts = options();
+        let target = Target::new(&model, Protocol::Strain, target_gradient(0.0, 0.0, 0.0), 1.0, 0.0);
+        let energy =
+            SheetEnergy { model: &model, target: &target, contacts: &contacts, hessian: HessianMethod::Analytic, seed: 1 };
+        let mut rng = ChaCha8Rng::seed_from_u64(9);
+        let mut cut = 0;
+        for round in 0..5 {
+            let x = Configuration::start(shaken(&model, 0.02, round));
+            let step: Vec<f64> = (0..energy.unknowns()).map(|_| rng.random_range(-2.0..2.0)).collect();
+            let fraction = energy.largest_step(&energy.derivatives(&x).guard, &step);
+            cut += usize::from(fraction < 1.0);
+            for k in 1..=40 {
+                let there = energy.moved(&x, &step, fraction * f64::from(k) / 40.0);
+                assert!(maille::topology::links_kept(&model, &there.state), "{name}: a link changed");
+            }
+        }
+        assert!(cut == 5, "{name}: long steps must be cut");
+    }
+}

@@ -1,0 +1,97 @@
+//! The steps of `ci`, each announced and timed.
+
+use crate::{Finding, layers, paths};
+use std::{
+    path::Path,
+    process::{Command, Stdio},
+    time::Instant,
+};
+
+/// A step failed and has said why.
+#[derive(Debug)]
+pub struct Failed;
+
+/// Everything that must hold before a change lands; the cheap steps first, the tests last.
+pub fn ci(root: &Path) -> Result<(), Failed> {
+    timed("format", || cargo(root, &["fmt", "--all", "--check"], &[]))?;
+    timed("clippy", || cargo(root, &["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"], &[]))?;
+    timed("layers", || self::layers(root))?;
+    timed("paths", || self::paths(root))?;
+    timed("rustdoc", || cargo(root, &["doc", "--workspace", "--no-deps"], &[("RUSTDOCFLAGS", "-D warnings")]))?;
+    test(root)
+}
+
+/// Every test there is. The runner's own summary is the last thing printed, so nothing is timed after it.
+pub fn test(root: &Path) -> Result<(), Failed> {
+    if !has_nextest(root) {
+        announce("tests");
+        return cargo(root, &["test", "--workspace", "--no-fail-fast"], &[]);
+    }
+    // Nextest runs no documentation examples. Both runs happen, whatever the first one finds.
+    let examples =
+        timed("documentation examples", || cargo(root, &["test", "--workspace", "--doc", "--no-fail-fast"], &[]));
+    announce("tests");
+    let tests = cargo(root, &["nextest", "run", "--workspace", "--no-fail-fast"], &[]);
+    if examples.is_err() {
+        eprintln!("\nxtask: documentation examples failed, see above");
+    }
+    examples.and(tests)
+}
+
+/// The layer check; prints the order that it holds the code to.
+pub fn layers(root: &Path) -> Result<(), Failed> {
+    println!("{}", layers::order_of_crates());
+    println!("{}", layers::order_of_modules());
+    report(layers::check(root))
+}
+
+/// The check of the paths named in the documents.
+pub fn paths(root: &Path) -> Result<(), Failed> {
+    report(paths::check(root))
+}
+
+fn report(findings: Vec<Finding>) -> Result<(), Failed> {
+    for finding in &findings {
+        eprintln!("{finding}");
+    }
+    if findings.is_empty() { Ok(()) } else { Err(Failed) }
+}
+
+fn announce(name: &str) {
+    println!("── {name}");
+}
+
+fn timed(name: &str, step: impl FnOnce() -> Result<(), Failed>) -> Result<(), Failed> {
+    announce(name);
+    let begun = Instant::now();
+    let done = step();
+    let outcome = if done.is_ok() { "ok" } else { "FAILED" };
+    println!("── {name}: {outcome} in {:.1} s", begun.elapsed().as_secs_f64());
+    done
+}
+
+fn command(root: &Path) -> Command {
+    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    command.current_dir(root);
+    command
+}
+
+fn cargo(root: &Path, arguments: &[&str], environment: &[(&str, &str)]) -> Result<(), Failed> {
+    let status = command(root).args(arguments).envs(environment.iter().copied()).status();
+    match status {
+        Ok(status) if status.success() => Ok(()),
+        Ok(status) => {
+            eprintln!("xtask: `cargo {}` ended with {status}", arguments.join(" "));
+            Err(Failed)
+        }
+        Err(e) => {
+            eprintln!("xtask: `cargo {}` did not start: {e}", arguments.join(" "));
+            Err(Failed)
+        }
+    }
+}
+
+fn has_nextest(root: &Path) -> bool {
+    let probe = command(root).args(["nextest", "--version"]).stdout(Stdio::null()).stderr(Stdio::null()).status();
+    probe.is_ok_and(|status| status.success())
+}
