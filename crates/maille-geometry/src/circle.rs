@@ -31,10 +31,7 @@ impl Circle {
         let sign = 1.0_f64.copysign(n.z);
         let a = -1.0 / (sign + n.z);
         let b = n.x * n.y * a;
-        (
-            Vec3::new(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x),
-            Vec3::new(b, sign + n.y * n.y * a, -n.y),
-        )
+        (Vec3::new(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x), Vec3::new(b, sign + n.y * n.y * a, -n.y))
     }
 
     /// The point `P(θ) = c + R (cos θ U + sin θ V)` (equation 3.2.1).

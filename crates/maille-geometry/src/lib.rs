@@ -11,13 +11,14 @@
 //! | how wide are the gaps between two rings? | [`torus_score`], [`torus_scores`] |
 //! | are two rings linked, and in which sense? | [`linking_number`], [`interlocks`] |
 //!
-//! The order of the modules is `circle ← relative ← (minima, search, polynomial) ← torus`, with `linking` beside them:
-//! `relative` reduces a pair to six numbers and evaluates the distance along one circle, `search` and `polynomial` find
-//! the minima in two independent ways.
+//! The order of the modules is `circle ← relative ← bounds ← search ← minima ← polynomial, torus`, with `linking` beside
+//! them: `relative` reduces a pair to six numbers and evaluates the distance along one circle, `search` and `polynomial`
+//! find its minima in two independent ways.
 //!
 //! Lengths carry the caller's unit, angles are radians. Radii must be positive and finite and normals of unit length;
 //! debug builds assert it in [`Circle::new`].
 
+mod bounds;
 mod circle;
 mod linking;
 mod minima;

@@ -55,6 +55,5 @@ pub fn linking_number(a: &Circle, b: &Circle) -> i32 {
 /// Do the circles interlock? B has two points in the plane of A, one nearer to the centre of A than `R_A`, the other
 /// farther (Definition 3.4.2). The relation is symmetric, and equivalent to a linking number of ±1.
 pub fn interlocks(a: &Circle, b: &Circle) -> bool {
-    plane_crossings(a, b)
-        .is_some_and(|[p, q]| p.min(q) < a.radius && a.radius < p.max(q))
+    plane_crossings(a, b).is_some_and(|[p, q]| p.min(q) < a.radius && a.radius < p.max(q))
 }

@@ -130,27 +130,34 @@ fn roots(coefficients: &Polynomial) -> [Complex<f64>; DEGREE] {
         // No start may lie on the real line or opposite another.
         *root = Complex::from_polar(0.9, 0.4 + i as f64 * TAU / leading as f64);
     }
+    let one = Complex::new(1.0, 0.0);
+    let mut done = [false; DEGREE];
     for _ in 0..100 {
-        let mut largest_step = 0.0_f64;
         for i in 0..leading {
+            if done[i] {
+                continue;
+            }
             let x = roots[i];
+            let size = x.norm();
             let (mut value, mut slope) = (Complex::new(coefficients[leading], 0.0), Complex::new(0.0, 0.0));
+            let mut terms = coefficients[leading].abs();
             for &c in coefficients[..leading].iter().rev() {
                 slope = slope * x + value;
                 value = value * x + c;
+                terms = terms * size + c.abs();
             }
-            let newton = value / slope;
+            let newton = value * slope.inv();
             let others = (0..leading).filter(|&k| k != i);
-            let repulsion: Complex<f64> = others.map(|k| Complex::new(1.0, 0.0) / (x - roots[k])).sum();
-            let step = newton / (Complex::new(1.0, 0.0) - newton * repulsion);
+            let repulsion: Complex<f64> = others.map(|k| (x - roots[k]).inv()).sum();
+            let step = newton * (one - newton * repulsion).inv();
             // Roots that coincide to the bit, and flat values, divide by zero: the root is as good as it gets.
             if step.re.is_finite() && step.im.is_finite() {
                 roots[i] -= step;
-                largest_step = largest_step.max(step.norm() / (1.0 + x.norm()));
+                // At values that are rounding, so are the steps.
+                done[i] = value.norm() <= 4.0 * f64::EPSILON * terms || step.norm() <= f64::EPSILON * size;
+            } else {
+                done[i] = true;
             }
-        }
-        if largest_step < 1e-15 {
-            break;
         }
     }
     roots

@@ -198,3 +198,25 @@ impl<'a> Relative<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn derivatives_agree_with_finite_differences() {
+        let normal = |x, y, z| nalgebra::UnitVector3::new_normalize(Vec3::new(x, y, z));
+        let a = Circle::new(Vec3::new(0.3, -0.2, 0.1), normal(0.1, 0.4, 1.0), 1.0);
+        let b = Circle::new(Vec3::new(0.9, 0.5, -0.4), normal(1.0, -0.3, 0.2), 0.8);
+        let pair = Relative::new(&a, &b);
+        let half_sq = |angle: f64| 0.5 * pair.at_angle(angle).distance().powi(2);
+        for i in 0..100 {
+            let (angle, step) = (f64::from(i) * 0.0628, 1e-4);
+            let sample = pair.at_angle(angle);
+            let slope = (half_sq(angle + step) - half_sq(angle - step)) / (2.0 * step);
+            let curvature = (half_sq(angle + step) - 2.0 * half_sq(angle) + half_sq(angle - step)) / (step * step);
+            assert!((sample.slope - slope).abs() < 1e-7, "{angle}: {} {slope}", sample.slope);
+            assert!((sample.curvature - curvature).abs() < 1e-5, "{angle}: {} {curvature}", sample.curvature);
+        }
+    }
+}

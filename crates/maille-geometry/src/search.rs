@@ -1,18 +1,9 @@
 //! Complete enumeration of the minima of `h(θ) = ½ d²` along the moving circle.
 //!
-//! The circle is cut into intervals of centre `m` and half width `σ`, and each is put to these tests in turn. `M` is
-//! a bound of `|h‴|` over the interval.
-//!
-//! 1. `|h′(m)| > σ |h″(m)| + ½ σ² M`: no critical point.
-//! 2. `h″(m) + σ M < 0`: concave, no minimum.
-//! 3. `h″(m) − σ M > 0`: convex, one minimum if h′ goes from − to + between the ends, else none.
-//! 4. Near the axis of the base, where no `M` exists: at a critical point `w·w′ = R ρ′` (w from the base centre), so
-//!    `h″ = (w·w′)′ − R ρ″ = (w·w′)′ − R ((|e′|² − (w·w′)²/R²)/ρ + e·e″/ρ)`, which is negative, a maximum, if
-//!    `(w·w′)² < R² (|e′|² − ρ K)` with `K = (max |(w·w′)′| + R max |e″|)/R`.
-//!
-//! If none decides, the interval is halved. Every interval's ends have one sign of h′, computed from the same numbers
-//! by both neighbours, so that each change of sign counts once. Halving ends at width `2π · 2⁻²⁴`, where the signs alone
-//! decide.
+//! The circle is cut into intervals, and each is put to the tests of [`Bounds::verdict`]: it holds no minimum, or it is
+//! convex and holds one if h′ goes from − to + between its ends, or it is halved. Every end has one sign of h′,
+//! computed from the same numbers by both neighbours, so that each change of sign counts once. Halving ends at width
+//! `2π · 2⁻²⁴`, where the signs alone decide.
 //!
 //! **Nearly constant distances.** For pairs close to an equidistant one (not a coaxial one) the bounds are far larger
 //! than h′, and halving would go on everywhere. After [`MAX_SAMPLES`] it starts anew, coarsely: intervals of `2π/256`
@@ -24,8 +15,9 @@
 use std::f64::consts::TAU;
 use std::sync::LazyLock;
 
-use crate::{MAX_MINIMA, ROUNDING};
+use crate::bounds::{Bounds, Verdict};
 use crate::relative::{Relative, Sample};
+use crate::{MAX_MINIMA, ROUNDING};
 
 /// Intervals at the start.
 const INTERVALS: usize = 16;
@@ -99,18 +91,8 @@ impl Interval {
         let [left, right] = self.center.turned(grid.quarters[self.level]);
         let level = self.level + 1;
         [
-            Self {
-                center_rad: self.center_rad + quarter,
-                center: right,
-                ends: [self.center, self.ends[1]],
-                level,
-            },
-            Self {
-                center_rad: self.center_rad - quarter,
-                center: left,
-                ends: [self.ends[0], self.center],
-                level,
-            },
+            Self { center_rad: self.center_rad + quarter, center: right, ends: [self.center, self.ends[1]], level },
+            Self { center_rad: self.center_rad - quarter, center: left, ends: [self.ends[0], self.center], level },
         ]
     }
 }
@@ -301,85 +283,8 @@ impl Search<'_> {
     }
 }
 
-#[derive(PartialEq)]
-enum Verdict {
-    NoMinimum,
-    Convex,
-    Unknown,
-}
-
-/// Amplitudes on the whole circle; bounds on an interval are made from them and the sample at its centre.
-struct Bounds {
-    /// Of z.
-    rise: f64,
-    /// Of `(e·e′)′`, `(e·e′)″` and `(e·e′)‴`.
-    ee: [f64; 3],
-    /// Of `w·w′`.
-    ww: f64,
-}
-
-impl Bounds {
-    fn new(pair: &Relative<'_>) -> Self {
-        let [x0, y0, _] = pair.offset;
-        let rise = pair.radius * pair.tilt_sin;
-        let first = pair.radius * (pair.tilt_cos * x0).hypot(y0);
-        let second = rise * rise;
-        Self {
-            rise,
-            ee: [first + second, first + 2.0 * second, first + 4.0 * second],
-            ww: pair.half_distance_sq_amplitude(),
-        }
-    }
-
-    /// The tests of the module's head, for the interval of half width σ around a sample.
-    fn verdict(&self, pair: &Relative<'_>, at: &Sample, half_width: f64) -> Verdict {
-        let (r, base_radius) = (pair.radius, pair.base_radius);
-        // |e′|² + z′² = r²: the speed of e at the centre, and its bounds.
-        let speed = (r * r - at.z1 * at.z1).max(0.0).sqrt();
-        let travel = half_width * (speed + 0.5 * half_width * r).min(r);
-        if at.rho > travel {
-            let speed_max = (speed + half_width * r).min(r);
-            let third = self.third_derivative(pair, at, at.rho - travel, speed_max, half_width);
-            if at.slope.abs() > half_width * (at.curvature.abs() + 0.5 * half_width * third)
-                || at.curvature + half_width * third < 0.0
-            {
-                return Verdict::NoMinimum;
-            }
-            if at.curvature - half_width * third > 0.0 {
-                return Verdict::Convex;
-            }
-        }
-        let ww = (at.ee[0] + at.z * at.z1).abs() + half_width * self.ww;
-        let speed_min = speed - half_width * r;
-        let k = self.ww / base_radius + r;
-        if speed_min > 0.0 && ww * ww < base_radius * base_radius * (speed_min * speed_min - (at.rho + travel) * k) {
-            return Verdict::NoMinimum;
-        }
-        Verdict::Unknown
-    }
-
-    /// A bound of `|h‴|`, the smaller one of two. From `h‴ = 3 z′z″ + z z‴ + 3 ρ′ρ″ + (ρ − R) ρ‴`, in which every
-    /// factor is bounded, so that it stays small for nearly coaxial pairs; and from `h‴ = (w·w′)″ − R ρ‴`.
-    ///
-    /// `ρ′ = e·e′/ρ`, `ρ″ = ((e·e′)′ − ρ′²)/ρ`, `ρ‴ = ((e·e′)″ − 3 ρ′ρ″)/ρ`, and `|ρ′| ≤ |e′|`.
-    fn third_derivative(&self, pair: &Relative<'_>, at: &Sample, rho_min: f64, speed_max: f64, half_width: f64) -> f64 {
-        let inverse = 1.0 / rho_min;
-        let ee2 = self.ee[1].min((at.ee[0] + 3.0 * at.z1 * at.z2).abs() + half_width * self.ee[2]);
-        let ee1 = self.ee[0].min(at.ee[1].abs() + half_width * ee2);
-        let ee0 = at.ee[0].abs() + half_width * ee1;
-        let first = speed_max.min(ee0 * inverse);
-        // −ρ′² only takes away.
-        let second = (at.ee[1].max(first * first - at.ee[1]) + half_width * ee2) * inverse;
-        let third = (ee2 + 3.0 * first * second) * inverse;
-        let (rise, z1) = (self.rise, at.z1.abs() + half_width * self.rise);
-        let height = (1.5 * rise * rise).min(3.0 * z1 * rise) + (at.z.abs() + half_width * z1) * z1;
-        let radial = 3.0 * first * second + (at.radial.abs() + half_width * first) * third;
-        (height + radial).min(self.ww + pair.base_radius * third)
-    }
-}
-
 /// The root of `h′` in a bracket where it goes from − to +: Newton's method, kept inside by bisection.
-pub(crate) fn refine(pair: &Relative<'_>, mut bracket: [f64; 2], start: &Sample, start_rad: f64) -> f64 {
+fn refine(pair: &Relative<'_>, mut bracket: [f64; 2], start: &Sample, start_rad: f64) -> f64 {
     let (mut angle_rad, mut slope, mut curvature) = (start_rad, start.slope, start.curvature);
     let mut last_step = 2.0 * (bracket[1] - bracket[0]);
     for _ in 0..64 {
@@ -394,8 +299,8 @@ pub(crate) fn refine(pair: &Relative<'_>, mut bracket: [f64; 2], start: &Sample,
         };
         last_step = (next - angle_rad).abs();
         angle_rad = next;
-        // After a quadratic step of this size the next one is below rounding.
-        if last_step < 1e-9 && next == newton || last_step < 1e-16 {
+        // After a quadratic step of this size the next one is below rounding, close to the axis too.
+        if last_step < 1e-11 && next == newton || last_step < 1e-16 {
             break;
         }
         let sample = pair.at_angle(angle_rad);

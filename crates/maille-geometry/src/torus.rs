@@ -17,7 +17,7 @@ pub struct Torus {
 /// exists if and only if `d_c < r₁ + r₂`, by the triangle inequality and the segment between the nearest points.
 /// For tori that are apart it is their distance; for tori that overlap, minus the depth along that segment.
 pub fn torus_score(a: &Torus, b: &Torus) -> f64 {
-    circle_distance_minima(&a.circle, &b.circle).closest().distance - a.minor_radius - b.minor_radius
+    circle_distance_minima(&a.circle, &b.circle).closest().distance - (a.minor_radius + b.minor_radius)
 }
 
 /// The minima of the distance of the core circles, and the local gap `d − r₁ − r₂` at each, in the same ascending order

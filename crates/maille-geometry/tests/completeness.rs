@@ -3,7 +3,7 @@
 mod common;
 
 use common::{Along, FAMILIES, oracle, rng, sample_angles, scale};
-use maille_geometry::circle_distance_minima;
+use maille_geometry::{Circle, Minimum, circle_distance_minima, point_circle_distance};
 
 const PAIRS_EACH: usize = 20_000;
 
@@ -46,6 +46,7 @@ fn every_sampled_minimum_is_enumerated() {
                 worst = worst.max((best - lowest) / unit);
             }
             for m in minima.as_slice() {
+                assert_on_circles(m, &a, &b);
                 // What was found is a minimum: no smaller distance beside it.
                 let angle = along.angle(if swapped { &m.point_a } else { &m.point_b });
                 // On the axis of the other circle it can be one on the smallest scale only.
@@ -69,4 +70,21 @@ fn every_sampled_minimum_is_enumerated() {
         // Observed, not proved.
         assert_eq!((counts[3], counts[4]), (0, 0), "{name}: more than two minima");
     }
+}
+
+/// The parts of a minimum agree with one another, and it is one.
+fn assert_on_circles(m: &Minimum, a: &Circle, b: &Circle) {
+    let unit = scale(a, b);
+    let close = 4e-15 * (unit + a.center.norm() + b.center.norm());
+    assert!(((m.point_a - m.point_b).norm() - m.distance).abs() < close, "{m:?}");
+    assert!((a.point(m.angle_a_rad) - m.point_a).norm() < close, "{m:?} {a:?}");
+    assert!((b.point(m.angle_b_rad) - m.point_b).norm() < close, "{m:?} {b:?}");
+    assert!((point_circle_distance(&m.point_a, b).distance - m.distance).abs() < close, "{m:?}");
+    assert!((point_circle_distance(&m.point_b, a).distance - m.distance).abs() < close, "{m:?}");
+    let area = unit * unit;
+    let [[aa, ab], [ba, bb]] = m.hessian;
+    // Near the other circle's axis (small aa or bb) the slope changes by the rounding of the angle over that.
+    let steepness = area / aa.abs().min(bb.abs());
+    assert!(m.gradient.iter().all(|g| g.abs() < (1e-14 + 1e-15 * steepness) * area), "{m:?}");
+    assert!(ab == ba && aa > -1e-12 * area && bb > -1e-12 * area && aa * bb - ab * ab > -1e-12 * area * area, "{m:?}");
 }

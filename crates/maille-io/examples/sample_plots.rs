@@ -22,7 +22,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     ] {
         let mut rows = rows(l2, step);
         if name == "default" {
-            for row in rows.iter_mut().filter(|row| row.l2 == -0.25 && (row.direction_deg == 30.0 || row.direction_deg == 45.0)) {
+            for row in rows
+                .iter_mut()
+                .filter(|row| row.l2 == -0.25 && (row.direction_deg == 30.0 || row.direction_deg == 45.0))
+            {
                 (row.l1, row.lambda1, row.status) = (None, None, Status::NotConverged);
             }
         }

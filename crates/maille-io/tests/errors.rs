@@ -32,7 +32,8 @@ fn matches(name: &str, text: &str) -> bool {
 
 #[test]
 fn wrong_designs_say_what_is_wrong() {
-    let mut names: Vec<_> = fs::read_dir(folder()).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    let mut names: Vec<_> =
+        fs::read_dir(folder()).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
     names.retain(|name| name.ends_with(".toml"));
     names.sort();
     assert!(names.len() >= 40);

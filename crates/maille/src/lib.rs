@@ -3,7 +3,9 @@
 //! Data flows one way: [`design`] → [`model`] → [`state`] → [`contact`]s → [`energy`] → [`solve`]r → [`limit`] → [`record`].
 //! Inside, lengths are in units of the design's reference radius; records are in the file's unit.
 
+pub mod bound;
 pub mod characterize;
+pub mod constraint;
 pub mod contact;
 pub mod design;
 pub mod energy;

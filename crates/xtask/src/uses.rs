@@ -56,7 +56,6 @@ pub fn uses(source: &str, module: &[String]) -> Vec<Use> {
                         let found = first_names(&tokens, next);
                         out.extend(found.into_iter().map(|(name, line)| Use { from: here.clone(), name, line }));
                     }
-                    // The names of a group are looked at once more: they hold no path of their own kind.
                 }
             }
             _ => {}

@@ -41,9 +41,10 @@ pub fn moved(c: &Circle, by: &Rotation3<f64>, shift: &Vec3) -> Circle {
 }
 
 pub type Pair = (Circle, Circle);
+pub type Family = fn(&mut Rng) -> Pair;
 
 /// The families of random pairs.
-pub const FAMILIES: [(&str, fn(&mut Rng) -> Pair); 6] = [
+pub const FAMILIES: [(&str, Family); 6] = [
     ("uniform", uniform),
     ("linked", linked),
     ("thin gap", thin_gap),

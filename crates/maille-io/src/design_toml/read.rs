@@ -46,7 +46,8 @@ impl<'a, 't> At<'a, 't> {
 
     /// The value of `key`, or of a misspelling of it: that is reported as such, and not as a missing key too.
     fn get(&self, key: &str) -> Option<(&'a Value<'t>, String)> {
-        let written = if self.table.contains_key(key) { Some(key) } else { self.unknown().find(|k| self.meant(k) == Some(key)) };
+        let written =
+            if self.table.contains_key(key) { Some(key) } else { self.unknown().find(|k| self.meant(k) == Some(key)) };
         written.and_then(|k| self.table.get(k).map(|value| (value, self.path(k))))
     }
 
@@ -92,9 +93,9 @@ impl Reader<'_> {
         let help = "[lattice] with a1 = [2.5, 0.0, 0.0] and a2 = [0.0, 2.5, 0.0], the translations to the next cells";
         let lattice = self.required(top, "lattice", help).and_then(|(v, p)| self.lattice(v, &p));
         let help = "[[elements]] with name, center and rings = [{ major_radius = 1.0, normal = [0.0, 0.0, 1.0] }]";
-        let elements = self.required(top, "elements", help).and_then(|(v, p)| {
-            self.list(v, &p, "write a table [[elements]] for each element", Self::element)
-        });
+        let elements = self
+            .required(top, "elements", help)
+            .and_then(|(v, p)| self.list(v, &p, "write a table [[elements]] for each element", Self::element));
         Some(Design {
             schema: schema?,
             name: name?,
@@ -210,7 +211,8 @@ impl Reader<'_> {
         let DeValue::Array(array) = value.get_ref() else {
             return self.wrong_type(value, path, "an array of three numbers", &help);
         };
-        let numbers: Option<Vec<f64>> = array.iter().enumerate().map(|(i, v)| self.number(v, &format!("{path}[{i}]"))).collect();
+        let numbers: Option<Vec<f64>> =
+            array.iter().enumerate().map(|(i, v)| self.number(v, &format!("{path}[{i}]"))).collect();
         let numbers = numbers?;
         let three = <[f64; 3]>::try_from(numbers);
         if let Err(found) = &three {

@@ -75,7 +75,9 @@ impl Canvas {
             ""
         };
         let (x, y, size, text) = (short(at[0]), short(at[1]), short(size), escape(text));
-        self.line_out(format!("<text x=\"{x}\" y=\"{y}\" font-size=\"{size}\" fill=\"{color}\"{bold}{anchor}{halo}>{text}</text>"));
+        self.line_out(format!(
+            "<text x=\"{x}\" y=\"{y}\" font-size=\"{size}\" fill=\"{color}\"{bold}{anchor}{halo}>{text}</text>"
+        ));
     }
 
     pub(super) fn line(&mut self, from: [f64; 2], to: [f64; 2], stroke: Stroke<'_>) {
@@ -97,7 +99,9 @@ impl Canvas {
             d.push('Z');
         }
         let style = stroke.attributes();
-        self.line_out(format!("<path d=\"{d}\" fill=\"{fill}\" {style} stroke-linejoin=\"round\" stroke-linecap=\"round\"/>"));
+        self.line_out(format!(
+            "<path d=\"{d}\" fill=\"{fill}\" {style} stroke-linejoin=\"round\" stroke-linecap=\"round\"/>"
+        ));
     }
 
     fn line_out(&mut self, line: String) {

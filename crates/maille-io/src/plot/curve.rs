@@ -55,7 +55,7 @@ impl Curve {
         let half = n / 2;
         let gaps = self.points.windows(2).map(|w| w[1].0 - w[0].0);
         let widest = gaps.fold(0.0, f64::max);
-        let gap = |i: usize| if (i + 1) % half == 0 { turn[0].0 + 180.0 - turn[half - 1].0 } else { 0.0 };
+        let gap = |i: usize| if (i + 1).is_multiple_of(half) { turn[0].0 + 180.0 - turn[half - 1].0 } else { 0.0 };
         let joined = |i: usize| turn[i].1.is_some() && turn[(i + 1) % n].1.is_some() && gap(i) <= widest + 1e-9;
         let Some(end) = (0..n).find(|&i| !joined(i)) else {
             let closed = turn.into_iter().filter_map(|(degrees, value)| Some((degrees, value?))).collect();

@@ -208,9 +208,13 @@ fn draw_grid(canvas: &mut Canvas, scale: &Scale, base: f64) {
         let degrees = 30.0 * f64::from(k);
         canvas.line(polar(degrees, 0.0), polar(degrees, RADIUS), Stroke::solid(GRID, 1.0));
         let label = format!("{degrees}°");
-        let [x, y] = polar(degrees, RADIUS + 18.0);
-        let half_width = 4.2 * label.chars().count() as f64;
-        canvas.text([x + half_width * degrees.to_radians().cos() + 2.0, y + 5.0], style(14.0, INK, Anchor::Middle), &label);
+        let [x, y] = polar(degrees, RADIUS + 16.0);
+        let half_width = 3.4 * label.chars().count() as f64;
+        canvas.text(
+            [x + half_width * degrees.to_radians().cos() + 2.0, y + 5.0],
+            style(14.0, INK, Anchor::Middle),
+            &label,
+        );
     }
     for &tick in &scale.ticks {
         let radius = RADIUS * scale.fraction(tick);
@@ -230,12 +234,14 @@ fn draw_ticks(canvas: &mut Canvas, scale: &Scale, input: &PolarPlot) {
     const RAYS: [f64; 10] = [22.5, 37.5, 52.5, 67.5, 7.5, 82.5, 97.5, 112.5, 127.5, 142.5];
     let places: Vec<[f64; 2]> = input.curves.iter().flat_map(|curve| line_points(curve, scale)).collect();
     let ticks = || scale.ticks.iter().filter(|&&tick| scale.fraction(tick) > 0.1);
-    let clear = |ray: f64| {
-        let to_curves = ticks().flat_map(|&tick| {
-            let at = at(scale, ray, tick);
-            places.iter().map(move |p| ((p[0] - at[0]) / 1.6).hypot(p[1] - at[1]))
-        });
-        to_curves.fold(14.0, f64::min)
+    // How clear the labels stand on a ray: a sum, so that one label on a curve does not hide what the others gain.
+    let clear = |ray: f64| -> f64 {
+        let nearest = |tick: &f64| {
+            let label = at(scale, ray, *tick);
+            let gaps = places.iter().map(|p| ((p[0] - label[0]) / 1.6).hypot(p[1] - label[1]));
+            gaps.fold(18.0, f64::min)
+        };
+        ticks().map(nearest).sum()
     };
     let best = RAYS.into_iter().rev().max_by(|&a, &b| clear(a).total_cmp(&clear(b))).unwrap_or(RAYS[0]);
     for &tick in ticks() {
@@ -351,10 +357,14 @@ fn draw_legend(canvas: &mut Canvas, input: &PolarPlot, looks: &[Look], scale: &S
         }
     }
     y += 40.0;
-    canvas.text([x, y], TextStyle { bold: true, ..style(13.0, INK, Anchor::Start) }, &format!("Radius: {}", input.quantity.symbol()));
+    canvas.text(
+        [x, y],
+        TextStyle { bold: true, ..style(13.0, INK, Anchor::Start) },
+        &format!("Radius: {}", input.quantity.symbol()),
+    );
     let base = input.quantity.base();
     let place = if scale.low < base { "dotted circle" } else { "centre" };
-    let note = format!("{place} {}: as it lies", scale.label(base));
+    let note = format!("{place} {}: undeformed", scale.label(base));
     canvas.text([x, y + 20.0], style(12.0, SOFT, Anchor::Start), &note);
     if scale.low < base {
         canvas.text([x, y + 37.0], style(12.0, SOFT, Anchor::Start), &format!("centre {}", scale.label(scale.low)));

@@ -67,7 +67,8 @@ impl Record {
         let states = self.states.into_iter();
         let mut states: BTreeMap<_, _> = states.map(|s| (key(s.direction_deg, s.l2, s.status), s)).collect();
         let rows = self.rows.into_iter().filter(|row| row.status != Status::Interrupted);
-        rows.filter_map(|row| states.remove(&key(row.direction_deg, row.l2, row.status)).map(|state| (row, state))).unzip()
+        rows.filter_map(|row| states.remove(&key(row.direction_deg, row.l2, row.status)).map(|state| (row, state)))
+            .unzip()
     }
 }
 

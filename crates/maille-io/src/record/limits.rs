@@ -36,9 +36,7 @@ pub fn write_limits(rows: &[LimitRow]) -> Result<String, RecordError> {
         let number = |field: &'static str, x: Option<f64>| match x {
             None => Ok(String::new()),
             Some(x) if x.is_finite() => Ok(format!("{x:?}")),
-            Some(value) => {
-                Err(RecordError::NotFinite { direction_deg: row.direction_deg, l2: row.l2, field, value })
-            }
+            Some(value) => Err(RecordError::NotFinite { direction_deg: row.direction_deg, l2: row.l2, field, value }),
         };
         let cells = [
             quoted(&row.design),

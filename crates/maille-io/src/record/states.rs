@@ -32,9 +32,7 @@ pub fn read_states(file: &str, text: &str) -> Result<Vec<StateRecord>, RecordErr
 fn finite(state: &StateRecord) -> Result<(), RecordError> {
     let check = |field: &'static str, numbers: &[f64]| match numbers.iter().find(|x| !x.is_finite()) {
         None => Ok(()),
-        Some(&value) => {
-            Err(RecordError::NotFinite { direction_deg: state.direction_deg, l2: state.l2, field, value })
-        }
+        Some(&value) => Err(RecordError::NotFinite { direction_deg: state.direction_deg, l2: state.l2, field, value }),
     };
     check("direction_deg", &[state.direction_deg])?;
     check("l2", &[state.l2])?;

@@ -10,7 +10,7 @@ use crate::{
     model::Model,
     solve::newton::{Derivatives, Objective},
     state::State,
-    topology::{self, RingPair},
+    topology::crossing::{Motion, StepBound},
 };
 use faer::Mat;
 use maille_geometry::Vec3;
@@ -58,18 +58,8 @@ pub struct SheetEnergy<'a> {
     pub seed: u64,
 }
 
-/// Pairs near enough to matter for a step, with their core distances.
-pub struct Guard {
-    pairs: Vec<(RingPair, f64)>,
-    reach_growth: f64,
-}
-
-/// Pairs up to this many largest radii apart bound a step one by one.
-const GUARD_MARGIN: f64 = 1.5;
 /// Largest motion of an element in one step, in largest radii.
 const STEP_CAP: f64 = 0.3;
-/// Largest fraction of a pair's core distance that a step may use: below 1 the circles cannot meet on the way.
-const CROSSING_MARGIN: f64 = 0.9;
 
 impl SheetEnergy<'_> {
     fn lattice_index(&self) -> usize {
@@ -113,13 +103,13 @@ fn block(v: &[f64], at: usize) -> Vec3 {
 
 impl Objective for SheetEnergy<'_> {
     type Point = Configuration;
-    type Guard = Guard;
+    type Guard = StepBound;
 
     fn energy(&self, x: &Configuration) -> f64 {
         contacts::energy(self, &x.state) + self.target.energy(&x.state, &x.corner)
     }
 
-    fn derivatives(&self, x: &Configuration) -> Derivatives<Guard> {
+    fn derivatives(&self, x: &Configuration) -> Derivatives<StepBound> {
         let n = self.unknowns();
         let (mut gradient, mut hessian) = (vec![0.0; n], Mat::zeros(n, n));
         let contact = contacts::add_derivatives(self, &x.state, &mut gradient, &mut hessian);
@@ -127,50 +117,16 @@ impl Objective for SheetEnergy<'_> {
         if self.hessian == HessianMethod::FiniteDifference {
             hessian = self.finite_difference_hessian(x);
         }
-        let state = &x.state;
-        let pairs = topology::close_pairs(self.model, state, GUARD_MARGIN * self.model.largest_radius)
-            .into_iter()
-            .map(|pair| (pair, topology::core_distance(self.model, state, &pair)))
-            .collect();
-        // |Δa1 s1 + Δa2 s2| ≤ (|Δa1| |b1| + |Δa2| |b2|) |s1 a1 + s2 a2| with the dual vectors b.
-        let (g11, g12, g22) = (state.a1.norm_squared(), state.a1.dot(&state.a2), state.a2.norm_squared());
-        let reach_growth = (g11.max(g22) / (g11 * g22 - g12 * g12)).sqrt();
+        let guard = StepBound::new(self.model, &x.state);
         let energy = contact + self.target.energy(&x.state, &x.corner);
-        Derivatives { energy, gradient, hessian, guard: Guard { pairs, reach_growth } }
+        Derivatives { energy, gradient, hessian, guard }
     }
 
-    /// No two circles can meet on the way: along the step every point of a pair moves, relative to the other ring, by at
-    /// most |relative motion of the reference points| + reach_i |ω_i| + reach_j |ω_j|, which stays below 0.9 × the
-    /// pair's core distance. Pairs farther than the margin are covered together.
-    fn largest_step(&self, guard: &Guard, step: &[f64]) -> f64 {
-        let model = self.model;
+    fn largest_step(&self, guard: &StepBound, step: &[f64]) -> f64 {
         let lattice = self.lattice_index();
-        let (da1, da2) = (block(step, lattice), block(step, lattice + 3));
-        let swing = |e: usize| model.elements[e].reach * block(step, 6 * e + 3).norm();
-        let mut largest: f64 = (0..model.elements.len()).map(|e| block(step, 6 * e).norm() + swing(e)).fold(0.0, f64::max);
-        largest = largest.max(da1.norm()).max(da2.norm());
-        let mut fraction: f64 = 1.0;
-        let mut limit = |motion: f64, allowed: f64| {
-            if motion * fraction > allowed {
-                fraction = allowed / motion;
-            }
-        };
-        limit(largest, STEP_CAP * model.largest_radius);
-        let margin = GUARD_MARGIN * model.largest_radius;
-        let widest = model.elements.iter().map(|e| e.reach).fold(0.0, f64::max);
-        let growth = (da1.norm() + da2.norm()) * guard.reach_growth;
-        // A pair beyond the margin: distance at least L − 2 widest, motion at most 2 largest + growth (L + cell).
-        let origin = model.start.poses[0].position;
-        let cell = 2.0 * model.start.poses.iter().map(|p| (p.position - origin).norm()).fold(0.0, f64::max);
-        limit(2.0 * largest + growth * (2.0 * widest + margin + cell), CROSSING_MARGIN * margin);
-        limit(growth, 0.5);
-        for (pair, distance) in &guard.pairs {
-            let (i, j) = (model.rings[pair.ring_a].element, model.rings[pair.ring_b].element);
-            let (p, q) = (f64::from(pair.shift[0]), f64::from(pair.shift[1]));
-            let relative = block(step, 6 * j) - block(step, 6 * i) + da1 * p + da2 * q;
-            limit(relative.norm() + swing(i) + swing(j), CROSSING_MARGIN * distance);
-        }
-        fraction
+        let elements = (0..self.model.elements.len()).map(|e| (block(step, 6 * e), block(step, 6 * e + 3))).collect();
+        let motion = Motion { elements, lattice: [block(step, lattice), block(step, lattice + 3)] };
+        guard.largest_fraction(self.model, &motion, STEP_CAP * self.model.largest_radius)
     }
 
     fn moved(&self, x: &Configuration, step: &[f64], fraction: f64) -> Configuration {

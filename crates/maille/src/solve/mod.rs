@@ -1,4 +1,7 @@
 //! Solvers' outer loops. They know no ring: they see an objective.
 
 pub mod eigen;
+pub mod kkt;
 pub mod newton;
+pub mod qp;
+pub mod sqp;

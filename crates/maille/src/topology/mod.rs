@@ -1,5 +1,7 @@
 //! Which rings are near, which are linked, and in which directions chains of links bind the sheet.
 
+pub mod crossing;
+
 use crate::{
     lattice::{Shift, shifts_within},
     model::Model,

@@ -1,0 +1,100 @@
+//! Linking numbers and gaps: the closed form against the Gauss integral, signs, symmetry; scores of tori.
+
+mod common;
+
+use std::f64::consts::{PI, TAU};
+
+use common::{FAMILIES, circle, oracle, rng, sample_angles, uniform};
+use maille_geometry::{Circle, Torus, circle_distance_minima, interlocks, linking_number, torus_score, torus_scores};
+use rand::RngExt;
+
+/// `1/4π ∮∮ (A − B)·(dA × dB)/|A − B|³` by the trapezium rule, which converges exponentially for circles apart.
+fn gauss_integral(a: &Circle, b: &Circle, count: usize) -> f64 {
+    let along = |c: &Circle| -> Vec<_> {
+        let step = TAU / count as f64;
+        let tangent = |t: f64| (c.point(t + 0.5 * PI) - c.center) * step;
+        (0..count).map(|i| (c.point(i as f64 * step), tangent(i as f64 * step))).collect()
+    };
+    let (on_a, on_b) = (along(a), along(b));
+    let pairs = on_a.iter().flat_map(|p| on_b.iter().map(move |q| (p, q)));
+    let sum: f64 = pairs.map(|(p, q)| (p.0 - q.0).dot(&p.1.cross(&q.1)) / (p.0 - q.0).norm().powi(3)).sum();
+    sum / (2.0 * TAU)
+}
+
+#[test]
+fn equals_the_gauss_integral() {
+    let mut rng = rng(21);
+    let mut seen = [0; 3];
+    while seen.iter().sum::<usize>() < 600 {
+        let (a, b) = uniform(&mut rng);
+        if circle_distance_minima(&a, &b).closest().distance < 0.2 {
+            continue;
+        }
+        let (exact, integral) = (linking_number(&a, &b), gauss_integral(&a, &b, 160));
+        assert!((integral - f64::from(exact)).abs() < 1e-3, "{exact} {integral} {a:?} {b:?}");
+        seen[(exact + 1) as usize] += 1;
+    }
+    assert!(seen.iter().all(|&n| n > 15), "{seen:?}");
+}
+
+#[test]
+fn is_symmetric_and_turns_with_the_normals() {
+    let mut rng = rng(22);
+    let mut linked = 0;
+    for index in 0..60_000 {
+        let (a, b) = FAMILIES[[0, 1, 2, 4][index % 4]].1(&mut rng);
+        let number = linking_number(&a, &b);
+        let reversed = |c: &Circle| Circle { normal: -c.normal, ..*c };
+        assert_eq!(number, linking_number(&b, &a), "{a:?} {b:?}");
+        assert_eq!(number, -linking_number(&reversed(&a), &b));
+        assert_eq!(number, -linking_number(&a, &reversed(&b)));
+        // Definition 3.4.2.
+        assert_eq!(interlocks(&a, &b), number.abs() == 1);
+        assert_eq!(interlocks(&b, &a), number.abs() == 1);
+        linked += usize::from(number != 0);
+    }
+    assert!(linked > 15_000, "{linked}");
+}
+
+#[test]
+fn convention_and_pairs_that_meet() {
+    let base = circle([0.0; 3], [0.0, 0.0, 1.0], 1.0);
+    // About −e_y, counter-clockwise: up through the plane of the base at x = 1.5, down at x = 0.5; about e_y reversed.
+    assert_eq!(linking_number(&base, &circle([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], 0.5)), 1);
+    assert_eq!(linking_number(&base, &circle([1.0, 0.0, 0.0], [0.0, -1.0, 0.0], 0.5)), -1);
+    for (name, other) in [
+        ("coplanar, crossing", circle([1.0, 0.0, 0.0], [0.0, 0.0, 1.0], 0.5)),
+        ("coplanar, reversed", circle([1.0, 0.0, 0.0], [0.0, 0.0, -1.0], 0.5)),
+        ("coincident", base),
+        ("coaxial", circle([0.0, 0.0, 0.5], [0.0, 0.0, 1.0], 1.0)),
+        ("standing, meeting", circle([1.5, 0.0, 0.0], [0.0, 1.0, 0.0], 0.5)),
+        ("standing on the plane", circle([1.0, 0.0, 0.5], [0.0, 1.0, 0.0], 0.5)),
+        ("through the disc twice", circle([0.0; 3], [0.0, 1.0, 0.0], 0.5)),
+    ] {
+        assert_eq!(linking_number(&base, &other), 0, "{name}");
+        assert_eq!(linking_number(&other, &base), 0, "{name}");
+        assert!(!interlocks(&base, &other), "{name}");
+    }
+}
+
+#[test]
+fn scores_are_gaps() {
+    let mut rng = rng(23);
+    let angles = sample_angles(720);
+    for _ in 0..3_000 {
+        let (a, b) = uniform(&mut rng);
+        let mut torus = |circle| Torus { circle, minor_radius: rng.random_range(0.01..0.15) };
+        let (p, q) = (torus(a), torus(b));
+        let (minima, gaps) = torus_scores(&p, &q);
+        let gaps: Vec<f64> = gaps.collect();
+        assert_eq!(gaps.len(), minima.as_slice().len());
+        assert_eq!(gaps[0], torus_score(&p, &q));
+        assert!(gaps.is_sorted());
+        let mut sampled: Vec<f64> = oracle(&a, &b, &angles).iter().map(|o| o.distance).collect();
+        sampled.sort_by(f64::total_cmp);
+        assert_eq!(gaps.len(), sampled.len());
+        for (gap, distance) in gaps.iter().zip(sampled) {
+            assert!((gap + p.minor_radius + q.minor_radius - distance).abs() < 1e-12);
+        }
+    }
+}

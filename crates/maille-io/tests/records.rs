@@ -1,0 +1,253 @@
+//! Records: tables, states, and the folder's manners.
+
+use maille::design::Design;
+use maille::record::{LimitRow, PoseRecord, StateRecord, Status};
+use maille_io::record::{
+    Counters, LIMIT_COLUMNS, Record, RecordError, RecordFolder, input_hash, read_limits, read_run, read_states,
+    write_limits, write_states,
+};
+use serde_json::{Value, json};
+use std::fs;
+use std::path::Path;
+
+fn design() -> Design {
+    maille_io::read_design("1.1", maille_io::builtin("1.1").unwrap()).unwrap()
+}
+
+fn row(direction_deg: f64, status: Status) -> LimitRow {
+    let l1 = matches!(status, Status::ThresholdReached | Status::Global).then_some(0.1 + 0.2);
+    LimitRow {
+        design: "1.10".into(),
+        minor_radius: Some(0.1),
+        direction_deg,
+        l2: -0.125,
+        method: "energy".into(),
+        cell: "1,0;-1,2".into(),
+        status,
+        l1,
+        lambda1: l1.map(|x| x * std::f64::consts::PI),
+        lambda2: Some(1e-300),
+        stretch1: Some(f64::MIN_POSITIVE),
+        stretch2: Some(1e21),
+        max_overlap: Some(0.0),
+        min_gap: Some(-1.0 / 3.0),
+        iterations: 123,
+        runs: 4,
+        wall_s: 0.25,
+    }
+}
+
+fn state(direction_deg: f64, status: Status) -> StateRecord {
+    let pose =
+        PoseRecord { element: "flat".into(), position: [0.1, 1.0 / 3.0, -0.0], rotation: [1.0, 0.0, 0.0, 1e-17] };
+    StateRecord {
+        direction_deg,
+        l2: -0.125,
+        status,
+        a1: [3.6, 0.0, 0.0],
+        a2: [0.0, 2.1875, 0.0],
+        deformation_gradient: [[1.44, 0.0], [0.0, 0.875]],
+        poses: vec![pose],
+        residual: Some(1e-4),
+        note: None,
+    }
+}
+
+fn two() -> (Vec<LimitRow>, Vec<StateRecord>) {
+    [(0.0, Status::ThresholdReached), (15.0, Status::L2NotReached)]
+        .map(|(d, s)| (row(d, s), state(d, s)))
+        .into_iter()
+        .unzip()
+}
+
+fn open(
+    path: &Path,
+    inputs: &Value,
+    overwrite: bool,
+) -> Result<(RecordFolder, Vec<LimitRow>, Vec<StateRecord>), RecordError> {
+    RecordFolder::open(path, &design(), inputs, "0.1.0", overwrite)
+}
+
+fn message(result: Result<impl Sized, RecordError>) -> String {
+    result.map(|_| ()).unwrap_err().to_string()
+}
+
+#[test]
+fn the_columns_are_the_fields_of_a_row_in_order() {
+    let json = serde_json::to_string(&row(0.0, Status::Global)).unwrap();
+    let places: Vec<_> =
+        LIMIT_COLUMNS.iter().map(|column| json.find(&format!("\"{column}\":")).expect(column)).collect();
+    assert!(places.is_sorted());
+    let Value::Object(fields) = serde_json::from_str(&json).unwrap() else { panic!() };
+    assert_eq!(fields.len(), LIMIT_COLUMNS.len());
+}
+
+#[test]
+fn tables_read_back_bit_for_bit() {
+    let rows: Vec<_> = Status::ALL.iter().enumerate().map(|(i, &status)| row(15.0 * i as f64, status)).collect();
+    let text = write_limits(&rows).unwrap();
+    assert_eq!(read_limits("limits.csv", &text).unwrap(), rows);
+    let first = text.lines().nth(1).unwrap();
+    assert!(first.starts_with("\"1.10\",0.1,0.0,-0.125,energy,\"1,0;-1,2\",global,0.30000000000000004,"), "{first}");
+    let unearned = text.lines().nth(5).unwrap();
+    assert!(unearned.contains("l2-unreachable,,,1e-300"), "{unearned}");
+    assert_eq!(read_limits("limits.csv", &write_limits(&[]).unwrap()).unwrap(), []);
+}
+
+#[test]
+fn states_read_back_bit_for_bit() {
+    let states = two().1;
+    assert_eq!(read_states("states.jsonl", &write_states(&states).unwrap()).unwrap(), states);
+}
+
+#[test]
+fn columns_of_a_later_version_are_ignored() {
+    let rows = two().0;
+    let text = write_limits(&rows).unwrap();
+    let wider: String = text
+        .lines()
+        .enumerate()
+        .map(|(i, line)| format!("{line},{}\n", if i == 0 { "bound" } else { "0.5" }))
+        .collect();
+    assert_eq!(read_limits("limits.csv", &wider).unwrap(), rows);
+}
+
+#[test]
+fn a_damaged_table_is_named_by_line_column_and_value() {
+    let text = write_limits(&two().0).unwrap();
+    let broken = |from: &str, to: &str| message(read_limits("out/limits.csv", &text.replacen(from, to, 1)));
+    assert_eq!(broken("0.30000000000000004", "0.3o"), "out/limits.csv:2: column l1: \"0.3o\" is not a number");
+    assert_eq!(broken(",15.0,", ",NaN,"), "out/limits.csv:3: column direction_deg: \"NaN\" is not finite");
+    assert_eq!(broken("l2-not-reached", "lost"), "out/limits.csv:3: column status: \"lost\" is no status");
+    assert_eq!(broken(",123,", ",1.5,"), "out/limits.csv:2: column iterations: \"1.5\" is not a whole number");
+    assert_eq!(
+        broken("lambda1,lambda2", "lambda2,lambda1"),
+        "out/limits.csv:1: column 9 is \"lambda2\", expected \"lambda1\""
+    );
+    assert_eq!(broken(",0.25\n", "\n"), "out/limits.csv:2: 16 columns, expected 17");
+    assert_eq!(
+        message(read_limits("limits.csv", &text[..text.len() - 3])),
+        "limits.csv:3: the file ends within this line"
+    );
+    assert_eq!(message(read_limits("limits.csv", "")), "limits.csv:1: the header is missing");
+}
+
+#[test]
+fn a_damaged_line_of_states_is_named() {
+    let text = write_states(&two().1).unwrap();
+    let broken = text.replacen("\"l2\":-0.125,\"status\":\"l2-not-reached\"", "\"l2\":-0.125,\"status\":\"lost\"", 1);
+    let found = message(read_states("states.jsonl", &broken));
+    assert!(found.starts_with("states.jsonl:2: unknown variant `lost`"), "{found}");
+    let found = message(read_states("states.jsonl", &text[..text.len() - 10]));
+    assert_eq!(found, "states.jsonl:2: the file ends within this line");
+}
+
+#[test]
+fn numbers_that_json_cannot_hold_are_refused() {
+    let mut bad = row(30.0, Status::ThresholdReached);
+    bad.lambda1 = Some(f64::NAN);
+    assert_eq!(message(write_limits(&[bad])), "direction 30°, l2 -0.125: lambda1 is NaN");
+    let mut bad = state(30.0, Status::NotConverged);
+    bad.poses[0].position[1] = f64::INFINITY;
+    assert_eq!(message(write_states(&[bad])), "direction 30°, l2 -0.125: position is inf");
+}
+
+#[test]
+fn the_hash_sees_every_input_and_no_order() {
+    let a = json!({ "tau": 0.01, "step": 0.02, "list": [1.0, 2.0] });
+    let b = json!({ "list": [1.0, 2.0], "step": 0.02, "tau": 0.01 });
+    assert_eq!(input_hash(&design(), &a), input_hash(&design(), &b));
+    assert_eq!(input_hash(&design(), &a).len(), 64);
+    assert_ne!(input_hash(&design(), &a), input_hash(&design(), &json!({ "tau": 0.01 })));
+    assert_ne!(input_hash(&design(), &a), input_hash(&design().with_minor_radius(0.05), &a));
+}
+
+#[test]
+fn a_run_is_continued_with_the_same_inputs_only() {
+    let dir = tempfile::tempdir().unwrap();
+    let out = dir.path().join("new/folder");
+    let inputs = json!({ "tau": 0.01, "directions": [0.0, 15.0] });
+    let (mut rows, mut states) = two();
+    let (mut folder, found, _) = open(&out, &inputs, false).unwrap();
+    assert!(found.is_empty());
+    folder.write(&rows, &states).unwrap();
+    folder.write_polar("<svg/>", b"png").unwrap();
+
+    let (_, found, found_states) = open(&out, &inputs, false).unwrap();
+    assert_eq!((&found, &found_states), (&rows, &states));
+    let record = Record::read(&out).unwrap();
+    assert_eq!(record.run.counters, Counters::of(&rows));
+    assert_eq!(record.run.counters.iterations, 246);
+    assert_eq!(record.run, read_run("run.json", &fs::read_to_string(out.join("run.json")).unwrap()).unwrap());
+
+    // Interrupted rows, and rows that lost their state, are computed again.
+    rows.push(row(30.0, Status::Interrupted));
+    states.push(state(30.0, Status::Interrupted));
+    rows.push(row(45.0, Status::ThresholdReached));
+    folder.write(&rows, &states).unwrap();
+    let (_, found, _) = open(&out, &inputs, false).unwrap();
+    assert_eq!(found, rows[..2]);
+
+    let other = json!({ "tau": 0.02, "directions": [0.0, 15.0] });
+    let found = message(open(&out, &other, false));
+    assert!(found.ends_with("holds a record of other inputs: parameters.tau is 0.01 there, 0.02 here"), "{found}");
+    let found = message(RecordFolder::open(&out, &design(), &inputs, "0.2.0", false));
+    assert!(found.ends_with("computed by version 0.1.0, this is 0.2.0"), "{found}");
+    assert_eq!(Record::read(&out).unwrap().rows.len(), 4);
+
+    fs::write(out.join("notes.txt"), "mine").unwrap();
+    let (_, found, _) = open(&out, &other, true).unwrap();
+    assert!(found.is_empty());
+    let mut names: Vec<_> =
+        fs::read_dir(&out).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    assert_eq!(names, ["notes.txt", "run.json"]);
+}
+
+#[test]
+fn the_same_inputs_start_afresh_when_asked_to() {
+    let dir = tempfile::tempdir().unwrap();
+    let (rows, states) = two();
+    open(dir.path(), &json!({}), false).unwrap().0.write(&rows, &states).unwrap();
+    assert!(open(dir.path(), &json!({}), true).unwrap().1.is_empty());
+    assert!(Record::read(dir.path()).unwrap().rows.is_empty());
+}
+
+#[test]
+fn files_of_others_are_never_replaced() {
+    for overwrite in [false, true] {
+        let dir = tempfile::tempdir().unwrap();
+        fs::write(dir.path().join("run.json"), "{ \"mine\": true }").unwrap();
+        fs::write(dir.path().join("limits.csv"), "mine").unwrap();
+        assert!(open(dir.path(), &json!({}), overwrite).is_err());
+        assert_eq!(fs::read_to_string(dir.path().join("limits.csv")).unwrap(), "mine");
+
+        fs::remove_file(dir.path().join("run.json")).unwrap();
+        let found = message(open(dir.path(), &json!({}), overwrite));
+        assert!(found.ends_with("is not empty and holds no record of maille (found limits.csv)"), "{found}");
+
+        let file = dir.path().join("limits.csv");
+        assert!(matches!(open(&file, &json!({}), overwrite), Err(RecordError::Io { action: "create", .. })));
+    }
+}
+
+#[test]
+fn a_damaged_record_is_reported_and_can_be_replaced() {
+    let (rows, states) = two();
+    for (name, keep) in [("limits.csv", 250), ("states.jsonl", 300), ("run.json", 150)] {
+        let dir = tempfile::tempdir().unwrap();
+        open(dir.path(), &json!({}), false).unwrap().0.write(&rows, &states).unwrap();
+        let path = dir.path().join(name);
+        let text = fs::read_to_string(&path).unwrap();
+        fs::write(&path, &text[..keep]).unwrap();
+        let found = message(open(dir.path(), &json!({}), false));
+        assert!(found.contains(&format!("{name}:")), "{found}");
+        assert!(open(dir.path(), &json!({}), true).is_ok(), "{name}");
+    }
+}
+
+#[test]
+fn a_record_of_another_schema_is_refused() {
+    let found = message(read_run("run.json", "{ \"schema\": 2, \"new\": true }"));
+    assert_eq!(found, "run.json:1: schema 2; this program reads schema 1");
+}

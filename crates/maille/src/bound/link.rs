@@ -1,0 +1,415 @@
+//! The link bound: all links at once, with the poses relaxed to a convex set.
+//!
+//! **Program.** Maximise l1 over centres c_i and matrices Q_i in conv SO(3), subject to, for every tie k,
+//!
+//! |g_k| ≤ L_k,  g_k = Σ_m w_m (c_m + Q_m o_m + F s_m),  Σ_m w_m = 0,  F = (1 + l1) D Dᵀ + (1 + l2) D⊥ D⊥ᵀ,
+//!
+//! the sum being over rings m of the tie, with their elements' c_m and Q_m, offsets o_m and shifts s_m. Each tie is an
+//! inequality that every state obeys:
+//!
+//! - A **link** of rings a, b: w = (1, −1), L = R_a + R_b − r_a − r_b (lemma of [`crate::bound`]).
+//! - A **strand pair**: rings a, a' of different elements, both linked with b. They cross b's disc at points p, p' with
+//!   |p − c_b| ≤ ρ = R_b − r_b − r_a, |p' − c_b| ≤ ρ' alike, and |p − p'| ≥ r_a + r_a', since tori do not overlap. For
+//!   m = (p + p')/2: |m − c_b|² = |p − c_b|²/2 + |p' − c_b|²/2 − |p − p'|²/4. As |c_a − p| ≤ R_a, this gives
+//!   w = (½, ½, −1) for (a, a', b) and L = √(ρ²/2 + ρ'²/2 − (r_a + r_a')²/4) + (R_a + R_a')/2: less than the mean of
+//!   both links, because two strands do not fit in one place. It matters where rings run in parallel (doubled rings).
+//!
+//! conv SO(3) is {Q: I + N(Q) ⪰ 0}, N(Q) being the symmetric 4×4 matrix with uᵀN(Q)u = ⟨Q, R(u)⟩ for the rotation R(u)
+//! of a unit quaternion u (Saunderson, Parrilo, Willsky, *Semidefinite descriptions of the convex hull of rotation
+//! matrices*, 2015). Elements whose rings are concentric need no Q: the centre of their rings is their reference.
+//!
+//! **Proof.** What is reported is no solver's primal value, but a value that any forces y_k, one for each tie, prove: let them
+//! balance on every element, Σ w_m y_k = 0. Then Σ_k y_k·g_k has no centre in it, and with P = Σ (y_k·D)(S_k·D),
+//! T = Σ (y_k·D⊥)(S_k·D⊥), S_k = Σ w_m s_m, M_i = Σ w_m y_k o_mᵀ over the rings m of element i,
+//!
+//! (1 + l1) P + (1 + l2) T + Σ_i ⟨Q_i, M_i⟩ = Σ_k y_k·g_k ≤ Σ_k |y_k| L_k,
+//!
+//! and ⟨Q, M⟩ ≥ −σ(−M) with the support function σ(M) = max ⟨Q, M⟩ over rotations, the largest eigenvalue of N(M). So
+//!
+//! 1 + l1 ≤ (Σ |y_k| L_k + Σ_i σ(−M_i) − (1 + l2) T)/P  for P > 0.
+//!
+//! Nothing is assumed of y but the balance, which a projection restores to rounding; what it leaves is charged with
+//! the largest distance that the links allow. A value below 0 proves that no state with l1 > −1 has this l2.
+
+use super::{
+    Bound, ChainBound,
+    cone::{Cone, ConeProgram, eigenvalues, pack},
+};
+use crate::{energy::target::direction, lattice::Shift, model::Model};
+use maille_geometry::Vec3;
+use nalgebra::{DMatrix, DVector, Matrix3, Matrix4};
+
+/// A ring in a tie.
+#[derive(Clone, Copy, Debug)]
+struct Term {
+    element: usize,
+    weight: f64,
+    /// Offset from the element's reference for this bound.
+    offset: Vec3,
+}
+
+/// |Σ w (c + Q o + F s)| ≤ length.
+#[derive(Clone, Debug)]
+struct Tie {
+    terms: Vec<Term>,
+    /// S = Σ w s in the reference lattice.
+    span: Vec3,
+    length: f64,
+}
+
+/// What the link bound found for one direction and one l2.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LinkSolution {
+    /// The bound that the forces prove; −1 or less: no state with l1 > −1 has this l2. Infinite where nothing is proved.
+    pub l1: f64,
+    /// What the solver reached from below, not quite feasible: the difference tells how well the program was solved.
+    pub primal_l1: f64,
+    /// Force in each of the model's links for a unit pull, in the state of the relaxation.
+    pub tension: Vec<f64>,
+    /// Iterations of the solver.
+    pub iterations: usize,
+}
+
+impl LinkSolution {
+    /// Whether it is proved that no state has this l2.
+    pub fn l2_unreachable(&self) -> bool {
+        self.l1 <= -1.0 - 1e-9
+    }
+}
+
+/// The link bound of one design.
+#[derive(Clone, Debug)]
+pub struct LinkBound {
+    ties: Vec<Tie>,
+    n_links: usize,
+    n_elements: usize,
+    /// First unknown of each element's centre; `None` for the one that is held, in every connected part of the sheet.
+    center: Vec<Option<usize>>,
+    /// First of the nine unknowns of Q, for elements that need it.
+    turn: Vec<Option<usize>>,
+    /// G and K, complete but for the column of 1 + l1, which depends on the direction.
+    template: ConeProgram,
+    chain: ChainBound,
+}
+
+impl LinkBound {
+    /// Prepares the program of `model`; its chain bound is used to charge rounding and to recognise free directions.
+    pub fn new(model: &Model, chain: &ChainBound) -> Self {
+        let references: Vec<Vec3> = model
+            .elements
+            .iter()
+            .map(|e| e.rings.clone().map(|r| model.rings[r].offset).sum::<Vec3>() / e.rings.len() as f64)
+            .collect();
+        let mut ties = links(model);
+        let n_links = ties.len();
+        ties.extend(strand_pairs(model));
+        let n_elements = model.elements.len();
+        let mut turned = vec![false; n_elements];
+        for tie in &mut ties {
+            for term in &mut tie.terms {
+                term.offset -= references[term.element];
+                turned[term.element] |= term.offset.amax() > 1e-12;
+            }
+        }
+        // Unknowns: 1 + l1, the centres but one in each connected part, the matrices.
+        let mut free = held_apart(n_elements, &ties);
+        let mut next = 1;
+        let mut take = |yes: bool, n: usize| {
+            let at = yes.then_some(next);
+            next += if yes { n } else { 0 };
+            at
+        };
+        let center: Vec<_> = free.drain(..).map(|yes| take(yes, 3)).collect();
+        let turn: Vec<_> = turned.into_iter().map(|yes| take(yes, 9)).collect();
+        let template = template(&ties, &center, &turn, next);
+        LinkBound { ties, n_links, n_elements, center, turn, template, chain: chain.clone() }
+    }
+
+    /// The bound of l1 along `direction_deg` with l2 held.
+    pub fn limit(&self, direction_deg: f64, l2: f64) -> LinkSolution {
+        let nothing = LinkSolution { l1: f64::INFINITY, primal_l1: f64::INFINITY, tension: vec![0.0; self.n_links], iterations: 0 };
+        let ceiling = match self.chain.limit(direction_deg, l2) {
+            Bound::Unbounded => return nothing,
+            Bound::Finite { l1, .. } => l1,
+            Bound::L2Unreachable { .. } => 0.0,
+        };
+        let along = direction(direction_deg).push(0.0);
+        let across = Vec3::new(-along.y, along.x, 0.0);
+        let query = Query { bound: self, along, across, l2, largest_stretch: (1.0 + ceiling).max(1.0 + l2) };
+        let mut program = self.template.clone();
+        for (k, tie) in self.ties.iter().enumerate() {
+            let pulled = along * tie.span.dot(&along);
+            let fixed = across * (tie.span.dot(&across) * (1.0 + l2));
+            for axis in 0..3 {
+                program.matrix[(4 * k + 1 + axis, 0)] = -pulled[axis];
+                program.offset[4 * k + 1 + axis] = fixed[axis];
+            }
+        }
+        let solution = program.solve(|z| query.prove(&query.forces(z)).is_some_and(|l1| l1 < -1.01));
+        let forces = query.forces(&solution.z);
+        let (l1, forces) = query.polished(&forces).unwrap_or((f64::INFINITY, forces));
+        let pull: f64 = query.pull(&forces);
+        LinkSolution {
+            l1,
+            primal_l1: solution.x[0] - 1.0,
+            tension: forces[..self.n_links].iter().map(|y| y.norm() / pull).collect(),
+            iterations: solution.iterations,
+        }
+    }
+}
+
+/// One direction and l2 of a bound.
+struct Query<'a> {
+    bound: &'a LinkBound,
+    along: Vec3,
+    across: Vec3,
+    l2: f64,
+    largest_stretch: f64,
+}
+
+impl Query<'_> {
+    /// Forces y of the multipliers z: (|y|, −y) in each cone.
+    fn forces(&self, z: &DVector<f64>) -> Vec<Vec3> {
+        (0..self.bound.ties.len()).map(|k| -Vec3::new(z[4 * k + 1], z[4 * k + 2], z[4 * k + 3])).collect()
+    }
+
+    /// P.
+    fn pull(&self, forces: &[Vec3]) -> f64 {
+        self.bound.ties.iter().zip(forces).map(|(tie, y)| y.dot(&self.along) * tie.span.dot(&self.along)).sum()
+    }
+
+    /// What is left of the balance on each element.
+    fn imbalance(&self, forces: &[Vec3]) -> Vec<Vec3> {
+        let mut out = vec![Vec3::zeros(); self.bound.n_elements];
+        for (tie, y) in self.bound.ties.iter().zip(forces) {
+            for term in &tie.terms {
+                out[term.element] += term.weight * y;
+            }
+        }
+        out
+    }
+
+    /// The l1 that these forces prove; `None` where they do not pull.
+    fn prove(&self, forces: &[Vec3]) -> Option<f64> {
+        let pull = self.pull(forces);
+        if !(pull > 0.0 && pull.is_finite()) {
+            return None;
+        }
+        let mut total = 0.0;
+        let mut moments = vec![Matrix3::zeros(); self.bound.n_elements];
+        let mut farthest = 0.0;
+        for (tie, y) in self.bound.ties.iter().zip(forces) {
+            total += y.norm() * tie.length - (1.0 + self.l2) * y.dot(&self.across) * tie.span.dot(&self.across);
+            farthest += tie.length + self.largest_stretch * tie.span.norm();
+            for term in &tie.terms {
+                moments[term.element] -= term.weight * y * term.offset.transpose();
+                farthest += term.offset.norm();
+            }
+        }
+        for (moment, turn) in moments.iter().zip(&self.bound.turn) {
+            if turn.is_some() {
+                total += eigenvalues(quaternion_form(moment)).into_iter().fold(f64::NEG_INFINITY, f64::max);
+            }
+        }
+        // Every centre is within `farthest` of the one that is held: along a path of ties each is used at most once.
+        let left: f64 = self.imbalance(forces).iter().map(|r| r.norm()).sum();
+        let l1 = (total + left * farthest) / pull - 1.0;
+        l1.is_finite().then_some(l1)
+    }
+
+    /// The best that forces near `forces` prove, with them.
+    ///
+    /// Slack ties keep a small force in an interior point. Without them the value is flat to first order in the rest, so
+    /// that half of the digits of y give all digits of the bound: cut at several levels, balance, and take the least.
+    fn polished(&self, forces: &[Vec3]) -> Option<(f64, Vec<Vec3>)> {
+        let most = forces.iter().map(|y| y.norm()).fold(0.0, f64::max);
+        let mut best: Option<(f64, Vec<Vec3>)> = None;
+        let mut kept_before = usize::MAX;
+        for cut in [0.0, 1e-10, 1e-8, 1e-6, 1e-5, 1e-4, 1e-3] {
+            let kept: Vec<bool> = forces.iter().map(|y| y.norm() > cut * most).collect();
+            let n_kept = kept.iter().filter(|k| **k).count();
+            if n_kept == kept_before {
+                continue;
+            }
+            kept_before = n_kept;
+            let balanced = self.balanced(forces, &kept);
+            if let Some(l1) = self.prove(&balanced)
+                && best.as_ref().is_none_or(|(least, _)| l1 < *least)
+            {
+                best = Some((l1, balanced));
+            }
+        }
+        best
+    }
+
+    /// The nearest balanced forces that vanish where `kept` is false: y − Bᵀ(B Bᵀ)⁺ B y.
+    ///
+    /// B Bᵀ is singular (a connected part moves freely); a small shift and a few rounds give the pseudo-inverse.
+    fn balanced(&self, forces: &[Vec3], kept: &[bool]) -> Vec<Vec3> {
+        let n = self.bound.n_elements;
+        let mut square = DMatrix::<f64>::identity(n, n) * 1e-6;
+        for (tie, _) in self.bound.ties.iter().zip(kept).filter(|(_, k)| **k) {
+            for a in &tie.terms {
+                for b in &tie.terms {
+                    square[(a.element, b.element)] += a.weight * b.weight;
+                }
+            }
+        }
+        let mut out: Vec<Vec3> = forces.iter().zip(kept).map(|(y, k)| if *k { *y } else { Vec3::zeros() }).collect();
+        let Some(factor) = square.cholesky() else { return out };
+        for _ in 0..4 {
+            let left = self.imbalance(&out);
+            let right = DMatrix::from_fn(n, 3, |i, axis| left[i][axis]);
+            let shift = factor.solve(&right);
+            for ((tie, y), _) in self.bound.ties.iter().zip(&mut out).zip(kept).filter(|(_, k)| **k) {
+                for term in &tie.terms {
+                    *y -= term.weight * Vec3::new(shift[(term.element, 0)], shift[(term.element, 1)], shift[(term.element, 2)]);
+                }
+            }
+        }
+        out
+    }
+}
+
+fn term(model: &Model, ring: usize, weight: f64) -> Term {
+    let ring = &model.rings[ring];
+    Term { element: ring.element, weight, offset: ring.offset }
+}
+
+fn links(model: &Model) -> Vec<Tie> {
+    model
+        .links
+        .iter()
+        .map(|link| {
+            let (a, b) = (link.pair.ring_a, link.pair.ring_b);
+            Tie {
+                terms: vec![term(model, a, 1.0), term(model, b, -1.0)],
+                span: -model.start.translation(link.pair.shift),
+                length: model.rings[a].major_radius + model.rings[b].major_radius - model.contact_distance(a, b),
+            }
+        })
+        .collect()
+}
+
+/// The strand pairs of every ring, as far as both strands may pull the same way.
+fn strand_pairs(model: &Model) -> Vec<Tie> {
+    let mut through: Vec<Vec<(usize, Shift)>> = vec![Vec::new(); model.rings.len()];
+    for link in &model.links {
+        let (a, b, [p, q]) = (link.pair.ring_a, link.pair.ring_b, link.pair.shift);
+        through[a].push((b, [p, q]));
+        through[b].push((a, [-p, -q]));
+    }
+    let mut out = Vec::new();
+    for (b, strands) in through.iter().enumerate() {
+        for (k, &(first, shift_1)) in strands.iter().enumerate() {
+            for &(second, shift_2) in &strands[..k] {
+                let (r1, r2, rb) = (&model.rings[first], &model.rings[second], &model.rings[b]);
+                if (r1.element, shift_1) == (r2.element, shift_2) {
+                    continue;
+                }
+                // Strands that lie far apart do not compete for a place; leaving them out is no error.
+                let (x1, x2) = (model.start.circle(model, first, shift_1), model.start.circle(model, second, shift_2));
+                if (x1.center - x2.center).norm() > 0.5 * (r1.major_radius + r2.major_radius) {
+                    continue;
+                }
+                let rho = [first, second].map(|a| rb.major_radius - model.contact_distance(a, b));
+                let apart = model.contact_distance(first, second);
+                let middle_sq = 0.5 * (rho[0] * rho[0] + rho[1] * rho[1]) - 0.25 * apart * apart;
+                out.push(Tie {
+                    terms: vec![term(model, first, 0.5), term(model, second, 0.5), term(model, b, -1.0)],
+                    span: 0.5 * (model.start.translation(shift_1) + model.start.translation(shift_2)),
+                    length: middle_sq.max(0.0).sqrt() + 0.5 * (r1.major_radius + r2.major_radius),
+                });
+            }
+        }
+    }
+    out
+}
+
+/// For each element whether its centre is an unknown: all but the first of every connected part.
+fn held_apart(n: usize, ties: &[Tie]) -> Vec<bool> {
+    let mut part: Vec<usize> = (0..n).collect();
+    for tie in ties {
+        for pair in tie.terms.windows(2) {
+            let (a, b) = (part[pair[0].element], part[pair[1].element]);
+            part.iter_mut().filter(|p| **p == a.max(b)).for_each(|p| *p = a.min(b));
+        }
+    }
+    (0..n).map(|i| part[i] != i).collect()
+}
+
+/// G, h and K without the column and the offsets that depend on the query.
+fn template(ties: &[Tie], center: &[Option<usize>], turn: &[Option<usize>], n: usize) -> ConeProgram {
+    let mut cones = vec![Cone::Norm; ties.len()];
+    cones.extend(turn.iter().flatten().map(|_| Cone::Positive));
+    let rows = cones.iter().map(|c| c.rows()).sum();
+    let mut program = ConeProgram {
+        cost: DVector::zeros(n),
+        matrix: DMatrix::zeros(rows, n),
+        offset: DVector::zeros(rows),
+        cones,
+    };
+    program.cost[0] = -1.0;
+    for (k, tie) in ties.iter().enumerate() {
+        program.offset[4 * k] = tie.length;
+        for term in &tie.terms {
+            for axis in 0..3 {
+                let row = 4 * k + 1 + axis;
+                if let Some(first) = center[term.element] {
+                    program.matrix[(row, first + axis)] -= term.weight;
+                }
+                if let Some(first) = turn[term.element] {
+                    for column in 0..3 {
+                        program.matrix[(row, first + 3 * axis + column)] -= term.weight * term.offset[column];
+                    }
+                }
+            }
+        }
+    }
+    for (k, first) in turn.iter().flatten().enumerate() {
+        let row = 4 * ties.len() + 10 * k;
+        program.offset.as_mut_slice()[row..row + 10].copy_from_slice(&pack(&Matrix4::identity()));
+        for (entry, column) in (*first..first + 9).enumerate() {
+            let mut unit = Matrix3::zeros();
+            unit[(entry / 3, entry % 3)] = 1.0;
+            for (m, value) in pack(&quaternion_form(&unit)).into_iter().enumerate() {
+                program.matrix[(row + m, column)] = -value;
+            }
+        }
+    }
+    program
+}
+
+/// N(M): uᵀN(M)u = ⟨M, R(u)⟩ for the rotation R(u) of the unit quaternion u = (w, x, y, z).
+fn quaternion_form(m: &Matrix3<f64>) -> Matrix4<f64> {
+    let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = std::array::from_fn(|i| std::array::from_fn(|j| m[(i, j)]));
+    Matrix4::new(
+        xx + yy + zz, zy - yz, xz - zx, yx - xy, //
+        zy - yz, xx - yy - zz, xy + yx, xz + zx, //
+        xz - zx, xy + yx, yy - xx - zz, yz + zy, //
+        yx - xy, xz + zx, yz + zy, zz - xx - yy,
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Quaternion, UnitQuaternion, Vector4};
+
+    #[test]
+    fn quaternion_form_is_the_rotation() {
+        let m = Matrix3::from_fn(|i, j| (2.0 * i as f64 + 3.1 * j as f64).sin());
+        let u = UnitQuaternion::new_normalize(Quaternion::new(0.3, -0.7, 0.2, 0.5));
+        let v = Vector4::new(u.w, u.i, u.j, u.k);
+        let direct = m.dot(u.to_rotation_matrix().matrix());
+        assert!((v.dot(&(quaternion_form(&m) * v)) - direct).abs() < 1e-14);
+    }
+
+    /// σ of a moment is reached by a rotation: s1 + s2 ± s3 by the sign of det M.
+    #[test]
+    fn support_of_the_rotations() {
+        let most = |m: Matrix3<f64>| eigenvalues(quaternion_form(&m)).into_iter().fold(f64::NEG_INFINITY, f64::max);
+        assert!((most(Matrix3::from_diagonal(&Vec3::new(3.0, 2.0, 1.0))) - 6.0).abs() < 1e-14);
+        assert!((most(Matrix3::from_diagonal(&Vec3::new(3.0, 2.0, -1.0))) - 4.0).abs() < 1e-14);
+    }
+}

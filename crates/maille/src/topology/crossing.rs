@@ -1,0 +1,77 @@
+//! How far a step may go so that no two core circles can meet on the way: what keeps the topology.
+//!
+//! Along a step every point of a pair of rings moves, relative to the other ring, by at most
+//! |relative motion of the reference points| + reach_i |ω_i| + reach_j |ω_j|. While that stays below the pair's core
+//! distance the circles cannot meet, so the isotopy class of the whole sheet is kept, which linking numbers alone do
+//! not ensure for elements of several rings.
+
+use super::{RingPair, close_pairs, core_distance};
+use crate::{model::Model, state::State};
+use maille_geometry::Vec3;
+
+/// A step: translation and rotation vector of every element, and the change of the lattice vectors.
+pub struct Motion {
+    /// (translation, rotation vector) of each element.
+    pub elements: Vec<(Vec3, Vec3)>,
+    /// Change of a1 and a2.
+    pub lattice: [Vec3; 2],
+}
+
+/// Core distances around a state, from which steps are bounded.
+pub struct StepBound {
+    pairs: Vec<(RingPair, f64)>,
+    reach_growth: f64,
+    spread: f64,
+}
+
+/// Pairs up to this many largest radii apart bound a step one by one.
+const MARGIN: f64 = 1.5;
+/// Largest fraction of a pair's core distance that a step may use.
+const SAFETY: f64 = 0.9;
+
+impl StepBound {
+    /// At `state`.
+    pub fn new(model: &Model, state: &State) -> Self {
+        let pairs = close_pairs(model, state, MARGIN * model.largest_radius)
+            .into_iter()
+            .map(|pair| (pair, core_distance(model, state, &pair)))
+            .collect();
+        // |Δa1 s1 + Δa2 s2| ≤ (|Δa1| |b1| + |Δa2| |b2|) |s1 a1 + s2 a2| with the dual vectors b of the lattice.
+        let (g11, g12, g22) = (state.a1.norm_squared(), state.a1.dot(&state.a2), state.a2.norm_squared());
+        let reach_growth = (g11.max(g22) / (g11 * g22 - g12 * g12)).sqrt();
+        let origin = state.poses[0].position;
+        let spread = 2.0 * state.poses.iter().map(|p| (p.position - origin).norm()).fold(0.0, f64::max);
+        StepBound { pairs, reach_growth, spread }
+    }
+
+    /// Largest fraction of `motion`, at most 1, in which no circles can meet and no element moves more than `cap`.
+    pub fn largest_fraction(&self, model: &Model, motion: &Motion, cap: f64) -> f64 {
+        let [da1, da2] = motion.lattice;
+        let swing = |e: usize| model.elements[e].reach * motion.elements[e].1.norm();
+        let mut largest = da1.norm().max(da2.norm());
+        for e in 0..model.elements.len() {
+            largest = largest.max(motion.elements[e].0.norm() + swing(e));
+        }
+        let mut fraction: f64 = 1.0;
+        let mut limit = |motion: f64, allowed: f64| {
+            if motion * fraction > allowed {
+                fraction = allowed / motion;
+            }
+        };
+        limit(largest, cap);
+        // A pair beyond the margin, reference points L apart: core distance ≥ L − 2 widest, motion ≤ 2 largest +
+        // growth (L + spread); enough at L = 2 widest + margin, because growth < 1 from there on.
+        let margin = MARGIN * model.largest_radius;
+        let widest = model.elements.iter().map(|e| e.reach).fold(0.0, f64::max);
+        let growth = (da1.norm() + da2.norm()) * self.reach_growth;
+        limit(2.0 * largest + growth * (2.0 * widest + margin + self.spread), SAFETY * margin);
+        limit(growth, 0.5);
+        for (pair, distance) in &self.pairs {
+            let (i, j) = (model.rings[pair.ring_a].element, model.rings[pair.ring_b].element);
+            let (p, q) = (f64::from(pair.shift[0]), f64::from(pair.shift[1]));
+            let relative = motion.elements[j].0 - motion.elements[i].0 + da1 * p + da2 * q;
+            limit(relative.norm() + swing(i) + swing(j), SAFETY * distance);
+        }
+        fraction
+    }
+}
