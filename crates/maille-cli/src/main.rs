@@ -1,2 +1,46 @@
-//! The `maille` program.
-fn main() {}
+//! The `maille` program: arguments, progress and exit codes. The mechanics are in the `maille` crate.
+
+mod characterize;
+mod designs;
+mod inspect;
+mod input;
+mod numbers;
+mod progress;
+
+use clap::{Parser, Subcommand};
+use miette::Result;
+use std::process::ExitCode;
+
+/// How far does a chainmail weave stretch before it locks?
+#[derive(Parser)]
+#[command(version, about, long_about = None, arg_required_else_help = true, after_help = "\
+Examples:
+  maille designs                          the built-in designs
+  maille inspect 1.1                      rings, links and gaps of one
+  maille characterize 1.1                 its limits, as a table and a polar plot in maille-out/1.1/
+  maille characterize my-weave.toml --directions 0:90:5 --l2 0
+
+Exit codes: 0 done, 1 the input or a file is wrong, 2 the arguments are wrong, 130 interrupted.")]
+struct Args {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Characterize(characterize::Args),
+    Inspect(inspect::Args),
+    Designs(designs::Args),
+}
+
+fn main() -> ExitCode {
+    let done: Result<ExitCode> = match Args::parse().command {
+        Command::Characterize(args) => characterize::run(&args),
+        Command::Inspect(args) => inspect::run(&args).map(|()| ExitCode::SUCCESS),
+        Command::Designs(args) => designs::run(&args).map(|()| ExitCode::SUCCESS),
+    };
+    done.unwrap_or_else(|report| {
+        eprintln!("{report:?}");
+        ExitCode::FAILURE
+    })
+}

@@ -5,14 +5,15 @@
 #[path = "../tests/common/mod.rs"]
 mod common;
 
-use common::{Family, Pair, degenerate, linked, near_degenerate, rng, symmetric, thin_gap, uniform};
+use common::{Family, Pair, circle, degenerate, direction, linked, near_degenerate, rng, symmetric, thin_gap, uniform};
 use divan::{Bencher, black_box, counter::ItemsCount};
 use maille_geometry::{
     circle_distance_minima, circle_distance_minima_polynomial, linking_number, point_circle_distance,
 };
+use rand::RngExt;
 
 const PAIRS: usize = 1_000;
-const FAMILIES: [&str; 6] = ["linked", "thin gap", "uniform", "symmetric", "near degenerate", "degenerate"];
+const FAMILIES: [&str; 7] = ["stacked", "linked", "thin gap", "uniform", "symmetric", "near degenerate", "degenerate"];
 
 fn main() {
     divan::main();
@@ -21,6 +22,7 @@ fn main() {
 fn pairs(name: &str) -> Vec<Pair> {
     let family: Family = match name {
         "linked" => linked,
+        "stacked" => stacked,
         "thin gap" => thin_gap,
         "symmetric" => symmetric,
         "near degenerate" => near_degenerate,
@@ -29,6 +31,15 @@ fn pairs(name: &str) -> Vec<Pair> {
     };
     let mut rng = rng(99);
     (0..PAIRS).map(|_| family(&mut rng)).collect()
+}
+
+/// Doubled rings in contact: coaxial up to 1e-9 … 1e-3.
+fn stacked(rng: &mut common::Rng) -> Pair {
+    let by = 10f64.powf(rng.random_range(-9.0..-3.0));
+    let mut other = circle([0.0, 0.0, 0.2], [0.0, 0.0, 1.0], 1.0);
+    other.center += *direction(rng) * by;
+    other.normal = nalgebra::UnitVector3::new_normalize(*other.normal + *direction(rng) * by);
+    (circle([0.0; 3], [0.0, 0.0, 1.0], 1.0), other)
 }
 
 fn time<T>(bencher: Bencher<'_, '_>, family: &str, f: impl Fn(&Pair) -> T + Sync) {

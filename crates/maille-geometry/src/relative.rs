@@ -61,6 +61,11 @@ impl Sample {
         self.z.hypot(self.radial)
     }
 
+    /// The unit vector `e/ρ` to the foot, the nearest point of the base; on its axis a representative.
+    pub fn foot(&self) -> [f64; 2] {
+        if self.rho > 0.0 { self.e.map(|e| e / self.rho) } else { [1.0, 0.0] }
+    }
+
     /// Does the distance change by no more than [`ROUNDING`] per radian here?
     pub fn is_level(&self) -> bool {
         self.slope.abs() <= ROUNDING * (self.distance() + ROUNDING)
@@ -167,22 +172,27 @@ impl<'a> Relative<'a> {
         }
     }
 
+    /// `g_θθ = |P′|² + (P − A)·P″`, the second derivative of half the squared distance from the foot `A`, held fixed.
+    /// Accurate on the axis of the base too, where `h″` is not; at minima it is not negative.
+    pub fn at_fixed_foot(&self, cos: f64, sin: f64, at: &Sample) -> f64 {
+        let (r, foot) = (self.radius, at.foot());
+        let radial = at.radial * (foot[0] * self.tilt_cos * cos + foot[1] * sin);
+        r * (r - radial - at.z * self.tilt_sin * cos)
+    }
+
     /// The minimum at this angle of the moving circle, in the caller's lengths, the base being circle A.
     ///
     /// With `g(α, θ) = ½ |A(α) − P(θ)|²` and α the angle of the foot: `g_α = 0` by construction, `g_θ = h′`,
     /// `g_αα = R ρ`, `g_αθ = −A′·P′ = −R (e × e′)/ρ`, `g_θθ = h″ + g_αθ²/g_αα = |P′|² + (P − A)·P″`.
     pub fn minimum(&self, angle_rad: f64) -> Minimum {
         let (sin, cos) = angle_rad.sin_cos();
-        let Sample { z, rho, radial, e, slope, .. } = self.at(cos, sin);
-        let (r, c, s) = (self.radius, self.tilt_cos, self.tilt_sin);
+        let sample = self.at(cos, sin);
+        let Sample { z, rho, radial, slope, .. } = sample;
         let [x, y] = self.axes;
-        let foot = if rho > 0.0 { [e[0] / rho, e[1] / rho] } else { [1.0, 0.0] };
+        let foot = sample.foot();
         let base_direction = x * foot[0] + y * foot[1];
         let moving_direction = self.steepest * cos + y * sin;
-        let e1 = [-r * c * sin, r * cos];
-        let to_moving = [radial * foot[0], radial * foot[1], z];
-        let second = -r * (to_moving[0] * c * cos + to_moving[1] * sin + to_moving[2] * s * cos);
-        let mixed = -self.base_radius * (foot[0] * e1[1] - foot[1] * e1[0]);
+        let mixed = -self.base_radius * self.radius * (foot[0] * cos + foot[1] * self.tilt_cos * sin);
         let unit_sq = self.scale * self.scale;
         Minimum {
             distance: self.scale * z.hypot(radial),
@@ -193,7 +203,7 @@ impl<'a> Relative<'a> {
             gradient: [0.0, slope * unit_sq],
             hessian: [
                 [self.base_radius * rho * unit_sq, mixed * unit_sq],
-                [mixed * unit_sq, (r * r + second) * unit_sq],
+                [mixed * unit_sq, self.at_fixed_foot(cos, sin, &sample) * unit_sq],
             ],
         }
     }

@@ -269,8 +269,10 @@ impl Search<'_> {
         // One bracket where there is one minimum: the halves share the centre's sign.
         let mut add = |bracket| {
             let angle_rad = refine(self.pair, bracket, sample, interval.center_rad);
-            // A kink on the axis can look like a minimum, by rounding: not in h″.
-            if self.pair.at_angle(angle_rad).curvature >= -ROUNDING {
+            // A kink on the axis can look like a minimum, by rounding: not in the second derivatives.
+            let Direction { cos, sin } = Direction::at(angle_rad);
+            let root = self.pair.at(cos, sin);
+            if root.curvature >= -ROUNDING && self.pair.at_fixed_foot(cos, sin, &root) >= -ROUNDING {
                 angles.add(self.pair, angle_rad);
             }
         };

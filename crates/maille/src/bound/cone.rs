@@ -95,7 +95,8 @@ const TOLERANCE: f64 = 1e-13;
 const STEP: f64 = 0.99;
 
 impl ConeProgram {
-    /// Solves; `stop` is shown every multiplier z and ends the iteration where it returns true.
+    /// Solves. `stop` is shown every multiplier z and ends the iteration, with this iterate as the answer, where it is
+    /// true: an infeasible program shows itself there, its z growing along a certificate.
     pub fn solve(&self, mut stop: impl FnMut(&DVector<f64>) -> bool) -> ConeSolution {
         let unit = self.unit();
         let mut now = ConeSolution {
@@ -119,10 +120,13 @@ impl ConeProgram {
             if now.residual < best.residual {
                 best = now.clone();
             }
-            if now.residual < TOLERANCE || now.residual > 1e4 * best.residual || stop(&now.z) {
+            if stop(&now.z) {
+                return now;
+            }
+            if now.residual < TOLERANCE {
                 break;
             }
-            let Some(scaling) = self.scaling(&s, &now.z) else { break };
+            let Some(scaling) = self.scaling(&s, &now.z) else { if std::env::var("DBG").is_ok() { eprintln!("scaling failed {}", now.residual);} break };
             let Some(newton) = Newton::new(self, &scaling) else { break };
             let mu = gap / degree;
             // Predictor: straight to λ ∘ λ = 0.
@@ -136,6 +140,7 @@ impl ConeProgram {
             let target = target - self.product(&ds, &dz) + &unit * (centering * mu);
             let (dx, ds, dz) = newton.direction(&(&dual_rest * rest), &(&primal_rest * rest), &target);
             let step = (STEP * self.reach(lambda, &ds).min(self.reach(lambda, &dz))).min(1.0);
+            if std::env::var("DBG").is_ok() { eprintln!("it {iteration} res {:.1e} d {:.1e} p {:.1e} gap {gap:.1e} step {step:.3} sigma {centering:.1e}", now.residual, dual_rest.norm(), primal_rest.norm()); }
             if !step.is_finite() || step < 1e-9 {
                 break;
             }

@@ -83,8 +83,6 @@ pub struct LinkBound {
     ties: Vec<Tie>,
     n_links: usize,
     n_elements: usize,
-    /// First unknown of each element's centre; `None` for the one that is held, in every connected part of the sheet.
-    center: Vec<Option<usize>>,
     /// First of the nine unknowns of Q, for elements that need it.
     turn: Vec<Option<usize>>,
     /// G and K, complete but for the column of 1 + l1, which depends on the direction.
@@ -112,17 +110,17 @@ impl LinkBound {
             }
         }
         // Unknowns: 1 + l1, the centres but one in each connected part, the matrices.
-        let mut free = held_apart(n_elements, &ties);
+        let free = held_apart(n_elements, &ties);
         let mut next = 1;
         let mut take = |yes: bool, n: usize| {
             let at = yes.then_some(next);
             next += if yes { n } else { 0 };
             at
         };
-        let center: Vec<_> = free.drain(..).map(|yes| take(yes, 3)).collect();
+        let center: Vec<_> = free.into_iter().map(|yes| take(yes, 3)).collect();
         let turn: Vec<_> = turned.into_iter().map(|yes| take(yes, 9)).collect();
         let template = template(&ties, &center, &turn, next);
-        LinkBound { ties, n_links, n_elements, center, turn, template, chain: chain.clone() }
+        LinkBound { ties, n_links, n_elements, turn, template, chain: chain.clone() }
     }
 
     /// The bound of l1 along `direction_deg` with l2 held.

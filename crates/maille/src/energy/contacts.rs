@@ -9,9 +9,11 @@ use crate::{
 };
 use faer::Mat;
 use maille_geometry::{circle_distance_minima, circle_distance_minima_polynomial};
+use serde::Serialize;
 
 /// Which way the minima of the circle–circle distance are found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum MinimaMethod {
     /// Complete enumeration.
     Enumeration,

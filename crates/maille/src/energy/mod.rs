@@ -17,9 +17,11 @@ use maille_geometry::Vec3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use target::Target;
+use serde::Serialize;
 
 /// How the Hessian is found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum HessianMethod {
     /// From formulas.
     Analytic,

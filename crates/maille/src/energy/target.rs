@@ -6,9 +6,11 @@
 use crate::{model::Model, state::State};
 use maille_geometry::Vec3;
 use nalgebra::{Matrix2, Vector2};
+use serde::Serialize;
 
 /// How a deformation is imposed and judged.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Protocol {
     /// Energy and threshold on F − F_target, the fourth corner eliminated.
     Strain,

@@ -95,6 +95,33 @@ pub fn links_kept(model: &Model, state: &State) -> bool {
     links(model, state, &close_pairs(model, state, 0.0)) == model.links
 }
 
+/// An element linked to another, with the linking numbers of the linked ring pairs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Neighbour {
+    /// The other element.
+    pub element: usize,
+    /// The cell that it is in.
+    pub shift: Shift,
+    /// Signed linking numbers of all linked pairs of rings of the two.
+    pub numbers: Vec<i32>,
+}
+
+/// The interlocking neighbours (Definition 3.4.1) of one element of the main cell, sorted by element and cell.
+pub fn neighbours(model: &Model, element: usize) -> Vec<Neighbour> {
+    let mut found = std::collections::BTreeMap::<(usize, Shift), Vec<i32>>::new();
+    for link in &model.links {
+        let (i, j) = (model.rings[link.pair.ring_a].element, model.rings[link.pair.ring_b].element);
+        let [p, q] = link.pair.shift;
+        if i == element {
+            found.entry((j, [p, q])).or_default().push(link.number);
+        }
+        if j == element {
+            found.entry((i, [-p, -q])).or_default().push(link.number);
+        }
+    }
+    found.into_iter().map(|((element, shift), numbers)| Neighbour { element, shift, numbers }).collect()
+}
+
 /// How the links bind the sheet: generators of the group of lattice vectors that chains of links join, for every
 /// connected component of the periodic link graph (the elements are its nodes, the links its edges with shifts).
 ///

@@ -1,0 +1,52 @@
+//! Progress on standard error: a bar on a terminal, plain lines elsewhere.
+
+use indicatif::{ProgressBar, ProgressStyle};
+use std::{
+    io::IsTerminal,
+    sync::Mutex,
+    time::{Duration, Instant},
+};
+
+/// Progress of a number of limits.
+pub struct Progress {
+    bar: ProgressBar,
+    total: u64,
+    plain: Option<Mutex<(u64, Instant)>>,
+}
+
+/// Time between plain lines.
+const PLAIN_INTERVAL: Duration = Duration::from_secs(5);
+
+impl Progress {
+    /// Starts at 0 of `total`.
+    pub fn new(total: u64, quiet: bool) -> Progress {
+        let terminal = std::io::stderr().is_terminal();
+        let bar = if quiet || !terminal { ProgressBar::hidden() } else { ProgressBar::new(total) };
+        let style = "{bar:30} {pos} of {len} limits, {eta} left  {msg}";
+        bar.set_style(ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar()));
+        if !quiet && terminal {
+            bar.enable_steady_tick(Duration::from_millis(200));
+        }
+        let plain = (!quiet && !terminal).then(|| Mutex::new((0, Instant::now())));
+        Progress { bar, total, plain }
+    }
+
+    /// One limit is done; `what` names it.
+    pub fn step(&self, what: String) {
+        if let Some(plain) = &self.plain {
+            let mut plain = plain.lock().unwrap_or_else(|e| e.into_inner());
+            plain.0 += 1;
+            if plain.1.elapsed() >= PLAIN_INTERVAL {
+                plain.1 = Instant::now();
+                eprintln!("{} of {} limits, last {what}", plain.0, self.total);
+            }
+        }
+        self.bar.set_message(what);
+        self.bar.inc(1);
+    }
+
+    /// Removes the bar.
+    pub fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+}
