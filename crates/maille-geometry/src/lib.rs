@@ -12,14 +12,15 @@
 //! | are two rings linked, and in which sense? | [`linking_number`], [`interlocks`] |
 //!
 //! The order of the modules is `circle ← relative ← bounds ← search ← minima ← polynomial, torus`, with `linking` beside
-//! them: `relative` reduces a pair to six numbers and evaluates the distance along one circle, `search` and `polynomial`
-//! find its minima in two independent ways.
+//! them: `relative` reduces a pair to six numbers and evaluates the distance along one circle, `bounds` proves
+//! what it can on an interval, `search` (on the angles of `grid`) and `polynomial` find the minima in two ways.
 //!
 //! Lengths carry the caller's unit, angles are radians. Radii must be positive and finite and normals of unit length;
 //! debug builds assert it in [`Circle::new`].
 
 mod bounds;
 mod circle;
+mod grid;
 mod linking;
 mod minima;
 mod polynomial;

@@ -10,7 +10,7 @@ use crate::{Circle, Vec3, search};
 /// minima have never been observed, over millions of pairs; there is no proof.
 pub const MAX_MINIMA: usize = 4;
 
-/// Special positions of a pair of circles, each met within [`ROUNDING`].
+/// Special positions of a pair of circles, each met within [`ROUNDING`](crate::ROUNDING).
 ///
 /// A report for people and tests: the answers do not branch on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,7 +82,7 @@ impl Minimum {
 pub struct Minima {
     /// The special position of the pair, if any.
     pub kind: PairKind,
-    /// The distance is constant along a whole circle, to [`ROUNDING`]: the minima are not isolated, and one
+    /// The distance is constant along a whole circle, to [`ROUNDING`](crate::ROUNDING): the minima are not isolated, and one
     /// representative is given.
     pub continuum: bool,
     found: [Minimum; MAX_MINIMA],
@@ -134,13 +134,16 @@ impl Minima {
 /// **Accuracy.** Distances to about `1e-15` of the pair's largest length, in every position, degenerate or near to
 /// it. Angles to about `1e-15` over the condition of the 2×2 Hessian.
 ///
-/// **Degenerate positions.** A distance that is constant to [`ROUNDING`] (coaxial, Villarceau and meridian pairs, see
+/// **Degenerate positions.** A distance that is constant to [`ROUNDING`](crate::ROUNDING) (coaxial, Villarceau and meridian pairs, see
 /// [`PairKind`]) gives one representative with `continuum` set. A point on the other circle's axis, where `h` has a
 /// kink, is a maximum or no extremum and never among the answers, except for equal circles' meridian, a continuum.
 /// Two minima closer than `2.4e-5` rad, which differ by rounding only, are one.
 ///
-/// **Cost.** One to two microseconds, no heap; pairs that are within about `1e-4` of a Villarceau pair but not one,
-/// some 20 µs.
+/// **Cost.** About two microseconds, no heap. Pairs that are close to an equidistant one without a common axis (within
+/// about `1e-3`), where nothing can be proven cheaply, some 100 µs.
+///
+/// **Tested** on 120,000 pairs of six families against dense sampling: no minimum missed, none too many, never more than
+/// two, and no distance more than `7e-16` above the sampled one.
 pub fn circle_distance_minima(a: &Circle, b: &Circle) -> Minima {
     // Along the smaller circle `h` is the smoother: it comes near the other's axis only far from the other circle.
     let swapped = a.radius < b.radius;

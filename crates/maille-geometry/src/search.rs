@@ -13,17 +13,14 @@
 //! a minimum below it was found beside it.
 
 use std::f64::consts::TAU;
-use std::sync::LazyLock;
 
 use crate::bounds::{Bounds, Verdict};
+use crate::grid::{Direction, GRID, Grid, INTERVALS, MAX_LEVEL, START_RAD, half_width};
 use crate::relative::{Relative, Sample};
 use crate::{MAX_MINIMA, ROUNDING};
 
-/// Intervals at the start.
-const INTERVALS: usize = 16;
-/// Halvings at most: width 2π · 2⁻²⁴.
-const MAX_LEVEL: usize = 20;
-/// Samples after which halving is given up. Pairs at random take 40, near contact up to 150.
+/// Samples after which halving is given up. Over 300,000 random, linked and nearly touching pairs half took 18 to 28,
+/// one in a thousand more than 110, none more than 194.
 const MAX_SAMPLES: usize = 400;
 /// Halvings after which the signs decide in the coarse search: width 2π/256.
 const COARSE_LEVEL: usize = 4;
@@ -31,50 +28,6 @@ const COARSE_LEVEL: usize = 4;
 const AWAY: f64 = 16.0;
 /// Minima nearer to each other than this are one: at `2π · 2⁻¹⁸` two differ by the fourth power, rounding.
 const MERGE_RAD: f64 = TAU / (1 << 18) as f64;
-/// The grid starts at an angle that no symmetric design singles out.
-const START_RAD: f64 = 0.123_456_789_101_112;
-
-/// A direction on the moving circle.
-#[derive(Clone, Copy, Default)]
-struct Direction {
-    cos: f64,
-    sin: f64,
-}
-
-impl Direction {
-    fn at(angle_rad: f64) -> Self {
-        let (sin, cos) = angle_rad.sin_cos();
-        Self { cos, sin }
-    }
-
-    /// Turned by `±` the angle of another.
-    fn turned(self, by: Self) -> [Self; 2] {
-        let (cc, ss) = (self.cos * by.cos, self.sin * by.sin);
-        let (sc, cs) = (self.sin * by.cos, self.cos * by.sin);
-        [Self { cos: cc + ss, sin: sc - cs }, Self { cos: cc - ss, sin: sc + cs }]
-    }
-}
-
-/// Directions that do not depend on the pair: of the first intervals' ends and centres, and of the widths.
-struct Grid {
-    ends: [Direction; INTERVALS + 1],
-    centers: [Direction; INTERVALS],
-    /// Half of the half width of an interval, by level.
-    quarters: [Direction; MAX_LEVEL + 1],
-}
-
-static GRID: LazyLock<Grid> = LazyLock::new(|| {
-    let angle = |index: f64| START_RAD + index * TAU / INTERVALS as f64;
-    // The last end is the first, to the bit.
-    let ends = std::array::from_fn(|i| Direction::at(angle((i % INTERVALS) as f64)));
-    let centers = std::array::from_fn(|i| Direction::at(angle(i as f64 + 0.5)));
-    let quarters = std::array::from_fn(|level| Direction::at(half_width(level) / 2.0));
-    Grid { ends, centers, quarters }
-});
-
-fn half_width(level: usize) -> f64 {
-    TAU / ((2 * INTERVALS) << level) as f64
-}
 
 /// An interval still to be decided.
 #[derive(Clone, Copy, Default)]

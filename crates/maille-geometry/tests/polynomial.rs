@@ -1,4 +1,4 @@
-//! The polynomial of degree 8 against the enumeration: two ways that share the last polishing only.
+//! The polynomial of degree 8 against the enumeration: two ways that share only the evaluation at the end.
 
 mod common;
 
