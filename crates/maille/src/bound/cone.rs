@@ -3,8 +3,9 @@
 //! minimise qᵀx subject to s = h − G x ∈ K, with the dual: maximise −hᵀz subject to Gᵀz + q = 0, z ∈ K.
 //!
 //! Primal–dual, infeasible start, Nesterov–Todd scaling, Mehrotra's predictor and corrector (Vandenberghe, *The CVXOPT
-//! linear and quadratic cone program solvers*, 2010, whose notation is used). It knows no ring. It claims nothing:
-//! whoever uses it proves with the multipliers z what they prove, so it just returns its best iterate.
+//! linear and quadratic cone program solvers*, 2010, whose notation is used). It knows no ring. It claims nothing: it
+//! shows every multiplier z to its caller, who proves with it what it proves. That is often best after rounding has
+//! spoiled the residuals, because the gap still falls.
 
 use nalgebra::{DMatrix, DVector, Matrix4};
 
@@ -75,7 +76,7 @@ pub struct ConeProgram {
     pub cones: Vec<Cone>,
 }
 
-/// The last iterate.
+/// The iterate of least residual.
 #[derive(Clone, Debug)]
 pub struct ConeSolution {
     /// x.
@@ -95,8 +96,8 @@ const TOLERANCE: f64 = 1e-13;
 const STEP: f64 = 0.99;
 
 impl ConeProgram {
-    /// Solves. `stop` is shown every multiplier z and ends the iteration, with this iterate as the answer, where it is
-    /// true: an infeasible program shows itself there, its z growing along a certificate.
+    /// Solves. `stop` is shown every multiplier z and ends the iteration where it is true: an infeasible program shows
+    /// itself there, its z growing along a certificate.
     pub fn solve(&self, mut stop: impl FnMut(&DVector<f64>) -> bool) -> ConeSolution {
         let unit = self.unit();
         let mut now = ConeSolution {
@@ -120,13 +121,10 @@ impl ConeProgram {
             if now.residual < best.residual {
                 best = now.clone();
             }
-            if stop(&now.z) {
-                return now;
-            }
-            if now.residual < TOLERANCE {
+            if stop(&now.z) || now.residual < TOLERANCE {
                 break;
             }
-            let Some(scaling) = self.scaling(&s, &now.z) else { if std::env::var("DBG").is_ok() { eprintln!("scaling failed {}", now.residual);} break };
+            let Some(scaling) = self.scaling(&s, &now.z) else { break };
             let Some(newton) = Newton::new(self, &scaling) else { break };
             let mu = gap / degree;
             // Predictor: straight to λ ∘ λ = 0.
@@ -140,7 +138,6 @@ impl ConeProgram {
             let target = target - self.product(&ds, &dz) + &unit * (centering * mu);
             let (dx, ds, dz) = newton.direction(&(&dual_rest * rest), &(&primal_rest * rest), &target);
             let step = (STEP * self.reach(lambda, &ds).min(self.reach(lambda, &dz))).min(1.0);
-            if std::env::var("DBG").is_ok() { eprintln!("it {iteration} res {:.1e} d {:.1e} p {:.1e} gap {gap:.1e} step {step:.3} sigma {centering:.1e}", now.residual, dual_rest.norm(), primal_rest.norm()); }
             if !step.is_finite() || step < 1e-9 {
                 break;
             }

@@ -73,9 +73,12 @@ pub struct LinkSolution {
 impl LinkSolution {
     /// Whether it is proved that no state has this l2.
     pub fn l2_unreachable(&self) -> bool {
-        self.l1 <= -1.0 - 1e-9
+        self.l1 < -1.0 - 1e-9
     }
 }
+
+/// A proof of l1 below this ends the solve: no state has this l2, and the solver would go on towards −∞.
+const UNREACHABLE: f64 = -1.01;
 
 /// The link bound of one design.
 #[derive(Clone, Debug)]
@@ -143,10 +146,17 @@ impl LinkBound {
                 program.offset[4 * k + 1 + axis] = fixed[axis];
             }
         }
-        let solution = program.solve(|z| query.prove(&query.forces(z)).is_some_and(|l1| l1 < -1.01));
-        let forces = query.forces(&solution.z);
-        let (l1, forces) = query.polished(&forces).unwrap_or((f64::INFINITY, forces));
-        let pull: f64 = query.pull(&forces);
+        let mut best: Option<(f64, Vec<Vec3>)> = None;
+        let solution = program.solve(|z| {
+            if let Some(proof) = query.polished(&query.forces(z))
+                && best.as_ref().is_none_or(|(least, _)| proof.0 < *least)
+            {
+                best = Some(proof);
+            }
+            best.as_ref().is_some_and(|(l1, _)| *l1 < UNREACHABLE)
+        });
+        let Some((l1, forces)) = best else { return nothing };
+        let pull = query.pull(&forces);
         LinkSolution {
             l1,
             primal_l1: solution.x[0] - 1.0,

@@ -74,6 +74,8 @@ pub struct SqpOptions {
     pub tolerance: f64,
     /// Stop as soon as the violation is below 1e-13 and the value above this.
     pub enough: f64,
+    /// Pause when a full step is shorter than this and promises less than a thousandth of it: time to try the polish.
+    pub pause_at: f64,
 }
 
 impl Default for SqpOptions {
@@ -85,6 +87,7 @@ impl Default for SqpOptions {
             max_iterations: 150,
             tolerance: 1e-11,
             enough: f64::INFINITY,
+            pause_at: 0.0,
         }
     }
 }
@@ -155,95 +158,84 @@ pub fn lagrangian_hessian(n: usize, rows: &[Row], multipliers: &[f64]) -> Mat<f6
     h
 }
 
-/// The rows as a dense matrix, row-major, with `extra` further columns of zeros.
-fn dense(rows: &[Row], n: usize, extra: usize) -> Vec<f64> {
-    let width = n + extra;
-    let mut out = vec![0.0; rows.len() * width];
-    for (k, row) in rows.iter().enumerate() {
-        for (&column, &value) in row.columns.iter().zip(&row.gradient) {
-            out[k * width + column] = value;
-        }
-    }
-    out
-}
-
-/// H with its eigenvalues raised to at least `floor`.
-fn convexified(h: Mat<f64>, floor: f64) -> Mat<f64> {
+/// H made positive: first by adding σ Σ ∇g ∇gᵀ / |∇g|² over the loaded rows, which changes nothing on the directions
+/// that keep them, so that the model stays exact there; what is still negative is raised to `floor`.
+fn convexified(mut h: Mat<f64>, rows: &[Row], multipliers: &[f64], floor: f64) -> Mat<f64> {
     let n = h.nrows();
-    match symmetric_eigen(&h) {
+    let raise = |h: Mat<f64>| match symmetric_eigen(&h) {
+        Ok(eigen) if eigen.values[0] >= floor => h,
         Ok(eigen) => {
             let scaled = Mat::from_fn(n, n, |i, k| eigen.vectors[(i, k)] * eigen.values[k].max(floor));
             scaled * eigen.vectors.transpose()
         }
         Err(_) => Mat::identity(n, n),
-    }
-}
-
-/// The step of the convexified model at a point; with the multipliers of its rows and the violation that it leaves.
-fn model_step(rows: &[Row], c: &[f64], multipliers: &[f64], radius: f64, penalty: f64) -> (Vec<f64>, Vec<f64>, f64) {
-    const FLOOR: f64 = 1e-4;
-    let n = c.len();
-    let h = convexified(lagrangian_hessian(n, rows, multipliers), FLOOR);
-    let worst = violation(rows);
-    let mut hessian = Mat::zeros(n + 1, n + 1);
-    for i in 0..n {
-        for j in 0..n {
-            hessian[(i, j)] = h[(i, j)];
+    };
+    let sigma = match symmetric_eigen(&h) {
+        Ok(eigen) => 2.0 * (floor - eigen.values[0]).max(0.0),
+        Err(_) => return Mat::identity(n, n),
+    };
+    if sigma > 0.0 {
+        for (row, _) in rows.iter().zip(multipliers).filter(|(_, mu)| **mu > 1e-6) {
+            let weight = sigma / dot(&row.gradient, &row.gradient).max(1e-300);
+            for (&i, &a) in row.columns.iter().zip(&row.gradient) {
+                for (&j, &b) in row.columns.iter().zip(&row.gradient) {
+                    h[(i, j)] += weight * a * b;
+                }
+            }
         }
     }
-    hessian[(n, n)] = 1e-8;
-    let mut linear: Vec<f64> = c.iter().map(|x| -x).collect();
-    linear.push(penalty);
-    let mut matrix = dense(rows, n, 1);
-    for k in 0..rows.len() {
-        matrix[k * (n + 1) + n] = 1.0;
-    }
-    matrix.extend((0..=n).map(|i| f64::from(u8::from(i == n))));
-    let mut lower: Vec<f64> = rows.iter().map(|r| -r.gap).collect();
-    lower.push(0.0);
-    let mut half_width = vec![radius; n];
-    half_width.push(2.0 * worst + 1.0);
-    let solution =
-        qp::solve(&QuadraticProgram { hessian: &hessian, linear: &linear, rows: &matrix, lower: &lower, half_width: &half_width });
-    let left = solution.x[n].max(0.0);
-    (solution.x[..n].to_vec(), solution.multipliers[..rows.len()].to_vec(), left)
+    raise(h)
 }
 
-/// The shortest step that makes all rows non-negative to first order, within `radius`.
-fn restoration_step(rows: &[Row], n: usize, radius: f64) -> Vec<f64> {
-    let none = vec![0.0; rows.len()];
-    let mut hessian = Mat::zeros(n + 1, n + 1);
-    for i in 0..n {
-        hessian[(i, i)] = 1.0;
+/// Solves min ½ dᵀ H d + linear·d + weight · t under gap + ∇g·d + t ≥ 0, t ≥ 0, |d| ≤ radius: the step d, the rows'
+/// multipliers, and the violation t that is left.
+fn elastic_program(rows: &[Row], h: &Mat<f64>, linear: &[f64], weight: f64, radius: f64) -> (Vec<f64>, Vec<f64>, f64) {
+    let n = linear.len();
+    let hessian = Mat::from_fn(n + 1, n + 1, |i, j| match (i < n, j < n) {
+        (true, true) => h[(i, j)],
+        (false, false) => 1e-8,
+        _ => 0.0,
+    });
+    let linear: Vec<f64> = linear.iter().copied().chain([weight]).collect();
+    let width = n + 1;
+    let mut matrix = vec![0.0; (rows.len() + 1) * width];
+    for (k, row) in rows.iter().enumerate() {
+        for (&column, &value) in row.columns.iter().zip(&row.gradient) {
+            matrix[k * width + column] = value;
+        }
+        matrix[k * width + n] = 1.0;
     }
-    hessian[(n, n)] = 1e-8;
-    let mut linear = none.clone();
-    linear.resize(n + 1, 0.0);
-    linear.truncate(n + 1);
-    linear.fill(0.0);
-    linear[n] = 1e3 * radius.max(1e-6);
-    let mut matrix = dense(rows, n, 1);
-    for k in 0..rows.len() {
-        matrix[k * (n + 1) + n] = 1.0;
-    }
-    matrix.extend((0..=n).map(|i| f64::from(u8::from(i == n))));
-    let mut lower: Vec<f64> = rows.iter().map(|r| -r.gap).collect();
-    lower.push(0.0);
+    matrix[rows.len() * width + n] = 1.0;
+    let lower: Vec<f64> = rows.iter().map(|r| -r.gap).chain([0.0]).collect();
     let mut half_width = vec![radius; n];
     half_width.push(2.0 * violation(rows) + 1.0);
-    qp::solve(&QuadraticProgram { hessian: &hessian, linear: &linear, rows: &matrix, lower: &lower, half_width: &half_width }).x
-        [..n]
-        .to_vec()
+    let solution =
+        qp::solve(&QuadraticProgram { hessian: &hessian, linear: &linear, rows: &matrix, lower: &lower, half_width: &half_width });
+    (solution.x[..n].to_vec(), solution.multipliers[..rows.len()].to_vec(), solution.x[n].max(0.0))
 }
 
-/// Maximises `program` from `start`.
-pub fn maximize<P: Program>(program: &P, start: P::Point, options: &SqpOptions, cancel: &AtomicBool) -> SqpEnd<P::Point> {
+/// Least curvature of the convexified model: it follows the step's size between these. Far from the limit it keeps
+/// free motions from being spent on tiny gains (which would carry contacts to the edge where their minima merge).
+const LEAST_FLOOR: f64 = 1e-4;
+/// See [`LEAST_FLOOR`].
+const MOST_FLOOR: f64 = 0.1;
+
+/// Maximises `program` from `start`; `known` are multipliers of an earlier iteration, if there was one.
+pub fn maximize<P: Program>(
+    program: &P,
+    start: P::Point,
+    known: Vec<Multiplier>,
+    options: &SqpOptions,
+    cancel: &AtomicBool,
+) -> SqpEnd<P::Point> {
     let c = program.objective();
     let n = c.len();
+    let descent: Vec<f64> = c.iter().map(|x| -x).collect();
     let mut radius = options.first_radius;
     let mut penalty = options.penalty;
     let band = |radius: f64| 0.1 + 2.0 * radius;
-    let mut end = SqpEnd { point: start, multipliers: Vec::new(), iterations: 0, settled: false, violation: f64::INFINITY };
+    let mut floor = MOST_FLOOR;
+    let mut end = SqpEnd { point: start, multipliers: known, iterations: 0, settled: false, violation: f64::INFINITY };
     let mut rows = program.rows(&end.point, band(radius), true);
     end.violation = violation(&rows);
     while end.iterations < options.max_iterations && !cancel.load(Ordering::Relaxed) {
@@ -253,7 +245,8 @@ pub fn maximize<P: Program>(program: &P, start: P::Point, options: &SqpOptions, 
         }
         end.iterations += 1;
         let known: Vec<f64> = rows.iter().map(|row| multiplier_of(row, &end.multipliers)).collect();
-        let (step, multipliers, left) = model_step(&rows, &c, &known, radius, penalty);
+        let h = convexified(lagrangian_hessian(n, &rows, &known), &rows, &known, floor);
+        let (step, multipliers, left) = elastic_program(&rows, &h, &descent, penalty, radius);
         let keep = |multipliers: &[f64]| -> Vec<Multiplier> {
             let pairs = rows.iter().zip(multipliers).filter(|(_, mu)| **mu > 1e-9);
             pairs.map(|(r, &value)| Multiplier { key: r.key, angle: r.angle, minimum: r.minimum, value }).collect()
@@ -261,9 +254,13 @@ pub fn maximize<P: Program>(program: &P, start: P::Point, options: &SqpOptions, 
         let size = step.iter().fold(0.0f64, |a, s| a.max(s.abs()));
         let promised = dot(&c, &step) + penalty * (end.violation - left);
         end.multipliers = keep(&multipliers);
+        floor = size.clamp(LEAST_FLOOR, MOST_FLOOR);
         penalty = penalty.max(2.0 * multipliers.iter().sum::<f64>().min(1e4));
         if promised < options.tolerance || size < 1e-12 {
             end.settled = true;
+            break;
+        }
+        if size < options.pause_at && promised < 1e-3 * options.pause_at {
             break;
         }
         let guard = program.guard(&end.point);
@@ -279,7 +276,8 @@ pub fn maximize<P: Program>(program: &P, start: P::Point, options: &SqpOptions, 
         let wanted = promised * fraction;
         if merit - reached < 0.5 * wanted && worst > 0.0 {
             let there = program.rows(&trial, band(radius).min(0.2), true);
-            let correction = restoration_step(&there, n, radius);
+            let none = vec![0.0; n];
+            let (correction, _, _) = elastic_program(&there, &Mat::identity(n, n), &none, 1e3 * radius, radius);
             let guard = program.guard(&trial);
             let fraction = program.largest_step(&trial, &guard, &correction);
             let correction: Vec<f64> = correction.iter().map(|s| s * fraction).collect();
