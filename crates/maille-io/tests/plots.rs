@@ -27,6 +27,7 @@ fn row(direction_deg: f64, l2: f64, l1: Option<f64>) -> LimitRow {
         iterations: 0,
         runs: 0,
         wall_s: 0.0,
+        ..LimitRow::default()
     }
 }
 

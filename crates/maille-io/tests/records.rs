@@ -34,6 +34,7 @@ fn row(direction_deg: f64, status: Status) -> LimitRow {
         iterations: 123,
         runs: 4,
         wall_s: 0.25,
+        ..LimitRow::default()
     }
 }
 
@@ -50,6 +51,7 @@ fn state(direction_deg: f64, status: Status) -> StateRecord {
         poses: vec![pose],
         residual: Some(1e-4),
         note: None,
+        ..StateRecord::default()
     }
 }
 

@@ -1,17 +1,41 @@
 //! Characterisation: limits over directions and lateral strains, as rows and states of a record.
 
 use crate::{
-    energy::target::direction,
-    limit::{EnergyMethod, EnergyOptions, LimitOutcome},
+    lattice::direction,
+    limit::{
+        LimitOutcome,
+        energy::{EnergyMethod, EnergyOptions},
+        exact::{ExactMethod, ExactOptions},
+    },
     model::Model,
-    record::{LimitRow, PoseRecord, StateRecord, Status},
+    record::{ChainRecord, ContactRecord, LimitRow, PoseRecord, StateRecord, Status},
     topology,
 };
+use maille_geometry::Vec3;
 use rayon::prelude::*;
 use std::{
     sync::atomic::{AtomicBool, Ordering},
     time::Instant,
 };
+
+/// How limits are found.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Method {
+    /// The thesis's energy method.
+    Energy(EnergyOptions),
+    /// The exact method, with certificates.
+    Exact(ExactOptions),
+}
+
+impl Method {
+    /// The name in tables.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Method::Energy(_) => "energy",
+            Method::Exact(_) => "exact",
+        }
+    }
+}
 
 /// One limit to find.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,58 +60,109 @@ pub fn tasks(directions_deg: &[f64], l2: &[f64]) -> Vec<Task> {
     l2.iter().flat_map(|&l2| directions_deg.iter().map(move |&direction_deg| Task { direction_deg, l2 })).collect()
 }
 
-/// Finds the limits of `tasks` on the current thread pool and hands each over as it is finished, in any order.
+/// Finds the limits of a map on the current thread pool and hands each over as it is finished, in any order.
 ///
-/// Every limit starts from the design's state alone, so rows do not depend on the number of threads. After `cancel`
-/// the tasks under way come back as interrupted and the others not at all.
+/// `wanted` tells which tasks are still open. The energy method starts every limit from the design's state alone; the
+/// exact one goes along each direction outwards from l2 = 0, and repeats a whole direction where one of its limits is
+/// open. So rows do not depend on the number of threads, nor on where an earlier run was stopped. After `cancel` the
+/// limits under way come back as interrupted or not at all.
 pub fn characterize(
     model: &Model,
     minor_radius: Option<f64>,
-    options: &EnergyOptions,
-    tasks: &[Task],
+    method: &Method,
+    directions_deg: &[f64],
+    l2: &[f64],
+    wanted: &(dyn Fn(Task) -> bool + Sync),
     cancel: &AtomicBool,
     finished: &(dyn Fn(Finished) + Sync),
 ) {
-    let method = EnergyMethod::new(model, options.clone(), cancel);
-    tasks.par_iter().with_max_len(1).for_each(|task| {
-        if cancel.load(Ordering::Relaxed) {
-            return;
-        }
-        let begun = Instant::now();
-        let outcome = method.limit(task.direction_deg, task.l2, cancel);
-        let (row, state) = report(model, minor_radius, task, &outcome, begun.elapsed().as_secs_f64());
+    let report = |task: Task, outcome: &LimitOutcome, begun: Instant| {
+        let (row, state) = report(model, minor_radius, method.name(), &task, outcome, begun.elapsed().as_secs_f64());
         finished(Finished { row, state });
-    });
+    };
+    match method {
+        Method::Energy(options) => {
+            let energy = EnergyMethod::new(model, options.clone(), cancel);
+            let open: Vec<Task> = tasks(directions_deg, l2).into_iter().filter(|t| wanted(*t)).collect();
+            open.par_iter().with_max_len(1).for_each(|task| {
+                if !cancel.load(Ordering::Relaxed) {
+                    let begun = Instant::now();
+                    report(*task, &energy.limit(task.direction_deg, task.l2, cancel), begun);
+                }
+            });
+        }
+        Method::Exact(options) => {
+            let exact = ExactMethod::new(model, options.clone());
+            directions_deg.par_iter().with_max_len(1).for_each(|&direction_deg| {
+                let task = |k: usize| Task { direction_deg, l2: l2[k] };
+                if cancel.load(Ordering::Relaxed) || !(0..l2.len()).any(|k| wanted(task(k))) {
+                    return;
+                }
+                let mut begun = Instant::now();
+                exact.limits(direction_deg, l2, cancel, &mut |k, outcome| {
+                    if wanted(task(k)) {
+                        report(task(k), &outcome, begun);
+                    }
+                    begun = Instant::now();
+                });
+            });
+        }
+    }
 }
 
-fn report(model: &Model, minor_radius: Option<f64>, task: &Task, outcome: &LimitOutcome, wall_s: f64) -> (LimitRow, StateRecord) {
+fn report(
+    model: &Model,
+    minor_radius: Option<f64>,
+    method: &str,
+    task: &Task,
+    outcome: &LimitOutcome,
+    wall_s: f64,
+) -> (LimitRow, StateRecord) {
     let f = outcome.gradient;
-    let earned = outcome.status == Status::ThresholdReached;
+    let earned = matches!(outcome.status, Status::ThresholdReached | Status::Global | Status::Local);
+    let solved = earned || outcome.status == Status::Uncertified;
     let along = direction(task.direction_deg);
     let c = f.transpose() * f;
     let (mean, half) = ((c[(0, 0)] + c[(1, 1)]) / 2.0, ((c[(0, 0)] - c[(1, 1)]) / 2.0).hypot(c[(0, 1)]));
-    let gap = topology::smallest_gap(model, &outcome.state).map(|(gap, _)| gap * model.unit);
+    let gap = topology::smallest_gap(model, &outcome.state).map(|(gap, _)| gap * model.unit).filter(|_| solved);
     let number = |x: f64| earned.then_some(x);
+    let l1 = number(along.dot(&(f * along)) - 1.0);
+    let exact = outcome.exact.as_ref();
+    let bound = exact.and_then(|e| e.bound);
+    let certificate = exact.and_then(|e| e.certificate.as_ref());
     let row = LimitRow {
         design: model.name.clone(),
         minor_radius,
         direction_deg: task.direction_deg,
         l2: task.l2,
-        method: "energy".into(),
+        method: method.into(),
         cell: model.cell.to_string(),
         status: outcome.status,
-        l1: number(along.dot(&(f * along)) - 1.0),
+        l1,
         lambda1: number(mean + half),
         lambda2: number(mean - half),
         stretch1: number((mean + half).sqrt()),
         stretch2: number((mean - half).max(0.0).sqrt()),
-        max_overlap: gap.filter(|_| earned).map(|gap| (-gap).max(0.0)),
-        min_gap: gap.filter(|_| earned),
+        max_overlap: gap.map(|gap| (-gap).max(0.0)),
+        min_gap: gap,
         iterations: outcome.iterations,
         runs: outcome.runs,
         wall_s,
+        bound_l1: bound.map(|b| b.0),
+        bound_kind: bound.map(|b| b.1.to_string()),
+        bound_gap: bound.zip(l1).map(|(b, l1)| b.0 - l1),
+        dual_residual: certificate.map(|c| c.dual_residual),
+        complementarity: certificate.map(|c| c.complementarity),
+        min_multiplier: certificate.map(|c| c.min_multiplier).filter(|m| m.is_finite()),
+        min_curvature: certificate.and_then(|c| c.min_curvature).filter(|m| m.is_finite()),
+        zero_modes: certificate.map(|c| c.zero_modes as u64),
+        links_ok: exact.and_then(|e| e.links_ok),
+        n_starts: exact.map(|e| e.n_starts),
+        n_distinct: exact.map(|e| e.n_distinct),
+        own_image_force: exact.and_then(|e| e.own_image_force),
+        l1_uncertified: exact.and_then(|e| e.l1_uncertified),
     };
-    let position = |v: maille_geometry::Vec3| -> [f64; 3] { (v * model.unit).into() };
+    let position = |v: Vec3| -> [f64; 3] { (v * model.unit).into() };
     let poses = model
         .elements
         .iter()
@@ -97,6 +172,20 @@ fn report(model: &Model, minor_radius: Option<f64>, task: &Task, outcome: &Limit
             PoseRecord { element: element.name.clone(), position: position(pose.position), rotation: [q.w, q.i, q.j, q.k] }
         })
         .collect();
+    let contact = |c: &crate::constraint::Contact| ContactRecord {
+        ring_a: c.pair.ring_a,
+        ring_b: c.pair.ring_b,
+        shift: c.pair.shift,
+        point_a: position(c.point_a),
+        point_b: position(c.point_b),
+        normal: (c.point_b - c.point_a).normalize().into(),
+        force: c.force,
+    };
+    let chain = exact.and_then(|e| e.chain.as_ref()).map(|chain| ChainRecord {
+        vector: chain.vector,
+        length: chain.length * model.unit,
+        rings: chain.rings.clone(),
+    });
     let state = StateRecord {
         direction_deg: task.direction_deg,
         l2: task.l2,
@@ -105,8 +194,10 @@ fn report(model: &Model, minor_radius: Option<f64>, task: &Task, outcome: &Limit
         a2: position(outcome.state.a2),
         deformation_gradient: [[f[(0, 0)], f[(0, 1)]], [f[(1, 0)], f[(1, 1)]]],
         poses,
-        residual: outcome.residual.is_finite().then_some(outcome.residual),
+        residual: outcome.residual.filter(|r| r.is_finite()),
         note: outcome.note.clone(),
+        contacts: exact.map_or(Vec::new(), |e| e.contacts.iter().map(contact).collect()),
+        chain,
     };
     (row, state)
 }

@@ -7,15 +7,16 @@
 use crate::{
     contact::kernel::{PairFrame, RootMotion},
     model::Model,
-    solve::sqp::{Program, Row},
+    solve::sqp::{Multiplier, Program, Row},
     state::State,
     topology::{
         self, RingPair,
         crossing::{Motion, StepBound},
     },
 };
-use maille_geometry::{Vec3, circle_distance_minima};
+use maille_geometry::{Vec3, circle_distance_minima, point_circle_distance};
 use nalgebra::{DMatrix, SMatrix};
+use std::collections::BTreeSet;
 
 /// One free strain parameter: how fast it moves the lattice vectors, and its weight in the objective.
 #[derive(Clone, Debug)]
@@ -54,6 +55,7 @@ pub struct SheetProgram<'a> {
     columns: Vec<(Option<usize>, usize)>,
     spins_freely: Vec<bool>,
     first_parameter: usize,
+    flat: BTreeSet<u64>,
 }
 
 /// Contacts whose 2×2 Hessian in the contact angles is below this (and whose gap is below [`NEAR`]) get extra rows.
@@ -64,6 +66,25 @@ const NEAR: f64 = 0.1;
 const BESIDE_RAD: [f64; 6] = [-0.18, -0.12, -0.06, 0.06, 0.12, 0.18];
 /// Largest motion of an element in one step, in largest radii.
 const STEP_CAP: f64 = 0.5;
+/// Sine of the tilt below which a pair can be flat.
+const FLAT_TILT: f64 = 0.08;
+/// Offset of the axes below which a pair can be flat, in radii.
+const FLAT_APART: f64 = 0.08;
+/// Heights that stand for a flat pair's gap.
+const HEIGHTS: usize = 16;
+
+/// A loaded contact of a locked state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact {
+    /// The rings.
+    pub pair: RingPair,
+    /// Point on A's core circle.
+    pub point_a: Vec3,
+    /// Point on B's core circle, in the image.
+    pub point_b: Vec3,
+    /// Force on B per unit of the objective, along point_b − point_a: the row's multiplier.
+    pub force: f64,
+}
 
 impl<'a> SheetProgram<'a> {
     /// The program of `pull` on `model`.
@@ -81,7 +102,32 @@ impl<'a> SheetProgram<'a> {
             .map(|(e, &free)| ((e > 0).then(|| take(3)), take(if free { 2 } else { 3 })))
             .collect();
         let first_parameter = next;
-        SheetProgram { model, pull, columns, spins_freely, first_parameter }
+        SheetProgram { model, pull, columns, spins_freely, first_parameter, flat: BTreeSet::new() }
+    }
+
+    /// Takes the pairs of `x` that touch along nearly the whole circle as flat: equal radii, nearly parallel and
+    /// coaxial. Their one gap is a cone there, h − s − R |tilt|, with its tip at the limit; from now on sixteen heights
+    /// of B's points over A's plane must be at least s, which implies the gap, is smooth, and is exact where the rings
+    /// are parallel. Returns whether the set of flat pairs has changed.
+    pub fn take_flat_pairs(&mut self, x: &Posed) -> bool {
+        let (model, state) = (self.model, &x.state);
+        let mut flat = BTreeSet::new();
+        for pair in topology::close_pairs(model, state, 0.0) {
+            let a = state.circle(model, pair.ring_a, [0, 0]);
+            let b = state.circle(model, pair.ring_b, pair.shift);
+            let touching = model.contact_distance(pair.ring_a, pair.ring_b);
+            let between = b.center - a.center;
+            let height = between.dot(&a.normal);
+            let apart = (between - a.normal.into_inner() * height).norm();
+            let tilt = a.normal.cross(&b.normal).norm();
+            let equal = (a.radius - b.radius).abs() < 1e-9 * a.radius;
+            if equal && tilt < FLAT_TILT && apart < FLAT_APART * a.radius && height.abs() < touching * 1.1 {
+                flat.insert(pair_key(&pair));
+            }
+        }
+        let changed = flat != self.flat;
+        self.flat = flat;
+        changed
     }
 
     /// Poses of `state` with the lattice of the parameters `p`.
@@ -92,6 +138,19 @@ impl<'a> SheetProgram<'a> {
         };
         (state.a1, state.a2) = (lattice(0), lattice(1));
         Posed { state, p }
+    }
+
+    /// The contacts that carry `multipliers` at `x`.
+    pub fn contacts(&self, x: &Posed, multipliers: &[Multiplier]) -> Vec<Contact> {
+        let loaded = multipliers.iter().filter(|m| m.value > 1e-9 && m.key < bound_key(0xffff));
+        loaded
+            .map(|m| {
+                let pair = pair_of_key(m.key);
+                let a = x.state.circle(self.model, pair.ring_a, [0, 0]);
+                let point_b = x.state.circle(self.model, pair.ring_b, pair.shift).point(m.angle);
+                Contact { pair, point_a: point_circle_distance(&point_b, &a).point, point_b, force: m.value }
+            })
+            .collect()
     }
 
     /// Basis of the turns of element `e` at `state`: two axes across a single ring's normal, or x, y, z.
@@ -164,6 +223,16 @@ fn pair_key(pair: &RingPair) -> u64 {
     (pair.ring_a as u64) << 44 | (pair.ring_b as u64) << 24 | small(pair.shift[0]) << 12 | small(pair.shift[1])
 }
 
+/// The pair of a key.
+fn pair_of_key(key: u64) -> RingPair {
+    let small = |bits: u64| ((bits & 0xfff) as i32) << 20 >> 20;
+    RingPair {
+        ring_a: (key >> 44) as usize,
+        ring_b: (key >> 24 & 0xf_ffff) as usize,
+        shift: [small(key >> 12), small(key)],
+    }
+}
+
 /// Key of the row that holds parameter `m` below its bound.
 fn bound_key(m: usize) -> u64 {
     u64::MAX - m as u64
@@ -223,6 +292,15 @@ impl Program for SheetProgram<'_> {
                 let hessian = (map.transpose() * hess * &map).data.into();
                 rows.push(Row { key, angle, gap: distance - touching, minimum, columns: columns.clone(), gradient, hessian });
             };
+            if self.flat.contains(&key) {
+                for k in 0..HEIGHTS {
+                    let angle = std::f64::consts::TAU * k as f64 / HEIGHTS as f64;
+                    let (z, grad, hess) = frame.height(angle);
+                    let side = (b.center - a.center).dot(&a.normal).signum();
+                    add(angle, false, side * z, grad * side, hess * side);
+                }
+                continue;
+            }
             for m in minima.as_slice().iter().filter(|m| m.distance - touching <= band) {
                 let root = frame.jet(m.angle_b_rad);
                 let (grad, hess) = root.distance_derivatives(&RootMotion::at(&root));
@@ -254,5 +332,36 @@ impl Program for SheetProgram<'_> {
         let poses = x.state.poses.iter().zip(&motion.elements).map(|(pose, (shift, turn))| pose.moved(shift, turn)).collect();
         let p = x.p.iter().zip(&step[self.first_parameter..]).map(|(p, dp)| p + dp).collect();
         self.posed(State { poses, ..x.state.clone() }, p)
+    }
+
+    /// A flat pair with offset e of its axes: the true gap at B's direction u is (e·u)²/2s above the height. Of all ways
+    /// to spread the pair's force Σ μ = N and moment Σ μ u = T over the circle, the one that uses this least leaves a
+    /// curvature −(T·e)²/(N s).
+    fn hidden_curvature(&self, x: &Posed, multipliers: &[Multiplier]) -> Vec<Vec<f64>> {
+        let (model, state) = (self.model, &x.state);
+        let n = self.first_parameter + self.pull.parameters.len();
+        let mut out = Vec::new();
+        for &key in &self.flat {
+            let pair = pair_of_key(key);
+            let b = state.circle(model, pair.ring_b, pair.shift);
+            let (u, v) = b.frame();
+            let (mut force, mut moment) = (0.0, Vec3::zeros());
+            for m in multipliers.iter().filter(|m| m.key == key && m.value > 0.0) {
+                force += m.value;
+                moment += (u * m.angle.cos() + v * m.angle.sin()) * m.value;
+            }
+            if force < 1e-9 {
+                continue;
+            }
+            let weight = (force * model.contact_distance(pair.ring_a, pair.ring_b)).sqrt();
+            let turns: Vec<Vec<Vec3>> = (0..model.elements.len()).map(|e| self.turns(state, e)).collect();
+            let (columns, map) = self.pair_map(&pair, &turns);
+            let mut term = vec![0.0; n];
+            for (c, &column) in columns.iter().enumerate() {
+                term[column] = (0..3).map(|axis| map[(axis, c)] * moment[axis]).sum::<f64>() / weight;
+            }
+            out.push(term);
+        }
+        out
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::error::InvalidInput;
 use maille_geometry::Vec3;
+use nalgebra::Vector2;
 use std::{fmt, str::FromStr};
 
 /// Shift of an image: the number of lattice vectors a1 and a2 from the main cell.
@@ -124,6 +125,18 @@ pub fn shifts_within(offset: &Vec3, a1: &Vec3, a2: &Vec3, reach: f64) -> Vec<Shi
         }
     }
     out
+}
+
+/// The unit vector at `direction_deg`, exact at multiples of 90°.
+pub fn direction(direction_deg: f64) -> Vector2<f64> {
+    let turn = direction_deg.rem_euclid(360.0);
+    match turn {
+        0.0 => Vector2::new(1.0, 0.0),
+        90.0 => Vector2::new(0.0, 1.0),
+        180.0 => Vector2::new(-1.0, 0.0),
+        270.0 => Vector2::new(0.0, -1.0),
+        _ => Vector2::new(turn.to_radians().cos(), turn.to_radians().sin()),
+    }
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 pub const RECORD_SCHEMA: u32 = 1;
 
 /// Outcome of the search for one limit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Status {
     /// Exact, certified, and a proven bound is attained.
@@ -27,7 +27,8 @@ pub enum Status {
     NotConverged,
     /// The starting state overlaps and could not be resolved.
     InfeasibleStart,
-    /// Stopped by the user.
+    /// Stopped by the user; also of a row that nothing is known of yet.
+    #[default]
     Interrupted,
 }
 
@@ -64,7 +65,7 @@ impl Status {
 }
 
 /// One row of `limits.csv`: the field order is the column order. A number that was not earned is `None` and stays empty.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LimitRow {
     /// Name of the design.
     pub design: String,
@@ -100,6 +101,32 @@ pub struct LimitRow {
     pub runs: u64,
     /// Wall time of this row in seconds.
     pub wall_s: f64,
+    /// Proven bound of l1 (exact method).
+    pub bound_l1: Option<f64>,
+    /// Where the bound comes from: `chain` or `link`.
+    pub bound_kind: Option<String>,
+    /// bound_l1 − l1.
+    pub bound_gap: Option<f64>,
+    /// Largest entry of c + Σ μ ∇g, the condition of a maximum of first order.
+    pub dual_residual: Option<f64>,
+    /// Largest |μ g|.
+    pub complementarity: Option<f64>,
+    /// Least multiplier of a touching contact.
+    pub min_multiplier: Option<f64>,
+    /// Least curvature on the directions that keep the loaded contacts, zero modes left out.
+    pub min_curvature: Option<f64>,
+    /// Motions without curvature: elements that rattle.
+    pub zero_modes: Option<u64>,
+    /// Whether the links are those of the start.
+    pub links_ok: Option<bool>,
+    /// Starts that were solved.
+    pub n_starts: Option<u64>,
+    /// Distinct certified limits that they found.
+    pub n_distinct: Option<u64>,
+    /// Largest force, per unit pull, between an element and its own image in the solved cell.
+    pub own_image_force: Option<f64>,
+    /// Best feasible l1 where the certificate is incomplete.
+    pub l1_uncertified: Option<f64>,
 }
 
 /// Pose of one element: `position + rotation · (offset in the design)`.
@@ -113,8 +140,38 @@ pub struct PoseRecord {
     pub rotation: [f64; 4],
 }
 
-/// One line of `states.jsonl`: the state at the limit of one row (or the last state of a failed search).
+/// A contact that carries force in a locked state.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ContactRecord {
+    /// Ring of the solved cell, counted through all elements.
+    pub ring_a: usize,
+    /// Ring of the image.
+    pub ring_b: usize,
+    /// The image's cell.
+    pub shift: [i32; 2],
+    /// Point on A's core circle, in the file's unit.
+    pub point_a: [f64; 3],
+    /// Point on B's core circle.
+    pub point_b: [f64; 3],
+    /// Unit vector from A's point to B's: the direction of the force on B.
+    pub normal: [f64; 3],
+    /// Force per unit of pull: dl1 for each reference radius by which this gap is widened.
+    pub force: f64,
+}
+
+/// The chain of links that binds in the bound: rings with their cells, the last an image of the first.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ChainRecord {
+    /// Lattice vector that the chain joins, in primitive cells.
+    pub vector: [i32; 2],
+    /// Its length, in the file's unit.
+    pub length: f64,
+    /// (ring, cell) along the chain.
+    pub rings: Vec<(usize, [i32; 2])>,
+}
+
+/// One line of `states.jsonl`: the state at the limit of one row (or the last state of a failed search).
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StateRecord {
     /// Direction of the row.
     pub direction_deg: f64,
@@ -135,4 +192,10 @@ pub struct StateRecord {
     /// A sentence on what happened, where the status alone does not say it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub note: Option<String>,
+    /// Contacts that carry force (exact method).
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub contacts: Vec<ContactRecord>,
+    /// The binding chain of the bound (exact method).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub chain: Option<ChainRecord>,
 }

@@ -50,7 +50,9 @@ fn known_limits_attain_the_bound() {
     ];
     for (name, r, degrees, l2, l1) in known {
         let (chain, link) = bounds(name, r, "1x1");
-        let Bound::Finite { l1: bound, kind, chain: path } = chain.limit(degrees, l2) else { panic!("{name} {degrees}") };
+        let Bound::Finite { l1: bound, kind, chain: path } = chain.limit(degrees, l2) else {
+            panic!("{name} {degrees}")
+        };
         assert!((bound - l1).abs() < 1e-8, "{name} r = {r}, {degrees}°, l2 = {l2}: {bound} for {l1}");
         assert_eq!(kind, BoundKind::Chain);
         let path = path.unwrap();
@@ -84,7 +86,8 @@ fn chains_are_chains_of_links() {
                 } else {
                     let linked = model.links.iter().any(|l| {
                         let p = l.pair;
-                        (p.ring_a, p.ring_b, p.shift) == (a, b, shift) || (p.ring_b, p.ring_a, p.shift.map(|x| -x)) == (a, b, shift)
+                        (p.ring_a, p.ring_b, p.shift) == (a, b, shift)
+                            || (p.ring_b, p.ring_a, p.shift.map(|x| -x)) == (a, b, shift)
                     });
                     assert!(linked, "{name}: {a} and {b} at {shift:?}");
                     length += ra.major_radius + rb.major_radius - ra.minor_radius - rb.minor_radius;
@@ -126,7 +129,9 @@ fn link_bound_improves_branched_and_doubled_weaves() {
     for name in DESIGNS {
         let (chain, link) = bounds(name, 0.1, "1x1");
         let better = queries()
-            .filter(|&(degrees, l2)| matches!(best_bound(&chain, Some(&link), degrees, l2).kind(), Some(BoundKind::Link)))
+            .filter(|&(degrees, l2)| {
+                matches!(best_bound(&chain, Some(&link), degrees, l2).kind(), Some(BoundKind::Link))
+            })
             .count();
         match name {
             "3.4" | "4.3" => assert!((1..queries().count()).contains(&better), "{name}: {better}"),

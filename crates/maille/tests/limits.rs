@@ -4,10 +4,10 @@ mod common;
 
 use common::{design, model, scaled};
 use maille::{
-    characterize::{Finished, Task, characterize, tasks},
+    characterize::{Finished, Method, Task, characterize, tasks},
     energy::target::Protocol,
     lattice::Cell,
-    limit::EnergyOptions,
+    limit::energy::EnergyOptions,
     model::Model,
     record::Status,
 };
@@ -15,7 +15,15 @@ use std::sync::{Mutex, atomic::AtomicBool};
 
 fn rows(model: &Model, options: &EnergyOptions, tasks: &[Task]) -> Vec<Finished> {
     let out = Mutex::new(Vec::new());
-    characterize(model, None, options, tasks, &AtomicBool::new(false), &|row| out.lock().unwrap().push(row));
+    let (mut directions, mut l2): (Vec<f64>, Vec<f64>) = tasks.iter().map(|t| (t.direction_deg, t.l2)).unzip();
+    for list in [&mut directions, &mut l2] {
+        list.sort_by(f64::total_cmp);
+        list.dedup();
+    }
+    let method = Method::Energy(options.clone());
+    characterize(model, None, &method, &directions, &l2, &|_| true, &AtomicBool::new(false), &|row| {
+        out.lock().unwrap().push(row);
+    });
     let mut out = out.into_inner().unwrap();
     let key = |f: &Finished| tasks.iter().position(|t| t.l2 == f.row.l2 && t.direction_deg == f.row.direction_deg);
     out.sort_by_key(key);

@@ -326,6 +326,7 @@ mod tests {
             iterations: 7,
             runs: 2,
             wall_s: 0.5,
+            ..LimitRow::default()
         }
     }
 
@@ -340,6 +341,7 @@ mod tests {
             poses: Vec::new(),
             residual: None,
             note: None,
+            ..StateRecord::default()
         }
     }
 

@@ -7,7 +7,7 @@ use std::fmt::Display;
 use std::str::FromStr;
 
 /// The columns, in order. A later version may add columns at the end; it renames and moves none.
-pub const LIMIT_COLUMNS: [&str; 17] = [
+pub const LIMIT_COLUMNS: [&str; 30] = [
     "design",
     "minor_radius",
     "direction_deg",
@@ -25,6 +25,19 @@ pub const LIMIT_COLUMNS: [&str; 17] = [
     "iterations",
     "runs",
     "wall_s",
+    "bound_l1",
+    "bound_kind",
+    "bound_gap",
+    "dual_residual",
+    "complementarity",
+    "min_multiplier",
+    "min_curvature",
+    "zero_modes",
+    "links_ok",
+    "n_starts",
+    "n_distinct",
+    "own_image_force",
+    "l1_uncertified",
 ];
 
 /// The table as text. `design` and `cell` are always quoted: `"1.10"` is a name, not a number.
@@ -56,11 +69,28 @@ pub fn write_limits(rows: &[LimitRow]) -> Result<String, RecordError> {
             row.iterations.to_string(),
             row.runs.to_string(),
             number("wall_s", Some(row.wall_s))?,
+            number("bound_l1", row.bound_l1)?,
+            row.bound_kind.clone().unwrap_or_default(),
+            number("bound_gap", row.bound_gap)?,
+            number("dual_residual", row.dual_residual)?,
+            number("complementarity", row.complementarity)?,
+            number("min_multiplier", row.min_multiplier)?,
+            number("min_curvature", row.min_curvature)?,
+            shown(row.zero_modes),
+            shown(row.links_ok),
+            shown(row.n_starts),
+            shown(row.n_distinct),
+            number("own_image_force", row.own_image_force)?,
+            number("l1_uncertified", row.l1_uncertified)?,
         ];
         out.push_str(&cells.join(","));
         out.push('\n');
     }
     Ok(out)
+}
+
+fn shown<T: Display>(x: Option<T>) -> String {
+    x.map_or(String::new(), |x| x.to_string())
 }
 
 fn quoted(text: &str) -> String {
@@ -117,6 +147,19 @@ fn row(record: &StringRecord) -> Result<LimitRow, String> {
         iterations: parse(next(), "a whole number")?,
         runs: parse(next(), "a whole number")?,
         wall_s: number(next())?,
+        bound_l1: optional(next())?,
+        bound_kind: some(next(), "a word")?,
+        bound_gap: optional(next())?,
+        dual_residual: optional(next())?,
+        complementarity: optional(next())?,
+        min_multiplier: optional(next())?,
+        min_curvature: optional(next())?,
+        zero_modes: some(next(), "a whole number")?,
+        links_ok: some(next(), "true or false")?,
+        n_starts: some(next(), "a whole number")?,
+        n_distinct: some(next(), "a whole number")?,
+        own_image_force: optional(next())?,
+        l1_uncertified: optional(next())?,
     })
 }
 
@@ -133,6 +176,10 @@ fn number(cell: Cell<'_>) -> Result<f64, String> {
 
 fn optional(cell: Cell<'_>) -> Result<Option<f64>, String> {
     if cell.1.is_empty() { Ok(None) } else { number(cell).map(Some) }
+}
+
+fn some<T: FromStr<Err: Display>>(cell: Cell<'_>, expected: &str) -> Result<Option<T>, String> {
+    if cell.1.is_empty() { Ok(None) } else { parse(cell, expected).map(Some) }
 }
 
 fn status((column, text): Cell<'_>) -> Result<Status, String> {

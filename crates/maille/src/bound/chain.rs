@@ -18,8 +18,8 @@
 //! **Cells.** In a supercell the cycles of the primitive cell appear repeated, with x unchanged, and each of its cycles is
 //! a closed walk of the primitive cell: K, and with it the bound, is the same for every cell and basis of the sheet.
 
-use super::{Bound, BoundKind};
-use crate::{energy::target::direction, lattice::Shift, model::Model};
+use super::{Bound, BoundKind, axes};
+use crate::{lattice::Shift, model::Model};
 use nalgebra::Vector2;
 
 /// A chain of links that joins a ring with its own image.
@@ -81,8 +81,7 @@ impl ChainBound {
 
     /// The bound of l1 along `direction_deg` with l2 held.
     pub fn limit(&self, direction_deg: f64, l2: f64) -> Bound {
-        let along = direction(direction_deg);
-        let across = Vector2::new(-along.y, along.x);
+        let (along, across) = axes(direction_deg);
         let mut best: Option<(f64, &Vertex)> = None;
         let mut worst: Option<(f64, &Vertex)> = None;
         for vertex in &self.vertices {
@@ -109,8 +108,7 @@ impl ChainBound {
 
     /// The largest l2 that the chains allow with this direction, at any l1; infinite where none binds across it.
     pub fn most_l2(&self, direction_deg: f64) -> f64 {
-        let along = direction(direction_deg);
-        let across = Vector2::new(-along.y, along.x);
+        let (_, across) = axes(direction_deg);
         self.vertices.iter().map(|v| 1.0 / v.x.dot(&across).abs() - 1.0).fold(f64::INFINITY, f64::min)
     }
 }

@@ -299,7 +299,7 @@ enum Block {
     /// W = β (2 v vᵀ − J), symmetric.
     Norm { beta: f64, v: [f64; 4] },
     /// W u = Rᵀ u R.
-    Positive { r: Matrix4<f64>, r_inverse: Matrix4<f64> },
+    Positive { r: Box<Matrix4<f64>>, r_inverse: Box<Matrix4<f64>> },
 }
 
 impl Block {
@@ -329,7 +329,7 @@ impl Block {
         let r = l1 * right * Matrix4::from_diagonal(&roots.into());
         // R⁻¹ = Λ^(−1/2) Uᵀ L2ᵀ = Λ^(−1) Rᵀ Z by the same factors.
         let r_inverse = Matrix4::from_diagonal(&values.map(|x| 1.0 / x).into()) * r.transpose() * unpack(z);
-        Some(Block::Positive { r, r_inverse })
+        Some(Block::Positive { r: Box::new(r), r_inverse: Box::new(r_inverse) })
     }
 
     /// W v.
@@ -340,7 +340,7 @@ impl Block {
                 out[0] = beta * (2.0 * v[0] * dot - x[0]);
                 (1..4).for_each(|i| out[i] = beta * (2.0 * v[i] * dot + x[i]));
             }
-            Block::Positive { r, .. } => out.copy_from_slice(&pack(&(r.transpose() * unpack(x) * r))),
+            Block::Positive { r, .. } => out.copy_from_slice(&pack(&(r.transpose() * unpack(x) * **r))),
         }
     }
 
@@ -348,7 +348,7 @@ impl Block {
     fn transpose(&self, x: &[f64], out: &mut [f64]) {
         match self {
             Block::Norm { .. } => self.forward(x, out),
-            Block::Positive { r, .. } => out.copy_from_slice(&pack(&(r * unpack(x) * r.transpose()))),
+            Block::Positive { r, .. } => out.copy_from_slice(&pack(&(**r * unpack(x) * r.transpose()))),
         }
     }
 
@@ -361,7 +361,7 @@ impl Block {
                 (1..4).for_each(|i| out[i] = (x[i] - 2.0 * v[i] * dot) / beta);
             }
             Block::Positive { r_inverse, .. } => {
-                out.copy_from_slice(&pack(&(r_inverse.transpose() * unpack(x) * r_inverse)));
+                out.copy_from_slice(&pack(&(r_inverse.transpose() * unpack(x) * **r_inverse)));
             }
         }
     }
@@ -371,7 +371,7 @@ impl Block {
         match self {
             Block::Norm { .. } => self.inverse(x, out),
             Block::Positive { r_inverse, .. } => {
-                out.copy_from_slice(&pack(&(r_inverse * unpack(x) * r_inverse.transpose())));
+                out.copy_from_slice(&pack(&(**r_inverse * unpack(x) * r_inverse.transpose())));
             }
         }
     }
@@ -409,7 +409,12 @@ impl<'a> Newton<'a> {
     }
 
     /// (dx, ds̃, dz̃) for the residuals r_x, r_z and the target d.
-    fn direction(&self, dual_rest: &DVector<f64>, primal_rest: &DVector<f64>, target: &DVector<f64>) -> (DVector<f64>, DVector<f64>, DVector<f64>) {
+    fn direction(
+        &self,
+        dual_rest: &DVector<f64>,
+        primal_rest: &DVector<f64>,
+        target: &DVector<f64>,
+    ) -> (DVector<f64>, DVector<f64>, DVector<f64>) {
         let quotient = self.program.quotient(&self.scaling.lambda, target);
         let rest = self.program.map(primal_rest, |k, v, out| self.scaling.blocks[k].inverse_transpose(v, out));
         // dz̃ = quotient + rest + G̃ dx, and G̃ᵀ dz̃ = −r_x.
@@ -437,7 +442,8 @@ fn singular(mut a: Matrix4<f64>) -> ([f64; 4], Matrix4<f64>) {
         let mut turned = false;
         for p in 0..3 {
             for q in p + 1..4 {
-                let (pp, qq, pq) = (a.column(p).norm_squared(), a.column(q).norm_squared(), a.column(p).dot(&a.column(q)));
+                let (pp, qq, pq) =
+                    (a.column(p).norm_squared(), a.column(q).norm_squared(), a.column(p).dot(&a.column(q)));
                 if pq.abs() <= 1e-16 * (pp * qq).sqrt() {
                     continue;
                 }

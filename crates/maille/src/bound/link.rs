@@ -32,10 +32,10 @@
 //! the largest distance that the links allow. A value below 0 proves that no state with l1 > −1 has this l2.
 
 use super::{
-    Bound, ChainBound,
+    Bound, ChainBound, axes,
     cone::{Cone, ConeProgram, eigenvalues, pack},
 };
-use crate::{energy::target::direction, lattice::Shift, model::Model};
+use crate::{lattice::Shift, model::Model};
 use maille_geometry::Vec3;
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix4};
 
@@ -128,14 +128,19 @@ impl LinkBound {
 
     /// The bound of l1 along `direction_deg` with l2 held.
     pub fn limit(&self, direction_deg: f64, l2: f64) -> LinkSolution {
-        let nothing = LinkSolution { l1: f64::INFINITY, primal_l1: f64::INFINITY, tension: vec![0.0; self.n_links], iterations: 0 };
+        let nothing = LinkSolution {
+            l1: f64::INFINITY,
+            primal_l1: f64::INFINITY,
+            tension: vec![0.0; self.n_links],
+            iterations: 0,
+        };
         let ceiling = match self.chain.limit(direction_deg, l2) {
             Bound::Unbounded => return nothing,
             Bound::Finite { l1, .. } => l1,
             Bound::L2Unreachable { .. } => 0.0,
         };
-        let along = direction(direction_deg).push(0.0);
-        let across = Vec3::new(-along.y, along.x, 0.0);
+        let (along, across) = axes(direction_deg);
+        let (along, across) = (along.push(0.0), across.push(0.0));
         let query = Query { bound: self, along, across, l2, largest_stretch: (1.0 + ceiling).max(1.0 + l2) };
         let mut program = self.template.clone();
         for (k, tie) in self.ties.iter().enumerate() {
@@ -271,7 +276,8 @@ impl Query<'_> {
             let shift = factor.solve(&right);
             for ((tie, y), _) in self.bound.ties.iter().zip(&mut out).zip(kept).filter(|(_, k)| **k) {
                 for term in &tie.terms {
-                    *y -= term.weight * Vec3::new(shift[(term.element, 0)], shift[(term.element, 1)], shift[(term.element, 2)]);
+                    *y -= term.weight
+                        * Vec3::new(shift[(term.element, 0)], shift[(term.element, 1)], shift[(term.element, 2)]);
                 }
             }
         }
@@ -351,12 +357,8 @@ fn template(ties: &[Tie], center: &[Option<usize>], turn: &[Option<usize>], n: u
     let mut cones = vec![Cone::Norm; ties.len()];
     cones.extend(turn.iter().flatten().map(|_| Cone::Positive));
     let rows = cones.iter().map(|c| c.rows()).sum();
-    let mut program = ConeProgram {
-        cost: DVector::zeros(n),
-        matrix: DMatrix::zeros(rows, n),
-        offset: DVector::zeros(rows),
-        cones,
-    };
+    let mut program =
+        ConeProgram { cost: DVector::zeros(n), matrix: DMatrix::zeros(rows, n), offset: DVector::zeros(rows), cones };
     program.cost[0] = -1.0;
     for (k, tie) in ties.iter().enumerate() {
         program.offset[4 * k] = tie.length;
@@ -392,10 +394,22 @@ fn template(ties: &[Tie], center: &[Option<usize>], turn: &[Option<usize>], n: u
 fn quaternion_form(m: &Matrix3<f64>) -> Matrix4<f64> {
     let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = std::array::from_fn(|i| std::array::from_fn(|j| m[(i, j)]));
     Matrix4::new(
-        xx + yy + zz, zy - yz, xz - zx, yx - xy, //
-        zy - yz, xx - yy - zz, xy + yx, xz + zx, //
-        xz - zx, xy + yx, yy - xx - zz, yz + zy, //
-        yx - xy, xz + zx, yz + zy, zz - xx - yy,
+        xx + yy + zz,
+        zy - yz,
+        xz - zx,
+        yx - xy, //
+        zy - yz,
+        xx - yy - zz,
+        xy + yx,
+        xz + zx, //
+        xz - zx,
+        xy + yx,
+        yy - xx - zz,
+        yz + zy, //
+        yx - xy,
+        xz + zx,
+        yz + zy,
+        zz - xx - yy,
     )
 }
 

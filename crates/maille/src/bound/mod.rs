@@ -23,6 +23,7 @@ mod link;
 pub use chain::{BindingChain, ChainBound};
 pub use link::{LinkBound, LinkSolution};
 
+use nalgebra::Vector2;
 use std::fmt;
 
 /// Which bound is meant.
@@ -109,4 +110,10 @@ pub fn best_bound(chain: &ChainBound, link: Option<&LinkBound>, direction_deg: f
     } else {
         first
     }
+}
+
+/// D and D⊥ in the sheet's plane.
+fn axes(direction_deg: f64) -> (Vector2<f64>, Vector2<f64>) {
+    let along = crate::lattice::direction(direction_deg);
+    (along, Vector2::new(-along.y, along.x))
 }

@@ -134,6 +134,13 @@ impl PairFrame {
         Jet { value, grad, hess }
     }
 
+    /// Height z of B's point at `angle_rad` over A's plane, with gradient and Hessian at that fixed angle.
+    pub fn height(&self, angle_rad: f64) -> (f64, Grad, Hess) {
+        let (sin, cos) = angle_rad.sin_cos();
+        let z = self.z_jet(&(self.arm_b + (self.u * cos + self.v * sin) * self.radius_b), true);
+        (z.value, z.grad, z.hess)
+    }
+
     /// All derivatives at `angle_rad`. On A's axis (ρ = 0), where h has a kink, ρ is floored at 1e-12 R_A.
     pub fn jet(&self, angle_rad: f64) -> PointJet {
         let (sin, cos) = angle_rad.sin_cos();

@@ -3,7 +3,7 @@
 //! Both protocols are sums of weighted squares of linear functions of four points: the first element's centre x1,
 //! the lattice vectors a1, a2, and the fourth corner's x4 − x1.
 
-use crate::{model::Model, state::State};
+use crate::{lattice::direction, model::Model, state::State};
 use maille_geometry::Vec3;
 use nalgebra::{Matrix2, Vector2};
 use serde::Serialize;
@@ -24,18 +24,6 @@ pub fn target_gradient(direction_deg: f64, l1: f64, l2: f64) -> Matrix2<f64> {
     let d = direction(direction_deg);
     let across = Vector2::new(-d.y, d.x);
     d * d.transpose() * (1.0 + l1) + across * across.transpose() * (1.0 + l2)
-}
-
-/// The unit vector at `direction_deg`, exact at multiples of 90°.
-pub fn direction(direction_deg: f64) -> Vector2<f64> {
-    let turn = direction_deg.rem_euclid(360.0);
-    match turn {
-        0.0 => Vector2::new(1.0, 0.0),
-        90.0 => Vector2::new(0.0, 1.0),
-        180.0 => Vector2::new(-1.0, 0.0),
-        270.0 => Vector2::new(0.0, -1.0),
-        _ => Vector2::new(turn.to_radians().cos(), turn.to_radians().sin()),
-    }
 }
 
 /// One weighted square |Σ c_n Y_n − t|², Y = (x1, a1, a2, x4 − x1).

@@ -14,7 +14,7 @@ use faer::Mat;
 /// What was found at a polished point.
 #[derive(Clone, Debug)]
 pub struct Certificate {
-    /// Least gap of all rows (positive where nothing touches).
+    /// Least true gap, at most 0 (where everything touches or clears, 0).
     pub smallest_gap: f64,
     /// Largest entry of c + Σ μ ∇g.
     pub dual_residual: f64,
@@ -55,7 +55,6 @@ impl Certificate {
 pub fn polish<P: Program>(program: &P, end: &SqpEnd<P::Point>) -> (P::Point, Certificate) {
     const BAND: f64 = 1e-2;
     let c = program.objective();
-    let n = c.len();
     let mut x = end.point.clone();
     let most = end.multipliers.iter().map(|m| m.value).fold(0.0, f64::max);
     let mut active: Vec<Multiplier> = end.multipliers.iter().copied().filter(|m| m.value > 1e-5 * most).collect();
@@ -82,7 +81,7 @@ pub fn polish<P: Program>(program: &P, end: &SqpEnd<P::Point>) -> (P::Point, Cer
                 break;
             }
         }
-        let certificate = certify(&c, n, &rows, &active);
+        let certificate = certify(program, &x, &rows, &active);
         let done = certificate.holds();
         let score = |c: &Certificate| (-c.smallest_gap).max(c.dual_residual).max(-c.min_multiplier);
         if best.as_ref().is_none_or(|b| score(&certificate) < score(&b.1)) {
@@ -106,7 +105,7 @@ pub fn polish<P: Program>(program: &P, end: &SqpEnd<P::Point>) -> (P::Point, Cer
     }
     best.unwrap_or_else(|| {
         let rows = program.rows(&end.point, BAND, true);
-        (end.point.clone(), certify(&c, n, &rows, &end.multipliers))
+        (end.point.clone(), certify(program, &end.point, &rows, &end.multipliers))
     })
 }
 
@@ -203,7 +202,9 @@ fn dual_residual(c: &[f64], rows: &[Row], multipliers: &[f64]) -> f64 {
 }
 
 /// The figures at a point with its rows and the multipliers of the active ones.
-fn certify(c: &[f64], n: usize, rows: &[Row], active: &[Multiplier]) -> Certificate {
+fn certify<P: Program>(program: &P, x: &P::Point, rows: &[Row], active: &[Multiplier]) -> Certificate {
+    let c = &program.objective()[..];
+    let n = c.len();
     let chosen = matched(rows, active);
     let chosen_rows: Vec<Row> = chosen.iter().map(|(k, _)| rows[*k].clone()).collect();
     // Least squares first: exact to rounding. Where signs are wrong, the constrained ones.
@@ -217,12 +218,20 @@ fn certify(c: &[f64], n: usize, rows: &[Row], active: &[Multiplier]) -> Certific
         }
     }
     let loaded: Vec<&Row> = chosen_rows.iter().zip(&multipliers).filter(|(_, mu)| **mu > 1e-8).map(|(r, _)| r).collect();
-    let (min_curvature, zero_modes) = curvature(n, &lagrangian_hessian(n, &chosen_rows, &multipliers), &loaded);
+    let mut hessian = lagrangian_hessian(n, &chosen_rows, &multipliers);
+    for v in program.hidden_curvature(x, &labelled(&chosen_rows, &multipliers)) {
+        for i in 0..n {
+            for j in 0..n {
+                hessian[(i, j)] -= v[i] * v[j];
+            }
+        }
+    }
+    let (min_curvature, zero_modes) = curvature(n, &hessian, &loaded);
     Certificate {
-        smallest_gap: rows.iter().map(|r| r.gap).fold(f64::INFINITY, f64::min),
+        smallest_gap: program.rows(x, 0.0, false).iter().map(|r| r.gap).fold(0.0, f64::min),
         dual_residual: dual_residual(c, &chosen_rows, &multipliers),
         complementarity: chosen_rows.iter().zip(&multipliers).map(|(r, mu)| (r.gap * mu).abs()).fold(0.0, f64::max),
-        min_multiplier: least(&multipliers).min(0.0f64.max(least(&multipliers))),
+        min_multiplier: least(&multipliers),
         min_curvature,
         zero_modes,
         multipliers: labelled(&chosen_rows, &multipliers),

@@ -57,6 +57,8 @@ pub trait Program {
     fn largest_step(&self, x: &Self::Point, guard: &Self::Guard, step: &[f64]) -> f64;
     /// The point reached by `step`.
     fn moved(&self, x: &Self::Point, step: &[f64]) -> Self::Point;
+    /// Curvature that the rows stand for but do not show, as vectors v of terms −v vᵀ of the Lagrangian's Hessian.
+    fn hidden_curvature(&self, x: &Self::Point, multipliers: &[Multiplier]) -> Vec<Vec<f64>>;
 }
 
 /// Limits of the iteration.

@@ -1,11 +1,13 @@
 //! The limit of one pull by the energy method (chapter 5): l1 is raised step by step, the elements reset each time,
 //! until the target is missed by more than τ; then the last step is bisected.
 
+use super::LimitOutcome;
 use crate::{
     energy::{
         Configuration, ContactOptions, HessianMethod, MinimaMethod, SheetEnergy,
-        target::{Protocol, Target, direction, target_gradient},
+        target::{Protocol, Target, target_gradient},
     },
+    lattice::direction,
     model::Model,
     record::Status,
     solve::newton::{Minimization, NewtonOptions, Outcome, minimize},
@@ -115,25 +117,6 @@ impl EnergyOptions {
         let spacing = self.sample_spacing_rad.unwrap_or(half_width / (self.samples as f64 + 1.0));
         (1..=self.samples).flat_map(|k| [-(k as f64) * spacing, k as f64 * spacing]).collect()
     }
-}
-
-/// What the search for one limit found.
-#[derive(Clone, Debug)]
-pub struct LimitOutcome {
-    /// Outcome.
-    pub status: Status,
-    /// The state at the limit, or the last one of a failed search.
-    pub state: State,
-    /// Measured F of that state.
-    pub gradient: Matrix2<f64>,
-    /// Last residual: how far that state is from its target.
-    pub residual: f64,
-    /// Newton iterations of all runs.
-    pub iterations: u64,
-    /// Minimisations.
-    pub runs: u64,
-    /// What happened, where the status does not say it.
-    pub note: Option<String>,
 }
 
 /// Searches limits of one model by the energy method.
@@ -299,9 +282,9 @@ impl Search<'_> {
 
     fn end(&self, status: Status, trial: Option<Trial>, note: Option<String>) -> LimitOutcome {
         let (state, gradient, residual) = match trial {
-            Some(t) => (t.state, t.gradient, t.residual),
-            None => (self.method.start.clone(), Matrix2::identity(), f64::NAN),
+            Some(t) => (t.state, t.gradient, Some(t.residual)),
+            None => (self.method.start.clone(), Matrix2::identity(), None),
         };
-        LimitOutcome { status, state, gradient, residual, iterations: self.iterations, runs: self.runs, note }
+        LimitOutcome { status, state, gradient, residual, iterations: self.iterations, runs: self.runs, note, exact: None }
     }
 }

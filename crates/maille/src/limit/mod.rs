@@ -1,0 +1,57 @@
+//! The limit of one pull, by the thesis's energy method or by the exact one.
+
+pub mod energy;
+pub mod exact;
+
+use crate::{
+    bound::{BindingChain, BoundKind},
+    constraint::Contact,
+    record::Status,
+    solve::kkt::Certificate,
+    state::State,
+};
+use nalgebra::Matrix2;
+
+/// What the search for one limit found.
+#[derive(Clone, Debug)]
+pub struct LimitOutcome {
+    /// Outcome.
+    pub status: Status,
+    /// The state at the limit, or the last one of a failed search.
+    pub state: State,
+    /// Measured F of that state.
+    pub gradient: Matrix2<f64>,
+    /// Last residual: how far that state is from its target (energy), or its largest violation (exact).
+    pub residual: Option<f64>,
+    /// Newton iterations, or quadratic programs, of all runs.
+    pub iterations: u64,
+    /// Minimisations, or solves from a start.
+    pub runs: u64,
+    /// What happened, where the status does not say it.
+    pub note: Option<String>,
+    /// What the exact method adds.
+    pub exact: Option<ExactFigures>,
+}
+
+/// The exact method's figures of one limit.
+#[derive(Clone, Debug, Default)]
+pub struct ExactFigures {
+    /// Proven bound of l1 and where it comes from.
+    pub bound: Option<(f64, BoundKind)>,
+    /// The chain of links that binds in the bound.
+    pub chain: Option<BindingChain>,
+    /// The certificate, complete or not.
+    pub certificate: Option<Certificate>,
+    /// Whether the links are those of the start.
+    pub links_ok: Option<bool>,
+    /// Starts that were solved.
+    pub n_starts: u64,
+    /// Distinct certified limits among them (apart by more than 1e-7).
+    pub n_distinct: u64,
+    /// Largest force between an element and its own image in the solved cell.
+    pub own_image_force: Option<f64>,
+    /// Best feasible l1 without a complete certificate.
+    pub l1_uncertified: Option<f64>,
+    /// Loaded contacts.
+    pub contacts: Vec<Contact>,
+}
