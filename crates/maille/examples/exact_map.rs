@@ -1,6 +1,6 @@
 //! The validation map of the exact method: every thesis design × 25 directions × four l2 at both radii, 2,600 limits.
 //!
-//!     cargo run --release -p maille --example exact_map -- [--designs 1.1,2] [--radii 0.1,0.05] [--cell 1x1] [--verbose] [OUT.csv]
+//!     cargo run --release -p maille --example exact_map -- [--designs 1.1,2] [--radii 0.1,0.05] [--cells "1x1 2x1 1x2 2x2 3x3"] [--verbose] [OUT.csv]
 //!
 //! Prints counts by design and status, and writes them to OUT.csv.
 
@@ -34,8 +34,9 @@ fn main() {
         }
     }
     let option = |name: &str, default: &str| options.get(name).cloned().unwrap_or_else(|| default.into());
-    let cell: Cell = option("cell", "1x1").parse().expect("a cell");
-    let directions: Vec<f64> = (0..25).map(|k| 7.5 * f64::from(k)).collect();
+    let cells: Vec<Cell> = option("cells", "1x1").split(' ').map(|c| c.parse().expect("a cell")).collect();
+    let every: f64 = option("every", "7.5").parse().expect("an angle");
+    let directions: Vec<f64> = (0..).map(|k| every * f64::from(k)).take_while(|d| *d <= 180.0).collect();
     let mut table = String::from("design,minor_radius,status,rows,bound_attained\n");
     let mut totals: BTreeMap<&str, usize> = BTreeMap::new();
     let begun = Instant::now();
@@ -44,11 +45,12 @@ fn main() {
             let radius: f64 = radius.parse().expect("a radius");
             let text = builtin(name).expect("a built-in design");
             let design = read_design(name, text).expect("valid").with_minor_radius(radius);
-            let model = Model::compile(&design, cell).expect("compiles");
+            let models: Vec<Model> = cells.iter().map(|c| Model::compile(&design, *c).expect("compiles")).collect();
             let rows = Mutex::new(Vec::<Finished>::new());
-            let method = Method::Exact(ExactOptions::default());
+            let starts = option("starts", "4").parse().expect("a number");
+            let method = Method::Exact(ExactOptions { starts, ..ExactOptions::default() });
             let started = Instant::now();
-            characterize(&model, Some(radius), &method, &directions, &L2, &|_| true, &AtomicBool::new(false), &|row| {
+            characterize(&models, Some(radius), &method, &directions, &L2, &|_| true, &AtomicBool::new(false), &|row| {
                 rows.lock().expect("no panic").push(row);
             });
             let took = started.elapsed().as_secs_f64();

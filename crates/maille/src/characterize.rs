@@ -62,12 +62,13 @@ pub fn tasks(directions_deg: &[f64], l2: &[f64]) -> Vec<Task> {
 
 /// Finds the limits of a map on the current thread pool and hands each over as it is finished, in any order.
 ///
+/// `models` are the design compiled for the cell to solve and, for the exact method, larger ones that it may go on to.
 /// `wanted` tells which tasks are still open. The energy method starts every limit from the design's state alone; the
 /// exact one goes along each direction outwards from l2 = 0, and repeats a whole direction where one of its limits is
 /// open. So rows do not depend on the number of threads, nor on where an earlier run was stopped. After `cancel` the
 /// limits under way come back as interrupted or not at all.
 pub fn characterize(
-    model: &Model,
+    models: &[Model],
     minor_radius: Option<f64>,
     method: &Method,
     directions_deg: &[f64],
@@ -77,12 +78,13 @@ pub fn characterize(
     finished: &(dyn Fn(Finished) + Sync),
 ) {
     let report = |task: Task, outcome: &LimitOutcome, begun: Instant| {
+        let model = &models[outcome.exact.as_ref().map_or(0, |e| e.cell)];
         let (row, state) = report(model, minor_radius, method.name(), &task, outcome, begun.elapsed().as_secs_f64());
         finished(Finished { row, state });
     };
     match method {
         Method::Energy(options) => {
-            let energy = EnergyMethod::new(model, options.clone(), cancel);
+            let energy = EnergyMethod::new(&models[0], options.clone(), cancel);
             let open: Vec<Task> = tasks(directions_deg, l2).into_iter().filter(|t| wanted(*t)).collect();
             open.par_iter().with_max_len(1).for_each(|task| {
                 if !cancel.load(Ordering::Relaxed) {
@@ -92,7 +94,7 @@ pub fn characterize(
             });
         }
         Method::Exact(options) => {
-            let exact = ExactMethod::new(model, options.clone());
+            let exact = ExactMethod::new(models, options.clone());
             directions_deg.par_iter().with_max_len(1).for_each(|&direction_deg| {
                 let task = |k: usize| Task { direction_deg, l2: l2[k] };
                 if cancel.load(Ordering::Relaxed) || !(0..l2.len()).any(|k| wanted(task(k))) {

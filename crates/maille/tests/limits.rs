@@ -21,7 +21,7 @@ fn rows(model: &Model, options: &EnergyOptions, tasks: &[Task]) -> Vec<Finished>
         list.dedup();
     }
     let method = Method::Energy(options.clone());
-    characterize(model, None, &method, &directions, &l2, &|_| true, &AtomicBool::new(false), &|row| {
+    characterize(std::slice::from_ref(model), None, &method, &directions, &l2, &|_| true, &AtomicBool::new(false), &|row| {
         out.lock().unwrap().push(row);
     });
     let mut out = out.into_inner().unwrap();

@@ -8,7 +8,7 @@
 use super::{ExactFigures, LimitOutcome};
 use crate::{
     bound::{Bound, ChainBound, LinkBound, best_bound},
-    constraint::{Parameter, Posed, Pull, SheetProgram},
+    constraint::{Contact, Parameter, Posed, Pull, SheetProgram},
     energy::target::target_gradient,
     lattice::direction,
     model::Model,
@@ -17,7 +17,7 @@ use crate::{
         kkt::{Certificate, polish},
         sqp::{Multiplier, Program, SqpOptions, maximize, violation},
     },
-    state::State,
+    state::{Pose, State},
     topology::{
         self,
         crossing::{Motion, StepBound},
@@ -54,10 +54,14 @@ const SHAKES: [f64; 6] = [0.03, 0.1, 0.3, 0.05, 0.2, 0.02];
 const KICKS: usize = 6;
 /// Rounds of maximising and polishing between kicks.
 const ROUNDS: usize = 6;
+/// A force between an element and its own image above this (per unit pull) calls for a larger cell.
+const OWN_IMAGE_FORCE: f64 = 1e-6;
+/// Shakes of a smaller cell's state that start a larger cell's solve.
+const CELL_SHAKES: [f64; 2] = [0.02, 0.1];
 
-/// Finds limits of one model by the exact method.
+/// Finds limits of one sheet by the exact method.
 pub struct ExactMethod<'a> {
-    model: &'a Model,
+    models: &'a [Model],
     options: ExactOptions,
     chain: ChainBound,
     link: LinkBound,
@@ -67,7 +71,8 @@ pub struct ExactMethod<'a> {
 struct Solve {
     x: Posed,
     certificate: Certificate,
-    figures: (Vec<crate::constraint::Contact>, bool),
+    contacts: Vec<Contact>,
+    links_ok: bool,
     certified: bool,
 }
 
@@ -117,22 +122,25 @@ struct Strained {
 }
 
 impl<'a> ExactMethod<'a> {
-    /// Prepares the bounds.
-    pub fn new(model: &'a Model, options: ExactOptions) -> Self {
-        let chain = ChainBound::new(model);
-        let link = LinkBound::new(model, &chain);
-        ExactMethod { model, options, chain, link }
+    /// Prepares the bounds. `models` are the same design compiled for cells of growing size: the first is solved, the
+    /// others where it asks for more (see [`Self::limits`]). Panics if there is none.
+    pub fn new(models: &'a [Model], options: ExactOptions) -> Self {
+        let chain = ChainBound::new(&models[0]);
+        let link = LinkBound::new(&models[0], &chain);
+        ExactMethod { models, options, chain, link }
     }
 
     /// The limits along one direction, in the order of `l2`. Solved outwards from l2 = 0, each from its neighbour's state.
     ///
+    /// Where an element presses on its own image, or l2 is not reached, the larger cells are solved too, from the
+    /// smaller cell's state; the largest limit counts, and the outcome says which cell gave it.
     /// `finished` gets each limit with its index in `l2`; after `cancel` the rest comes back as interrupted.
     pub fn limits(&self, direction_deg: f64, l2: &[f64], cancel: &AtomicBool, finished: &mut dyn FnMut(usize, LimitOutcome)) {
         let mut order: Vec<usize> = (0..l2.len()).collect();
         order.sort_by(|&a, &b| l2[a].abs().total_cmp(&l2[b].abs()).then(l2[a].total_cmp(&l2[b])));
         let (mut above, mut below): (Option<Strained>, Option<Strained>) = (None, None);
         if !l2.contains(&0.0) {
-            let (_, at_zero) = self.limit(direction_deg, 0.0, None, cancel);
+            let at_zero = self.limit(direction_deg, 0.0, None, cancel).1;
             (above, below) = (at_zero.clone(), at_zero);
         }
         for k in order {
@@ -150,73 +158,129 @@ impl<'a> ExactMethod<'a> {
         }
     }
 
+    /// One limit; with the first cell's state at it, from which the next one goes on.
     fn limit(&self, direction_deg: f64, l2: f64, neighbour: Option<Strained>, cancel: &AtomicBool) -> (LimitOutcome, Option<Strained>) {
         let bound = best_bound(&self.chain, Some(&self.link), direction_deg, l2);
-        let mut figures = ExactFigures {
-            bound: bound.l1().zip(bound.kind()),
-            chain: bound.chain().cloned(),
-            ..ExactFigures::default()
+        let figures = ExactFigures { bound: bound.l1().zip(bound.kind()), chain: bound.chain().cloned(), ..ExactFigures::default() };
+        let ended = |status, note: &str| {
+            let mut outcome = self.nothing(status, figures.clone());
+            outcome.note = (!note.is_empty()).then(|| note.to_owned());
+            (outcome, None)
         };
-        let ended = |status, note: Option<&str>, figures| LimitOutcome {
+        let most = match bound {
+            Bound::Unbounded => return ended(Status::Unbounded, "no chain of links joins lattice vectors along this direction"),
+            Bound::L2Unreachable { .. } => return ended(Status::L2Unreachable, ""),
+            Bound::Finite { l1, .. } => l1,
+        };
+        let mut starts: Vec<Strained> = neighbour.iter().cloned().collect();
+        let fresh = self.options.starts.max(1) - starts.len();
+        starts.extend((0..fresh).map(|k| Strained { state: self.shaken(k), l1: 0.0, l2: 0.0 }));
+        let first = self.search(0, direction_deg, l2, starts, most, cancel);
+        let reached = first.best.as_ref().map(|b| Strained { state: b.x.state.clone(), l1: b.x.p[0], l2 });
+        let mut tally = first;
+        let mut trend = vec![(0, tally.l1())];
+        let mut cell = 0;
+        let asks = tally.best.as_ref().is_none_or(|best| self.own_image_force(0, best) > OWN_IMAGE_FORCE);
+        let last = self.models.len() - 1;
+        for larger in 1..self.models.len() {
+            // The last cell is for limits that have grown.
+            let idle = larger == last && larger > 1 && cell == 0 && tally.best.is_some();
+            if !asks || idle || tally.attains(most) || cancel.load(Ordering::Relaxed) {
+                break;
+            }
+            let from = reached.clone().or_else(|| neighbour.clone());
+            let from = from.unwrap_or_else(|| Strained { state: self.models[0].start.clone(), l1: 0.0, l2: 0.0 });
+            let mut rng = ChaCha8Rng::seed_from_u64(self.options.seed.wrapping_add(larger as u64));
+            let starts = CELL_SHAKES.iter().map(|&size| {
+                let state = tiled(&self.models[larger], &from.state);
+                Strained { state: shaken_from(&self.models[larger], &state, size, &mut rng), ..from.clone() }
+            });
+            let found = self.search(larger, direction_deg, l2, starts.collect(), most, cancel);
+            trend.push((larger, found.l1()));
+            let better = match (&found.best, &tally.best) {
+                (Some(new), Some(old)) => (new.certified, new.x.p[0]) > (old.certified, old.x.p[0] + SAME_LIMIT),
+                (new, _) => new.is_some(),
+            };
+            let (runs, iterations) = (tally.runs + found.runs, tally.iterations + found.iterations);
+            if better {
+                (cell, tally) = (larger, found);
+            }
+            (tally.runs, tally.iterations) = (runs, iterations);
+        }
+        if cancel.load(Ordering::Relaxed) {
+            return ended(Status::Interrupted, "");
+        }
+        let mut outcome = self.judge(cell, direction_deg, l2, most, tally, figures);
+        if trend.len() > 1 && outcome.note.is_none() {
+            let list: Vec<String> = trend
+                .iter()
+                .map(|(k, l1)| format!("{} {}", self.models[*k].cell, l1.map_or("none".into(), |x| format!("{x:.9}"))))
+                .collect();
+            let grows = last > 0 && cell == last;
+            let says = if grows { "the limit still grows with the cell" } else { "cells tried" };
+            outcome.note = Some(format!("{says}: {}", list.join(", ")));
+        }
+        (outcome, reached)
+    }
+
+    fn nothing(&self, status: Status, figures: ExactFigures) -> LimitOutcome {
+        LimitOutcome {
             status,
-            state: self.model.start.clone(),
+            state: self.models[0].start.clone(),
             gradient: nalgebra::Matrix2::identity(),
             residual: None,
             iterations: 0,
             runs: 0,
-            note: note.map(str::to_owned),
+            note: None,
             exact: Some(figures),
-        };
-        match bound {
-            Bound::Unbounded => {
-                return (ended(Status::Unbounded, Some("no chain of links joins lattice vectors along this direction"), figures), None);
-            }
-            Bound::L2Unreachable { .. } => return (ended(Status::L2Unreachable, None, figures), None),
-            Bound::Finite { .. } => {}
         }
-        let family = Family { reference: [self.model.start.a1, self.model.start.a2], direction_deg };
-        let mut search = Search { method: self, family, l2, cancel, iterations: 0, runs: 0 };
-        let (mut best, mut found): (Option<Solve>, Vec<f64>) = (None, Vec::new());
-        let most = bound.l1().unwrap_or(f64::INFINITY);
-        for start in 0..self.options.starts.max(1) {
+    }
+
+    /// Solves `starts` in one cell until the bound is attained; keeps the best.
+    fn search(&self, cell: usize, direction_deg: f64, l2: f64, starts: Vec<Strained>, most: f64, cancel: &AtomicBool) -> Tally {
+        let model = &self.models[cell];
+        let family = Family { reference: [model.start.a1, model.start.a2], direction_deg };
+        let mut search = Search { model, seed: self.options.seed, family, l2, cancel, iterations: 0, runs: 0 };
+        let mut tally = Tally::default();
+        for start in starts {
             if cancel.load(Ordering::Relaxed) {
-                return (ended(Status::Interrupted, None, figures), None);
+                break;
             }
-            let from = match (&neighbour, start) {
-                (Some(neighbour), 0) => neighbour.clone(),
-                _ => Strained { state: self.shaken(start), l1: 0.0, l2: 0.0 },
-            };
-            let Some(solve) = search.solve(from) else { continue };
+            let Some(solve) = search.solve(start) else { continue };
             let l1 = solve.x.p[0];
-            if solve.certified && !found.iter().any(|other| (other - l1).abs() < SAME_LIMIT) {
-                found.push(l1);
+            if solve.certified && !tally.distinct.iter().any(|other| (other - l1).abs() < SAME_LIMIT) {
+                tally.distinct.push(l1);
             }
-            let better = best.as_ref().is_none_or(|b| (solve.certified, l1) > (b.certified, b.x.p[0]));
-            if better {
-                best = Some(solve);
+            if tally.best.as_ref().is_none_or(|b| (solve.certified, l1) > (b.certified, b.x.p[0])) {
+                tally.best = Some(solve);
             }
-            if best.as_ref().is_some_and(|b| b.certified && (b.x.p[0] - most).abs() <= ATTAINED) {
+            if tally.attains(most) {
                 break;
             }
         }
-        figures.n_starts = search.runs;
-        figures.n_distinct = found.len() as u64;
-        let (iterations, runs) = (search.iterations, search.runs);
-        let Some(best) = best else {
-            let note = "no start reached this l2 without overlap; nothing is proved";
-            return (LimitOutcome { iterations, runs, ..ended(Status::L2NotReached, Some(note), figures) }, None);
+        (tally.iterations, tally.runs) = (search.iterations, search.runs);
+        tally
+    }
+
+    /// Status and figures of the best solve.
+    fn judge(&self, cell: usize, direction_deg: f64, l2: f64, most: f64, tally: Tally, mut figures: ExactFigures) -> LimitOutcome {
+        figures.n_starts = tally.runs;
+        figures.n_distinct = tally.distinct.len() as u64;
+        figures.cell = cell;
+        let attained = tally.attains(most);
+        let (iterations, runs) = (tally.iterations, tally.runs);
+        let Some(best) = tally.best else {
+            let note = Some("no start reached this l2 without overlap; nothing is proved".to_owned());
+            return LimitOutcome { iterations, runs, note, ..self.nothing(Status::L2NotReached, ExactFigures { cell: 0, ..figures }) };
         };
         let l1 = best.x.p[0];
-        let own = |contact: &&crate::constraint::Contact| {
-            self.model.rings[contact.pair.ring_a].element == self.model.rings[contact.pair.ring_b].element
-        };
-        figures.own_image_force = Some(best.figures.0.iter().filter(own).map(|c| c.force).fold(0.0, f64::max));
-        figures.contacts = best.figures.0;
-        figures.links_ok = Some(best.figures.1);
+        figures.own_image_force = Some(self.own_image_force(cell, &best));
         let residual = Some((-best.certificate.smallest_gap).max(0.0));
+        figures.contacts = best.contacts;
+        figures.links_ok = Some(best.links_ok);
         figures.certificate = Some(best.certificate);
         let above_bound = l1 > most + ATTAINED;
-        let status = match (best.certified && !above_bound, (l1 - most).abs() <= ATTAINED) {
+        let status = match (best.certified && !above_bound, attained) {
             (true, true) => Status::Global,
             (true, false) => Status::Local,
             (false, _) => Status::Uncertified,
@@ -226,16 +290,50 @@ impl<'a> ExactMethod<'a> {
         }
         let gradient = target_gradient(direction_deg, l1, l2);
         let note = above_bound.then(|| format!("l1 = {l1} lies above its proven bound {most}: one of them is wrong"));
-        let outcome =
-            LimitOutcome { status, state: best.x.state.clone(), gradient, residual, iterations, runs, note, exact: Some(figures) };
-        (outcome, Some(Strained { state: best.x.state, l1, l2 }))
+        LimitOutcome { status, state: best.x.state, gradient, residual, iterations, runs, note, exact: Some(figures) }
+    }
+
+    fn own_image_force(&self, cell: usize, solve: &Solve) -> f64 {
+        let element = |ring: usize| self.models[cell].rings[ring].element;
+        let own = solve.contacts.iter().filter(|c| element(c.pair.ring_a) == element(c.pair.ring_b));
+        own.map(|c| c.force).fold(0.0, f64::max)
     }
 
     /// The design's state, every element moved and turned at random, but no circle across another.
     fn shaken(&self, start: usize) -> State {
         let mut rng = ChaCha8Rng::seed_from_u64(self.options.seed.wrapping_mul(0x9e37_79b9).wrapping_add(start as u64));
-        shaken_from(self.model, &self.model.start, SHAKES[start % SHAKES.len()], &mut rng)
+        shaken_from(&self.models[0], &self.models[0].start, SHAKES[start % SHAKES.len()], &mut rng)
     }
+}
+
+/// What the solves of one cell found.
+#[derive(Default)]
+struct Tally {
+    best: Option<Solve>,
+    distinct: Vec<f64>,
+    iterations: u64,
+    runs: u64,
+}
+
+impl Tally {
+    fn l1(&self) -> Option<f64> {
+        self.best.as_ref().map(|b| b.x.p[0])
+    }
+
+    fn attains(&self, most: f64) -> bool {
+        self.best.as_ref().is_some_and(|b| b.certified && (b.x.p[0] - most).abs() <= ATTAINED)
+    }
+}
+
+/// A primitive cell's state repeated over the cell of `model`.
+fn tiled(model: &Model, state: &State) -> State {
+    let copies = model.cell.cosets();
+    let poses = copies.iter().flat_map(|&coset| {
+        let shift = state.translation(coset);
+        state.poses.iter().map(move |pose| Pose { position: pose.position + shift, ..*pose })
+    });
+    let [a1, a2] = model.cell.vectors(state.a1, state.a2);
+    State { poses: poses.collect(), a1, a2 }
 }
 
 /// `state` with its elements moved and turned by up to `size`, less where circles could meet.
@@ -249,7 +347,8 @@ fn shaken_from(model: &Model, state: &State, size: f64, rng: &mut ChaCha8Rng) ->
 }
 
 struct Search<'a> {
-    method: &'a ExactMethod<'a>,
+    model: &'a Model,
+    seed: u64,
     family: Family,
     l2: f64,
     cancel: &'a AtomicBool,
@@ -261,7 +360,7 @@ impl Search<'_> {
     /// From a start: first l2 is brought to its value with l1 free, then l1 is maximised. `None` where l2 is not reached.
     fn solve(&mut self, from: Strained) -> Option<Solve> {
         self.runs += 1;
-        let model = self.method.model;
+        let model = self.model;
         let mut at = from;
         if at.l2 != self.l2 {
             let pull = self.family.approach(at.l2, self.l2);
@@ -279,7 +378,7 @@ impl Search<'_> {
         let pull = self.family.pull(self.l2);
         let mut program = SheetProgram::new(model, &pull);
         let mut x = program.posed(at.state, vec![at.l1]);
-        let mut rng = ChaCha8Rng::seed_from_u64(self.method.options.seed ^ self.runs);
+        let mut rng = ChaCha8Rng::seed_from_u64(self.seed ^ self.runs);
         let mut best: Option<Solve> = None;
         for kick in 0..=KICKS {
             if kick > 0 {
@@ -312,10 +411,10 @@ impl Search<'_> {
             let end = maximize(program, x, known, &options, self.cancel);
             self.iterations += end.iterations as u64;
             let (polished, certificate) = polish(program, &end);
-            let links_ok = topology::links_kept(self.method.model, &polished.state);
+            let links_ok = topology::links_kept(self.model, &polished.state);
             let certified = certificate.holds() && links_ok;
             let contacts = program.contacts(&polished, &certificate.multipliers);
-            let solve = Solve { x: polished, certificate, figures: (contacts, links_ok), certified };
+            let solve = Solve { x: polished, certificate, contacts, links_ok, certified };
             (x, known) = (end.point, end.multipliers);
             last = Some(solve);
             if certified {

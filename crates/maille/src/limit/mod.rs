@@ -38,6 +38,8 @@ pub struct LimitOutcome {
 pub struct ExactFigures {
     /// Proven bound of l1 and where it comes from.
     pub bound: Option<(f64, BoundKind)>,
+    /// Which of the method's cells gave the limit.
+    pub cell: usize,
     /// The chain of links that binds in the bound.
     pub chain: Option<BindingChain>,
     /// The certificate, complete or not.
