@@ -6,10 +6,10 @@ use crate::{
     progress::Progress,
 };
 use maille::{
-    characterize::{Finished, Task, characterize, tasks},
+    characterize::{Finished, Method, Task, characterize, tasks},
     energy::{HessianMethod, MinimaMethod, target::Protocol},
     lattice::Cell,
-    limit::EnergyOptions,
+    limit::{energy::EnergyOptions, exact::ExactOptions},
     model::Model,
     record::{LimitRow, StateRecord, Status},
 };
@@ -40,26 +40,27 @@ Examples:
   maille characterize 1.1
   maille characterize 3.1 --directions 0:180:5 --l2 -0.25,-0.125,0
   maille characterize 1.2 --minor-radius 0.05 --quantity lambda1
-  maille characterize 3.1 --cell \"1,0;-1,2\" --protocol corners --tau 0.1 --out corners-3.1
+  maille characterize 3.1 --method energy --cell \"1,0;-1,2\" --protocol corners --tau 0.1 --out corners-3.1
   maille characterize my-weave.toml --out results/my-weave")]
 pub struct Args {
     /// A built-in design (see `maille designs`) or a TOML file
     design: String,
     /// Directions of the pull, degrees counter-clockwise from x: a list, or first:last:step
-    #[arg(long, default_value = "0:180:15", value_parser = parse, allow_hyphen_values = true)]
+    #[arg(long, default_value = "0:180:5", value_parser = parse, allow_hyphen_values = true)]
     directions: Numbers,
     /// Stretch - 1 held across the pull: a list, or first:last:step
-    #[arg(long, default_value = "-0.25,0,0.25", value_parser = parse_l2, allow_hyphen_values = true)]
+    #[arg(long, default_value = "-0.25:0.25:0.125", value_parser = parse_l2, allow_hyphen_values = true)]
     l2: Numbers,
     /// Minor radius of every ring that gives none, in the file's unit
     #[arg(long, value_parser = positive)]
     minor_radius: Option<f64>,
     /// How a limit is found
-    #[arg(long, value_enum, default_value_t = Method::Energy)]
-    method: Method,
-    /// Cell: 1x1, 2x1, 2x2, … or an integer matrix as "1,0;-1,2"
-    #[arg(long, default_value = "1x1")]
-    cell: Cell,
+    #[arg(long, value_enum, default_value_t = MethodArg::Exact)]
+    method: MethodArg,
+    /// Cell: 1x1, 2x1, 2x2, …, an integer matrix as "1,0;-1,2", or auto: 1x1, and larger cells where an element
+    /// presses on its own image (exact method)
+    #[arg(long, default_value = "auto", value_parser = cell_choice)]
+    cell: CellChoice,
     /// What polar.svg and polar.png show
     #[arg(long, value_enum, default_value_t = Shown::Stretch)]
     quantity: Shown,
@@ -78,6 +79,9 @@ pub struct Args {
     /// No progress and no summary
     #[arg(long, short)]
     quiet: bool,
+    /// Exact method: starts of a limit whose bound is not attained
+    #[arg(long, default_value_t = ExactOptions::default().starts, value_parser = |t: &str| small(t, 10_000))]
+    starts: usize,
     #[command(flatten, next_help_heading = "Energy method (lengths in units of the reference radius R)")]
     energy: EnergyArgs,
 }
@@ -113,6 +117,40 @@ struct EnergyArgs {
     minima: MinimaArg,
 }
 
+/// `auto`, or one cell.
+#[derive(Clone, Copy)]
+enum CellChoice {
+    Auto,
+    One(Cell),
+}
+
+/// Cells that `auto` may go on to, in this order.
+const LARGER: [&str; 4] = ["2x1", "1x2", "2x2", "3x3"];
+/// Elements in a cell that `auto` goes on to, at most.
+const MOST_ELEMENTS: usize = 40;
+
+fn cell_choice(text: &str) -> Result<CellChoice, String> {
+    match text {
+        "auto" => Ok(CellChoice::Auto),
+        _ => text.parse().map(CellChoice::One).map_err(|e: maille::error::InvalidInput| format!("{}; {}", e.problem, e.help)),
+    }
+}
+
+impl CellChoice {
+    /// The cells to compile: for the energy method `auto` is the design's own.
+    fn cells(self, method: MethodArg, elements: usize) -> Vec<Cell> {
+        match (self, method) {
+            (CellChoice::One(cell), _) => vec![cell],
+            (CellChoice::Auto, MethodArg::Energy) => vec![Cell::PRIMITIVE],
+            (CellChoice::Auto, MethodArg::Exact) => {
+                let larger = LARGER.iter().filter_map(|text| text.parse::<Cell>().ok());
+                let larger = larger.filter(|cell| cell.copies() * elements <= MOST_ELEMENTS);
+                std::iter::once(Cell::PRIMITIVE).chain(larger).collect()
+            }
+        }
+    }
+}
+
 fn small(text: &str, most: usize) -> Result<usize, String> {
     match text.parse::<usize>() {
         Ok(n) if n <= most => Ok(n),
@@ -121,7 +159,9 @@ fn small(text: &str, most: usize) -> Result<usize, String> {
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
-enum Method {
+enum MethodArg {
+    /// Maximises l1 under all gaps, with a certificate and a proven bound
+    Exact,
     /// The thesis's: an energy of contacts and targets, minimised
     Energy,
 }
@@ -208,14 +248,21 @@ impl Collected {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let input = Input::read(&args.design, args.minor_radius)?;
-    let model = input.compile(&input.design, args.cell)?;
-    let options = args.energy.options(args.seed);
+    let cells = args.cell.cells(args.method, input.design.elements.len());
+    let models: Vec<Model> = cells.iter().map(|cell| input.compile(&input.design, *cell)).collect::<Result<_>>()?;
+    let method = match args.method {
+        MethodArg::Exact => Method::Exact(ExactOptions { starts: args.starts.max(1), seed: args.seed }),
+        MethodArg::Energy => Method::Energy(args.energy.options(args.seed)),
+    };
     let parameters = json!({
-        "method": "energy",
-        "cell": args.cell.to_string(),
+        "method": method.name(),
+        "cells": cells.iter().map(Cell::to_string).collect::<Vec<_>>(),
         "directions_deg": args.directions.0,
         "l2": args.l2.0,
-        "energy": options.parameters(&model),
+        "options": match &method {
+            Method::Exact(options) => json!(options.parameters()),
+            Method::Energy(options) => json!(options.parameters(&models[0])),
+        },
     });
     let out = args.out.clone().unwrap_or_else(|| PathBuf::from("maille-out").join(folder_name(&input.design.name)));
     let version = env!("CARGO_PKG_VERSION");
@@ -230,7 +277,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     }
     let open: Vec<Task> = all.iter().zip(&rows).filter(|(_, row)| row.is_none()).map(|(task, _)| *task).collect();
     if !args.quiet {
-        if topology_is_loose(&model) {
+        if maille::topology::binding_vectors(&models[0]).is_empty() {
             eprintln!("warning: no chain of links joins the cells of this design; every limit is unbounded");
         }
         if open.len() < all.len() {
@@ -262,7 +309,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         .into_diagnostic()
         .wrap_err("cannot start the threads")?;
     let begun = Instant::now();
-    pool.install(|| characterize(&model, input.design.minor_radius, &options, &open, &cancel, &receive));
+    let (directions, l2) = (&args.directions.0, &args.l2.0);
+    let wanted = |task: Task| open.contains(&task);
+    pool.install(|| characterize(&models, input.design.minor_radius, &method, directions, l2, &wanted, &cancel, &receive));
     progress.finish();
     let mut collected = collected.into_inner().unwrap_or_else(|e| e.into_inner());
     if let Some(report) = collected.failure {
@@ -271,7 +320,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     collected.write()?;
 
     let (rows, _) = collected.finished();
-    let words = caption(&options);
+    let words = caption(&method);
     let quantity = match args.quantity {
         Shown::Stretch => Quantity::Stretch,
         Shown::L1 => Quantity::L1,
@@ -288,10 +337,6 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         }
     }
     Ok(if interrupted { ExitCode::from(130) } else { ExitCode::SUCCESS })
-}
-
-fn topology_is_loose(model: &Model) -> bool {
-    maille::topology::binding_vectors(model).is_empty()
 }
 
 /// The design's name as a folder: a name with a path separator stays one folder.
@@ -312,17 +357,19 @@ fn stop_on_interrupt(cancel: &Arc<AtomicBool>) -> Result<()> {
     .wrap_err("cannot listen for Ctrl-C")
 }
 
-fn caption(options: &EnergyOptions) -> Vec<String> {
-    let protocol = match options.protocol {
-        Protocol::Strain => "strain protocol",
-        Protocol::Corners => "corner protocol",
-    };
-    vec![
-        protocol.to_string(),
-        format!("α/β = {:.0e}", options.alpha),
-        format!("τ = {}", options.tau),
-        format!("l₁ to {}", options.l1_resolution),
-    ]
+fn caption(method: &Method) -> Vec<String> {
+    match method {
+        Method::Exact(_) => Vec::new(),
+        Method::Energy(options) => vec![
+            match options.protocol {
+                Protocol::Strain => "strain protocol".into(),
+                Protocol::Corners => "corner protocol".into(),
+            },
+            format!("α/β = {:.0e}", options.alpha),
+            format!("τ = {}", options.tau),
+            format!("l₁ to {}", options.l1_resolution),
+        ],
+    }
 }
 
 /// Least and largest limit of each l2, what has no limit, and where the files are.

@@ -28,6 +28,16 @@ impl Quantity {
         }
     }
 
+    /// The same of the proven bound: of λ1, the larger eigenvalue that F = diag(1 + bound, 1 + l2) has.
+    fn of_bound(self, row: &LimitRow) -> Option<f64> {
+        let bound = row.bound_l1?;
+        Some(match self {
+            Quantity::Stretch => 1.0 + bound,
+            Quantity::L1 => bound,
+            Quantity::Lambda1 => (1.0 + bound).max(1.0 + row.l2).powi(2) - 1.0,
+        })
+    }
+
     /// The value of the sheet as it lies, in the centre of the plot.
     fn base(self) -> f64 {
         match self {
@@ -79,10 +89,19 @@ impl PolarPlot {
             let points: Vec<_> = of_l2.map(|row| (row.direction_deg, quantity.of(row))).collect();
             Curve::new(signed(&format!("{l2}")), l2, CurveKind::Limits, &points)
         };
+        // Where every limit attains its bound the two curves are one.
+        let open = |l2: &&f64| rows.iter().any(|row| row.l2 == **l2 && row.bound_gap.is_some_and(|gap| gap > 1e-6));
+        let bound = |&l2: &f64| {
+            let of_l2 = rows.iter().filter(|row| row.l2 == l2 && row.l1.is_some());
+            let points: Vec<_> = of_l2.map(|row| (row.direction_deg, quantity.of_bound(row))).collect();
+            Curve::new(String::new(), l2, CurveKind::Bound, &points)
+        };
         let mut caption = vec![inputs(design, rows, parameters)];
         caption.extend(symmetry(rows, quantity));
+        caption.extend(proven(rows));
         caption.extend(missing(rows, quantity));
-        Self { title: heading(design), quantity, curves: l2.iter().map(curve).collect(), caption }
+        let curves = l2.iter().map(curve).chain(l2.iter().filter(open).map(bound)).collect();
+        Self { title: heading(design), quantity, curves, caption }
     }
 }
 
@@ -124,6 +143,16 @@ fn symmetry(rows: &[LimitRow], quantity: Quantity) -> Option<String> {
     };
     let symbol = if quantity == Quantity::Lambda1 { "λ₁" } else { "l₁" };
     Some(format!("{computed}. A pull along D is the same pull along −D: {symbol} repeats after 180°."))
+}
+
+/// How many limits attain a proven bound, where a record has bounds.
+fn proven(rows: &[LimitRow]) -> Option<String> {
+    let limits = rows.iter().filter(|row| row.l1.is_some()).count();
+    let global = rows.iter().filter(|row| row.status == Status::Global).count();
+    rows.iter().any(|row| row.bound_l1.is_some()).then(|| match limits - global {
+        0 => format!("All {limits} limits attain their proven bound: none can be larger."),
+        _ => format!("{global} of {limits} limits attain their proven bound; dashed: the bound where others do not."),
+    })
 }
 
 fn significant(x: f64) -> String {
@@ -345,16 +374,20 @@ fn draw_markers(canvas: &mut Canvas, curve: &Curve, look: &Look, scale: &Scale) 
 fn draw_legend(canvas: &mut Canvas, input: &PolarPlot, looks: &[Look], scale: &Scale) {
     let [x, mut y] = LEGEND;
     canvas.text([x, y], TextStyle { bold: true, ..style(13.0, INK, Anchor::Start) }, "l₂ across the pull");
-    for (curve, look) in input.curves.iter().zip(looks) {
+    for (curve, look) in input.curves.iter().zip(looks).filter(|(curve, _)| curve.kind == CurveKind::Limits) {
         y += 24.0;
         canvas.line([x, y - 4.5], [x + 36.0, y - 4.5], look.stroke(curve.kind));
-        if curve.kind == CurveKind::Limits {
-            look.draw_marker(canvas, [x + 18.0, y - 4.5], MARKER);
-        }
+        look.draw_marker(canvas, [x + 18.0, y - 4.5], MARKER);
         canvas.text([x + 48.0, y], style(13.0, INK, Anchor::Start), &curve.label);
         if curve.values().next().is_none() {
             canvas.text([x + 100.0, y], style(12.0, SOFT, Anchor::Start), "no limit");
         }
+    }
+    if let Some((curve, _)) = input.curves.iter().zip(looks).find(|(curve, _)| curve.kind == CurveKind::Bound) {
+        y += 24.0;
+        let dashed = Stroke { color: SOFT, ..looks[0].stroke(curve.kind) };
+        canvas.line([x, y - 4.5], [x + 36.0, y - 4.5], dashed);
+        canvas.text([x + 48.0, y], style(13.0, INK, Anchor::Start), "proven bound");
     }
     y += 40.0;
     canvas.text(

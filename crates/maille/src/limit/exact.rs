@@ -14,7 +14,7 @@ use crate::{
     model::Model,
     record::Status,
     solve::{
-        kkt::{Certificate, polish},
+        kkt::{Certificate, GAP_TOLERANCE, RESIDUAL_TOLERANCE, polish},
         sqp::{Multiplier, Program, SqpOptions, maximize, violation},
     },
     state::{Pose, State},
@@ -38,13 +38,51 @@ pub struct ExactOptions {
     pub seed: u64,
 }
 
+/// The options with everything that is fixed: what a record needs to repeat a run.
+#[derive(Clone, Debug, Serialize)]
+pub struct ExactParameters {
+    #[serde(flatten)]
+    options: ExactOptions,
+    gap_tolerance: f64,
+    residual_tolerance: f64,
+    bound_attained_within: f64,
+    same_limit_within: f64,
+    kicks: usize,
+    larger_cell_kicks: usize,
+    rounds: usize,
+    shakes: [f64; 6],
+    more_starts: usize,
+    cell_shakes: [f64; 2],
+    own_image_force: f64,
+}
+
+impl ExactOptions {
+    /// All parameters and tolerances of a run.
+    pub fn parameters(&self) -> ExactParameters {
+        ExactParameters {
+            options: self.clone(),
+            gap_tolerance: GAP_TOLERANCE,
+            residual_tolerance: RESIDUAL_TOLERANCE,
+            bound_attained_within: ATTAINED,
+            same_limit_within: SAME_LIMIT,
+            kicks: KICKS,
+            larger_cell_kicks: LARGER_CELL_KICKS,
+            rounds: ROUNDS,
+            shakes: SHAKES,
+            more_starts: MORE_STARTS,
+            cell_shakes: CELL_SHAKES,
+            own_image_force: OWN_IMAGE_FORCE,
+        }
+    }
+}
+
 impl Default for ExactOptions {
     fn default() -> Self {
         ExactOptions { starts: 4, seed: 1 }
     }
 }
 
-/// Limits that differ by less are the same; also the difference at which a bound counts as attained, times 100.
+/// Limits that differ by less are the same.
 const SAME_LIMIT: f64 = 1e-7;
 /// A bound is attained within this.
 const ATTAINED: f64 = 1e-9;
@@ -52,10 +90,14 @@ const ATTAINED: f64 = 1e-9;
 const SHAKES: [f64; 6] = [0.03, 0.1, 0.3, 0.05, 0.2, 0.02];
 /// Kicks of a solve whose certificate stays incomplete.
 const KICKS: usize = 6;
+/// The same in larger cells, where a solve is costly.
+const LARGER_CELL_KICKS: usize = 1;
 /// Rounds of maximising and polishing between kicks.
 const ROUNDS: usize = 6;
 /// A force between an element and its own image above this (per unit pull) calls for a larger cell.
 const OWN_IMAGE_FORCE: f64 = 1e-6;
+/// Further starts where none reached the wanted l2.
+const MORE_STARTS: usize = 6;
 /// Shakes of a smaller cell's state that start a larger cell's solve.
 const CELL_SHAKES: [f64; 2] = [0.02, 0.1];
 
@@ -132,7 +174,7 @@ impl<'a> ExactMethod<'a> {
 
     /// The limits along one direction, in the order of `l2`. Solved outwards from l2 = 0, each from its neighbour's state.
     ///
-    /// Where an element presses on its own image, or l2 is not reached, the larger cells are solved too, from the
+    /// Where an element presses on its own image, or a compression is not reached, the larger cells are solved too, from the
     /// smaller cell's state; the largest limit counts, and the outcome says which cell gave it.
     /// `finished` gets each limit with its index in `l2`; after `cancel` the rest comes back as interrupted.
     pub fn limits(&self, direction_deg: f64, l2: &[f64], cancel: &AtomicBool, finished: &mut dyn FnMut(usize, LimitOutcome)) {
@@ -175,12 +217,19 @@ impl<'a> ExactMethod<'a> {
         let mut starts: Vec<Strained> = neighbour.iter().cloned().collect();
         let fresh = self.options.starts.max(1) - starts.len();
         starts.extend((0..fresh).map(|k| Strained { state: self.shaken(k), l1: 0.0, l2: 0.0 }));
-        let first = self.search(0, direction_deg, l2, starts, most, cancel);
+        let mut first = self.search(0, direction_deg, l2, starts, most, cancel);
+        if first.best.is_none() {
+            // Not reached: try harder before giving up.
+            let more = (fresh..fresh + MORE_STARTS).map(|k| Strained { state: self.shaken(k), l1: 0.0, l2: 0.0 });
+            let again = self.search(0, direction_deg, l2, more.collect(), most, cancel);
+            first = Tally { runs: first.runs + again.runs, iterations: first.iterations + again.iterations, ..again };
+        }
         let reached = first.best.as_ref().map(|b| Strained { state: b.x.state.clone(), l1: b.x.p[0], l2 });
         let mut tally = first;
         let mut trend = vec![(0, tally.l1())];
         let mut cell = 0;
-        let asks = tally.best.as_ref().is_none_or(|best| self.own_image_force(0, best) > OWN_IMAGE_FORCE);
+        // Under lateral compression a larger cell can fold where this one cannot.
+        let asks = tally.best.as_ref().map_or(l2 < 0.0, |best| self.own_image_force(0, best) > OWN_IMAGE_FORCE);
         let last = self.models.len() - 1;
         for larger in 1..self.models.len() {
             // The last cell is for limits that have grown.
@@ -380,7 +429,8 @@ impl Search<'_> {
         let mut x = program.posed(at.state, vec![at.l1]);
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed ^ self.runs);
         let mut best: Option<Solve> = None;
-        for kick in 0..=KICKS {
+        let kicks = if model.cell.copies() > 1 { LARGER_CELL_KICKS } else { KICKS };
+        for kick in 0..=kicks {
             if kick > 0 {
                 let size = 0.003 * kick as f64;
                 x = program.posed(shaken_from(model, &x.state, size, &mut rng), x.p.clone());
