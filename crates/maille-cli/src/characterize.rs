@@ -132,7 +132,10 @@ const MOST_ELEMENTS: usize = 40;
 fn cell_choice(text: &str) -> Result<CellChoice, String> {
     match text {
         "auto" => Ok(CellChoice::Auto),
-        _ => text.parse().map(CellChoice::One).map_err(|e: maille::error::InvalidInput| format!("{}; {}", e.problem, e.help)),
+        _ => text
+            .parse()
+            .map(CellChoice::One)
+            .map_err(|e: maille::error::InvalidInput| format!("{}; {}", e.problem, e.help)),
     }
 }
 
@@ -311,7 +314,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let begun = Instant::now();
     let (directions, l2) = (&args.directions.0, &args.l2.0);
     let wanted = |task: Task| open.contains(&task);
-    pool.install(|| characterize(&models, input.design.minor_radius, &method, directions, l2, &wanted, &cancel, &receive));
+    pool.install(|| {
+        characterize(&models, input.design.minor_radius, &method, directions, l2, &wanted, &cancel, &receive)
+    });
     progress.finish();
     let mut collected = collected.into_inner().unwrap_or_else(|e| e.into_inner());
     if let Some(report) = collected.failure {
@@ -383,7 +388,13 @@ fn summary(rows: &[LimitRow], solved: usize, took: Duration, out: &std::path::Pa
         let mut found: Vec<(f64, f64)> = of.iter().filter_map(|r| Some((r.l1?, r.direction_deg))).collect();
         found.sort_by(|a, b| a.0.total_cmp(&b.0));
         let show = |x: Option<&(f64, f64)>| x.map_or("-".into(), |(l1, at)| format!("{l1:.4} at {at}°"));
-        println!("{l2:>8}  {:>20}  {:>20}  {:>3}/{:<3}", show(found.first()), show(found.last()), found.len(), of.len());
+        println!(
+            "{l2:>8}  {:>20}  {:>20}  {:>3}/{:<3}",
+            show(found.first()),
+            show(found.last()),
+            found.len(),
+            of.len()
+        );
     }
     for status in Status::ALL {
         let count = rows.iter().filter(|r| r.status == status).count();
@@ -391,6 +402,10 @@ fn summary(rows: &[LimitRow], solved: usize, took: Duration, out: &std::path::Pa
             println!("{count} {}", status.name());
         }
     }
-    println!("{solved} limits in {:.1} s; {}, states.jsonl, run.json, polar.svg", took.as_secs_f64(), out.join("limits.csv").display());
+    println!(
+        "{solved} limits in {:.1} s; {}, states.jsonl, run.json, polar.svg",
+        took.as_secs_f64(),
+        out.join("limits.csv").display()
+    );
     println!("look at {}", out.join("polar.png").display());
 }

@@ -1,8 +1,17 @@
 //! `maille inspect`: what a design is made of, before anything is solved.
 
 use crate::{input::Input, numbers::positive};
-use maille::{design::Design, lattice::Cell, topology};
+use maille::{
+    bound::{ChainBound, LinkBound, best_bound},
+    design::Design,
+    lattice::Cell,
+    model::Model,
+    topology,
+};
 use miette::Result;
+
+/// Directions of the bounds that are shown, degrees.
+const BOUND_DIRECTIONS: [f64; 7] = [0.0, 15.0, 30.0, 45.0, 60.0, 75.0, 90.0];
 
 /// Elements, rings, links, gaps and the cell of a design
 #[derive(clap::Args)]
@@ -78,7 +87,10 @@ pub fn run(args: &Args) -> Result<()> {
             let (a, b) = (model.ring_label(pair.ring_a, [0, 0]), model.ring_label(pair.ring_b, pair.shift));
             if gap < 0.0 {
                 let allowed = if design.allow_initial_overlap { "allowed by the file" } else { "an error when solved" };
-                println!("overlap of the starting state ({allowed}): {:.6}{unit} between {a} and {b}", -gap * model.unit);
+                println!(
+                    "overlap of the starting state ({allowed}): {:.6}{unit} between {a} and {b}",
+                    -gap * model.unit
+                );
             } else {
                 println!("smallest gap {:.6}{unit} between {a} and {b}", gap * model.unit);
             }
@@ -90,6 +102,28 @@ pub fn run(args: &Args) -> Result<()> {
     } else {
         let list: Vec<String> = binding.iter().map(|[p, q]| format!("({p}, {q})")).collect();
         println!("chains of links join lattice vectors {}", list.join(", "));
+        bounds(&model);
     }
     Ok(())
+}
+
+/// What the links alone prove: the chains that can bind, and bounds of l1 with l2 = 0.
+fn bounds(model: &Model) {
+    let chain = ChainBound::new(model);
+    let link = LinkBound::new(model, &chain);
+    println!("\nchains that can bind: |F v| is at most");
+    for binding in chain.chains() {
+        let [p, q] = binding.vector;
+        let rings: Vec<String> = binding.rings.iter().map(|(ring, shift)| model.ring_label(*ring, *shift)).collect();
+        println!("  v = ({p}, {q}): {:.6} by {}", binding.length * model.unit, rings.join(" - "));
+    }
+    println!("\nproven bounds of l1 with l2 = 0");
+    for direction in BOUND_DIRECTIONS {
+        let bound = best_bound(&chain, Some(&link), direction, 0.0);
+        match bound.l1().zip(bound.kind()) {
+            Some((l1, kind)) => println!("  {direction:>4}°  {l1:>12.9}  {kind}"),
+            None if bound.kind().is_some() => println!("  {direction:>4}°  l2 = 0 is unreachable"),
+            None => println!("  {direction:>4}°  unbounded"),
+        }
+    }
 }

@@ -2,10 +2,12 @@
 
 mod characterize;
 mod designs;
-mod inspect;
+mod export;
 mod input;
+mod inspect;
 mod numbers;
 mod progress;
+mod replay;
 
 use clap::{Parser, Subcommand};
 use miette::Result;
@@ -19,6 +21,7 @@ Examples:
   maille inspect 1.1                      rings, links and gaps of one
   maille characterize 1.1                 its limits, as a table and a polar plot in maille-out/1.1/
   maille characterize my-weave.toml --directions 0:90:5 --l2 0
+  maille replay maille-out/1.3            solve the rows without a limit again
 
 Exit codes: 0 done, 1 the input or a file is wrong, 2 the arguments are wrong, 130 interrupted.")]
 struct Args {
@@ -31,13 +34,17 @@ enum Command {
     Characterize(characterize::Args),
     Inspect(inspect::Args),
     Designs(designs::Args),
+    Replay(replay::Args),
+    Export(export::Args),
 }
 
 fn main() -> ExitCode {
     let done: Result<ExitCode> = match Args::parse().command {
         Command::Characterize(args) => characterize::run(&args),
         Command::Inspect(args) => inspect::run(&args).map(|()| ExitCode::SUCCESS),
+        Command::Replay(args) => replay::run(&args),
         Command::Designs(args) => designs::run(&args).map(|()| ExitCode::SUCCESS),
+        Command::Export(args) => export::run(&args).map(|()| ExitCode::SUCCESS),
     };
     done.unwrap_or_else(|report| {
         eprintln!("{report:?}");

@@ -42,7 +42,9 @@ pub fn parse(text: &str) -> Result<Numbers, String> {
 pub fn parse_l2(text: &str) -> Result<Numbers, String> {
     let numbers = parse(text)?;
     match numbers.0.iter().find(|l2| **l2 <= -1.0) {
-        Some(l2) => Err(format!("l2 = {l2} would press the sheet to nothing; give values above -1 (0 holds the width)")),
+        Some(l2) => {
+            Err(format!("l2 = {l2} would press the sheet to nothing; give values above -1 (0 holds the width)"))
+        }
         None => Ok(numbers),
     }
 }

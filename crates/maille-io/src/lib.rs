@@ -5,8 +5,10 @@
 
 pub mod builtin;
 pub mod design_toml;
+pub mod mesh;
 pub mod plot;
 pub mod record;
+pub mod render;
 
 pub use builtin::{Builtin, builtin, builtin_designs};
 pub use design_toml::{DesignError, DesignProblem, DesignSource, read_design, write_design};

@@ -50,9 +50,18 @@ fn main() {
             let starts = option("starts", "4").parse().expect("a number");
             let method = Method::Exact(ExactOptions { starts, ..ExactOptions::default() });
             let started = Instant::now();
-            characterize(&models, Some(radius), &method, &directions, &L2, &|_| true, &AtomicBool::new(false), &|row| {
-                rows.lock().expect("no panic").push(row);
-            });
+            characterize(
+                &models,
+                Some(radius),
+                &method,
+                &directions,
+                &L2,
+                &|_| true,
+                &AtomicBool::new(false),
+                &|row| {
+                    rows.lock().expect("no panic").push(row);
+                },
+            );
             let took = started.elapsed().as_secs_f64();
             let rows = rows.into_inner().expect("no panic");
             let mut line = format!("{name:>4} r = {radius:<5}");
@@ -69,12 +78,24 @@ fn main() {
             let qps: u64 = rows.iter().map(|f| f.row.iterations).sum();
             let runs: u64 = rows.iter().map(|f| f.row.runs).sum();
             println!("{line}  ({took:.1} s, {qps} programs, {runs} starts)");
-            for f in rows.iter().filter(|f| verbose && !matches!(f.row.status, Status::Global | Status::Local | Status::L2Unreachable)) {
+            for f in rows
+                .iter()
+                .filter(|f| verbose && !matches!(f.row.status, Status::Global | Status::Local | Status::L2Unreachable))
+            {
                 let r = &f.row;
                 println!(
                     "      {}° l2 {} {} l1 {:?} bound {:?} gap {:?} dual {:?} mult {:?} curvature {:?} links {:?} programs {}",
-                    r.direction_deg, r.l2, r.status.name(), r.l1_uncertified, r.bound_l1, r.min_gap, r.dual_residual,
-                    r.min_multiplier, r.min_curvature, r.links_ok, r.iterations
+                    r.direction_deg,
+                    r.l2,
+                    r.status.name(),
+                    r.l1_uncertified,
+                    r.bound_l1,
+                    r.min_gap,
+                    r.dual_residual,
+                    r.min_multiplier,
+                    r.min_curvature,
+                    r.links_ok,
+                    r.iterations
                 );
             }
         }

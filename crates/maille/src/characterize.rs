@@ -171,7 +171,11 @@ fn report(
         .zip(&outcome.state.poses)
         .map(|(element, pose)| {
             let q = pose.rotation.quaternion();
-            PoseRecord { element: element.name.clone(), position: position(pose.position), rotation: [q.w, q.i, q.j, q.k] }
+            PoseRecord {
+                element: element.name.clone(),
+                position: position(pose.position),
+                rotation: [q.w, q.i, q.j, q.k],
+            }
         })
         .collect();
     let contact = |c: &crate::constraint::Contact| ContactRecord {

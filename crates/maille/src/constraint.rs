@@ -94,8 +94,11 @@ impl<'a> SheetProgram<'a> {
             next += n;
             next - n
         };
-        let spins_freely: Vec<bool> =
-            model.elements.iter().map(|e| e.rings.len() == 1 && model.rings[e.rings.start].offset.norm() < 1e-12).collect();
+        let spins_freely: Vec<bool> = model
+            .elements
+            .iter()
+            .map(|e| e.rings.len() == 1 && model.rings[e.rings.start].offset.norm() < 1e-12)
+            .collect();
         let columns = spins_freely
             .iter()
             .enumerate()
@@ -265,7 +268,15 @@ impl Program for SheetProgram<'_> {
             if let Some(most) = parameter.most {
                 let columns = vec![self.first_parameter + m];
                 let (key, gap) = (bound_key(m), most - x.p[m]);
-                rows.push(Row { key, angle: 0.0, gap, minimum: true, columns, gradient: vec![-1.0], hessian: vec![0.0] });
+                rows.push(Row {
+                    key,
+                    angle: 0.0,
+                    gap,
+                    minimum: true,
+                    columns,
+                    gradient: vec![-1.0],
+                    hessian: vec![0.0],
+                });
             }
         }
         for pair in topology::close_pairs(model, state, band) {
@@ -290,7 +301,15 @@ impl Program for SheetProgram<'_> {
             let mut add = |angle: f64, minimum: bool, distance: f64, grad, hess: SMatrix<f64, 9, 9>| {
                 let gradient = (map.transpose() * grad as SMatrix<f64, 9, 1>).data.into();
                 let hessian = (map.transpose() * hess * &map).data.into();
-                rows.push(Row { key, angle, gap: distance - touching, minimum, columns: columns.clone(), gradient, hessian });
+                rows.push(Row {
+                    key,
+                    angle,
+                    gap: distance - touching,
+                    minimum,
+                    columns: columns.clone(),
+                    gradient,
+                    hessian,
+                });
             };
             if self.flat.contains(&key) {
                 for k in 0..HEIGHTS {
@@ -329,7 +348,8 @@ impl Program for SheetProgram<'_> {
 
     fn moved(&self, x: &Posed, step: &[f64]) -> Posed {
         let motion = self.motion(&x.state, step);
-        let poses = x.state.poses.iter().zip(&motion.elements).map(|(pose, (shift, turn))| pose.moved(shift, turn)).collect();
+        let poses =
+            x.state.poses.iter().zip(&motion.elements).map(|(pose, (shift, turn))| pose.moved(shift, turn)).collect();
         let p = x.p.iter().zip(&step[self.first_parameter..]).map(|(p, dp)| p + dp).collect();
         self.posed(State { poses, ..x.state.clone() }, p)
     }

@@ -124,18 +124,30 @@ impl Design {
         let mut rings = self.elements.iter().flat_map(|e| &e.rings);
         let no_minor_radius = self.minor_radius.is_none() && rings.all(|ring| ring.minor_radius.is_none());
         if no_minor_radius && self.elements.iter().any(|e| !e.rings.is_empty()) {
-            bad("minor_radius".into(), "is missing".into(), "add minor_radius = 0.1, the wire's radius, or give each ring its own");
+            bad(
+                "minor_radius".into(),
+                "is missing".into(),
+                "add minor_radius = 0.1, the wire's radius, or give each ring its own",
+            );
         }
         if let Some(r) = self.minor_radius
             && !positive(r)
         {
-            bad("minor_radius".into(), format!("{r} is not a positive length"), "give the wire's radius (half of its diameter)");
+            bad(
+                "minor_radius".into(),
+                format!("{r} is not a positive length"),
+                "give the wire's radius (half of its diameter)",
+            );
         }
         for (field, a) in [("lattice.a1", self.lattice.a1), ("lattice.a2", self.lattice.a2)] {
             if !a.iter().all(|x| x.is_finite()) {
                 bad(field.into(), format!("{a:?} is not finite"), "give three finite numbers");
             } else if a[2] != 0.0 {
-                bad(field.into(), format!("z = {} leaves the sheet's plane", a[2]), "lattice vectors lie in the plane z = 0");
+                bad(
+                    field.into(),
+                    format!("z = {} leaves the sheet's plane", a[2]),
+                    "lattice vectors lie in the plane z = 0",
+                );
             } else if a == [0.0; 3] {
                 bad(field.into(), "is zero".into(), "give the translation to the next cell");
             }
@@ -174,12 +186,20 @@ impl Design {
                     );
                 }
                 if !ring.normal.iter().all(|x| x.is_finite()) {
-                    bad(format!("{at}.normal"), format!("{:?} is not finite", ring.normal), "give three finite numbers");
+                    bad(
+                        format!("{at}.normal"),
+                        format!("{:?} is not finite", ring.normal),
+                        "give three finite numbers",
+                    );
                 } else if ring.normal == [0.0; 3] {
                     bad(format!("{at}.normal"), "is zero".into(), "give any non-zero vector, as [0.0, 0.0, 1.0]");
                 }
                 if !ring.offset.iter().all(|x| x.is_finite()) {
-                    bad(format!("{at}.offset"), format!("{:?} is not finite", ring.offset), "give three finite numbers");
+                    bad(
+                        format!("{at}.offset"),
+                        format!("{:?} is not finite", ring.offset),
+                        "give three finite numbers",
+                    );
                 }
                 match ring.minor_radius.or(self.minor_radius) {
                     None if no_minor_radius => {}
@@ -194,7 +214,11 @@ impl Design {
                         "give the wire's radius (half of its diameter)",
                     ),
                     Some(r) if positive(r) && positive(ring.major_radius) && r >= ring.major_radius => bad(
-                        if ring.minor_radius.is_some() { format!("{at}.minor_radius") } else { format!("{at}.major_radius") },
+                        if ring.minor_radius.is_some() {
+                            format!("{at}.minor_radius")
+                        } else {
+                            format!("{at}.major_radius")
+                        },
                         format!("minor radius {r} is not smaller than major radius {}", ring.major_radius),
                         "a ring has a hole only if r < R",
                     ),

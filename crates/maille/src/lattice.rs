@@ -24,9 +24,17 @@ impl Cell {
         let wide = rows.map(|row| row.map(i64::from));
         let det = wide[0][0].saturating_mul(wide[1][1]).saturating_sub(wide[0][1].saturating_mul(wide[1][0]));
         match det.unsigned_abs() {
-            0 => Err(InvalidInput::new("cell", format!("{rows:?} has determinant 0"), "give two independent rows, as \"1,0;-1,2\"")),
+            0 => Err(InvalidInput::new(
+                "cell",
+                format!("{rows:?} has determinant 0"),
+                "give two independent rows, as \"1,0;-1,2\"",
+            )),
             1..=10_000 => Ok(Cell { rows }),
-            n => Err(InvalidInput::new("cell", format!("{rows:?} has {n} copies of the cell"), "at most 10,000 are possible")),
+            n => Err(InvalidInput::new(
+                "cell",
+                format!("{rows:?} has {n} copies of the cell"),
+                "at most 10,000 are possible",
+            )),
         }
     }
 
@@ -52,7 +60,8 @@ impl Cell {
     pub fn cosets(&self) -> Vec<Shift> {
         let [[m11, m12], [m21, m22]] = self.rows.map(|row| row.map(i64::from));
         let det = self.det();
-        let key = |p: i64, q: i64| ((p * m22 - q * m21).rem_euclid(det.abs()), (q * m11 - p * m12).rem_euclid(det.abs()));
+        let key =
+            |p: i64, q: i64| ((p * m22 - q * m21).rem_euclid(det.abs()), (q * m11 - p * m12).rem_euclid(det.abs()));
         let (mut seen, mut out) = (std::collections::BTreeSet::new(), Vec::new());
         let copies = self.copies() as i64;
         'shells: for shell in 0..=copies {
@@ -85,7 +94,13 @@ impl FromStr for Cell {
     type Err = InvalidInput;
 
     fn from_str(text: &str) -> Result<Self, InvalidInput> {
-        let wrong = || InvalidInput::new("cell", format!("\"{text}\" is no cell"), "give 2x1, or an integer matrix as \"1,0;-1,2\"");
+        let wrong = || {
+            InvalidInput::new(
+                "cell",
+                format!("\"{text}\" is no cell"),
+                "give 2x1, or an integer matrix as \"1,0;-1,2\"",
+            )
+        };
         let integer = |t: &str| t.trim().parse::<i32>().map_err(|_| wrong());
         if let Some((m, n)) = text.split_once('x') {
             let (m, n) = (integer(m)?, integer(n)?);

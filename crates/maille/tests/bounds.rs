@@ -3,7 +3,8 @@
 use maille::{
     bound::{Bound, BoundKind, ChainBound, LinkBound, best_bound},
     design::Design,
-    energy::target::{direction, target_gradient},
+    energy::target::target_gradient,
+    lattice::direction,
     model::Model,
     state::State,
     topology,

@@ -78,7 +78,11 @@ fn gradient_matches_differences_of_the_energy() {
                 jumps.set(jumps.get() + 1);
                 continue;
             }
-            assert!((gradient[k] - difference).abs() < 1e-6 * size, "{what}, unknown {k}: {} {difference}", gradient[k]);
+            assert!(
+                (gradient[k] - difference).abs() < 1e-6 * size,
+                "{what}, unknown {k}: {} {difference}",
+                gradient[k]
+            );
         }
     });
     assert!(jumps.get() * 25 < checked.get(), "{} of {} unknowns at a jump", jumps.get(), checked.get());
@@ -142,8 +146,13 @@ fn the_step_bound_keeps_every_link() {
         let model = model(name, if name == "5.1" { 0.05 } else { 0.1 });
         let contacts = options();
         let target = Target::new(&model, Protocol::Strain, target_gradient(0.0, 0.0, 0.0), 1.0, 0.0);
-        let energy =
-            SheetEnergy { model: &model, target: &target, contacts: &contacts, hessian: HessianMethod::Analytic, seed: 1 };
+        let energy = SheetEnergy {
+            model: &model,
+            target: &target,
+            contacts: &contacts,
+            hessian: HessianMethod::Analytic,
+            seed: 1,
+        };
         let mut rng = ChaCha8Rng::seed_from_u64(9);
         let mut cut = 0;
         for round in 0..5 {

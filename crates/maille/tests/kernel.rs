@@ -28,7 +28,11 @@ impl Pair {
     fn moved(&self, y: &Grad) -> Pair {
         let turn = |c: &Circle, about: &Vec3, w: Vec3, shift: Vec3| {
             let q = UnitQuaternion::from_scaled_axis(w);
-            Circle::new(about + q * (c.center - about) + shift, Unit::new_normalize(q * c.normal.into_inner()), c.radius)
+            Circle::new(
+                about + q * (c.center - about) + shift,
+                Unit::new_normalize(q * c.normal.into_inner()),
+                c.radius,
+            )
         };
         let (x, alpha, beta) = (Vec3::new(y[0], y[1], y[2]), Vec3::new(y[3], y[4], y[5]), Vec3::new(y[6], y[7], y[8]));
         Pair {
@@ -63,7 +67,10 @@ fn unit(k: usize, size: f64) -> Grad {
 }
 
 fn close(analytic: f64, difference: f64, tolerance: f64, what: &str) {
-    assert!((analytic - difference).abs() <= tolerance * (1.0 + analytic.abs()), "{what}: {analytic} against {difference}");
+    assert!(
+        (analytic - difference).abs() <= tolerance * (1.0 + analytic.abs()),
+        "{what}: {analytic} against {difference}"
+    );
 }
 
 #[test]
@@ -92,8 +99,10 @@ fn jets_match_finite_differences() {
             close(jet.h_tty[p], along(&|j| j.h_ty[p]), 1e-5, "h_tty");
             for q in 0..9 {
                 let e = 1e-4;
-                let four = value(&(unit(p, e) + unit(q, e))) - value(&(unit(p, e) - unit(q, e)))
-                    - value(&(unit(q, e) - unit(p, e))) + value(&(-unit(p, e) - unit(q, e)));
+                let four = value(&(unit(p, e) + unit(q, e)))
+                    - value(&(unit(p, e) - unit(q, e)))
+                    - value(&(unit(q, e) - unit(p, e)))
+                    + value(&(-unit(p, e) - unit(q, e)));
                 close(jet.h_yy[(p, q)], four / (4.0 * e * e), 2e-6, "h_yy");
                 close(jet.h_tyy[(p, q)], along(&|j| j.h_yy[(p, q)]), 1e-5, "h_tyy");
             }
@@ -127,9 +136,11 @@ fn moving_minima_and_samples_match_finite_differences() {
                 for _ in 0..30 {
                     let e = 1e-4;
                     let (m, h, p) = (pair.half_sq(y, angle - e), pair.half_sq(y, angle), pair.half_sq(y, angle + e));
-                    let step = (p - m) / 2.0 / ((p - 2.0 * h + m) / e) ;
+                    let step = (p - m) / 2.0 / ((p - 2.0 * h + m) / e);
                     angle -= step;
-                    if step.abs() < 1e-13 { break; }
+                    if step.abs() < 1e-13 {
+                        break;
+                    }
                 }
                 (2.0 * pair.half_sq(y, angle + offset)).sqrt()
             };
@@ -138,8 +149,10 @@ fn moving_minima_and_samples_match_finite_differences() {
                 close(grad[p], (value(&unit(p, e)) - value(&unit(p, -e))) / (2.0 * e), 2e-5, "gradient");
                 for q in 0..9 {
                     let e = 2e-3;
-                    let four = value(&(unit(p, e) + unit(q, e))) - value(&(unit(p, e) - unit(q, e)))
-                        - value(&(unit(q, e) - unit(p, e))) + value(&(-unit(p, e) - unit(q, e)));
+                    let four = value(&(unit(p, e) + unit(q, e)))
+                        - value(&(unit(p, e) - unit(q, e)))
+                        - value(&(unit(q, e) - unit(p, e)))
+                        + value(&(-unit(p, e) - unit(q, e)));
                     let difference = four / (4.0 * e * e);
                     let scale = hess.amax().max(1.0);
                     assert!((hess[(p, q)] - difference).abs() < 5e-3 * scale, "{p} {q}: {} {difference}", hess[(p, q)]);

@@ -21,9 +21,18 @@ fn rows(model: &Model, options: &EnergyOptions, tasks: &[Task]) -> Vec<Finished>
         list.dedup();
     }
     let method = Method::Energy(options.clone());
-    characterize(std::slice::from_ref(model), None, &method, &directions, &l2, &|_| true, &AtomicBool::new(false), &|row| {
-        out.lock().unwrap().push(row);
-    });
+    characterize(
+        std::slice::from_ref(model),
+        None,
+        &method,
+        &directions,
+        &l2,
+        &|_| true,
+        &AtomicBool::new(false),
+        &|row| {
+            out.lock().unwrap().push(row);
+        },
+    );
     let mut out = out.into_inner().unwrap();
     let key = |f: &Finished| tasks.iter().position(|t| t.l2 == f.row.l2 && t.direction_deg == f.row.direction_deg);
     out.sort_by_key(key);

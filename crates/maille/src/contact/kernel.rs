@@ -222,7 +222,8 @@ impl RootMotion {
     pub fn at(root: &PointJet) -> Self {
         let curvature = root.h_tt.max(1e-6);
         let first = -root.h_ty / curvature;
-        let second = -(root.h_tyy + symmetric(&root.h_tty, &first) + first * first.transpose() * root.h_ttt) / curvature;
+        let second =
+            -(root.h_tyy + symmetric(&root.h_tty, &first) + first * first.transpose() * root.h_ttt) / curvature;
         RootMotion { first, second }
     }
 }

@@ -9,10 +9,10 @@ use crate::{
 };
 use faer::Mat;
 use maille_geometry::{circle_distance_minima, circle_distance_minima_polynomial};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Which way the minima of the circle–circle distance are found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum MinimaMethod {
     /// Complete enumeration.
@@ -84,7 +84,12 @@ pub(super) fn energy(sheet: &SheetEnergy<'_>, state: &State) -> f64 {
 }
 
 /// Adds gradient and Hessian of E_c; returns E_c.
-pub(super) fn add_derivatives(sheet: &SheetEnergy<'_>, state: &State, gradient: &mut [f64], hessian: &mut Mat<f64>) -> f64 {
+pub(super) fn add_derivatives(
+    sheet: &SheetEnergy<'_>,
+    state: &State,
+    gradient: &mut [f64],
+    hessian: &mut Mat<f64>,
+) -> f64 {
     let options = sheet.contacts;
     let mut sum = 0.0;
     for overlap in overlaps(sheet.model, state, options) {

@@ -16,11 +16,11 @@ use faer::Mat;
 use maille_geometry::Vec3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use serde::{Deserialize, Serialize};
 use target::Target;
-use serde::Serialize;
 
 /// How the Hessian is found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum HessianMethod {
     /// From formulas.

@@ -6,10 +6,10 @@
 use crate::{lattice::direction, model::Model, state::State};
 use maille_geometry::Vec3;
 use nalgebra::{Matrix2, Vector2};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// How a deformation is imposed and judged.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Protocol {
     /// Energy and threshold on F − F_target, the fourth corner eliminated.
@@ -71,7 +71,11 @@ impl Target {
                         Square { weight: beta, coefficients, target }
                     })
                     .collect();
-                squares.push(Square { weight: corner_weight, coefficients: [0.0, -1.0, -1.0, 1.0], target: Vec3::zeros() });
+                squares.push(Square {
+                    weight: corner_weight,
+                    coefficients: [0.0, -1.0, -1.0, 1.0],
+                    target: Vec3::zeros(),
+                });
                 squares
             }
         };

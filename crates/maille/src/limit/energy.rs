@@ -15,11 +15,11 @@ use crate::{
     topology,
 };
 use nalgebra::Matrix2;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::sync::atomic::AtomicBool;
 
 /// Parameters of the energy method. Lengths are in units of the design's reference radius R, energies in β R².
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EnergyOptions {
     /// How a deformation is imposed and judged.
     pub protocol: Protocol,
@@ -180,7 +180,11 @@ impl<'a> EnergyMethod<'a> {
         let mut search = Search { method: self, direction_deg, l2, cancel, iterations: 0, runs: 0 };
         let along = direction(direction_deg);
         if !topology::binds(self.model, [along.x, along.y]) {
-            return search.end(Status::Unbounded, None, Some("no chain of links joins lattice vectors along this direction".into()));
+            return search.end(
+                Status::Unbounded,
+                None,
+                Some("no chain of links joins lattice vectors along this direction".into()),
+            );
         }
         if let Some(note) = &self.start_note {
             return search.end(Status::InfeasibleStart, None, Some(note.clone()));
@@ -267,7 +271,11 @@ impl Search<'_> {
                 if topology::links_kept(self.method.model, &low.state) {
                     self.end(Status::ThresholdReached, Some(low), None)
                 } else {
-                    self.end(Status::NotConverged, Some(low), Some("the links of the starting state were not kept".into()))
+                    self.end(
+                        Status::NotConverged,
+                        Some(low),
+                        Some("the links of the starting state were not kept".into()),
+                    )
                 }
             }
             other => {
@@ -285,6 +293,15 @@ impl Search<'_> {
             Some(t) => (t.state, t.gradient, Some(t.residual)),
             None => (self.method.start.clone(), Matrix2::identity(), None),
         };
-        LimitOutcome { status, state, gradient, residual, iterations: self.iterations, runs: self.runs, note, exact: None }
+        LimitOutcome {
+            status,
+            state,
+            gradient,
+            residual,
+            iterations: self.iterations,
+            runs: self.runs,
+            note,
+            exact: None,
+        }
     }
 }

@@ -26,11 +26,11 @@ use crate::{
 use maille_geometry::Vec3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Parameters of the exact method.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ExactOptions {
     /// Starts of a limit whose bound is not attained: the neighbouring limit's state, then shaken design states.
     pub starts: usize,
@@ -177,7 +177,13 @@ impl<'a> ExactMethod<'a> {
     /// Where an element presses on its own image, or a compression is not reached, the larger cells are solved too, from the
     /// smaller cell's state; the largest limit counts, and the outcome says which cell gave it.
     /// `finished` gets each limit with its index in `l2`; after `cancel` the rest comes back as interrupted.
-    pub fn limits(&self, direction_deg: f64, l2: &[f64], cancel: &AtomicBool, finished: &mut dyn FnMut(usize, LimitOutcome)) {
+    pub fn limits(
+        &self,
+        direction_deg: f64,
+        l2: &[f64],
+        cancel: &AtomicBool,
+        finished: &mut dyn FnMut(usize, LimitOutcome),
+    ) {
         let mut order: Vec<usize> = (0..l2.len()).collect();
         order.sort_by(|&a, &b| l2[a].abs().total_cmp(&l2[b].abs()).then(l2[a].total_cmp(&l2[b])));
         let (mut above, mut below): (Option<Strained>, Option<Strained>) = (None, None);
@@ -201,16 +207,28 @@ impl<'a> ExactMethod<'a> {
     }
 
     /// One limit; with the first cell's state at it, from which the next one goes on.
-    fn limit(&self, direction_deg: f64, l2: f64, neighbour: Option<Strained>, cancel: &AtomicBool) -> (LimitOutcome, Option<Strained>) {
+    fn limit(
+        &self,
+        direction_deg: f64,
+        l2: f64,
+        neighbour: Option<Strained>,
+        cancel: &AtomicBool,
+    ) -> (LimitOutcome, Option<Strained>) {
         let bound = best_bound(&self.chain, Some(&self.link), direction_deg, l2);
-        let figures = ExactFigures { bound: bound.l1().zip(bound.kind()), chain: bound.chain().cloned(), ..ExactFigures::default() };
+        let figures = ExactFigures {
+            bound: bound.l1().zip(bound.kind()),
+            chain: bound.chain().cloned(),
+            ..ExactFigures::default()
+        };
         let ended = |status, note: &str| {
             let mut outcome = self.nothing(status, figures.clone());
             outcome.note = (!note.is_empty()).then(|| note.to_owned());
             (outcome, None)
         };
         let most = match bound {
-            Bound::Unbounded => return ended(Status::Unbounded, "no chain of links joins lattice vectors along this direction"),
+            Bound::Unbounded => {
+                return ended(Status::Unbounded, "no chain of links joins lattice vectors along this direction");
+            }
             Bound::L2Unreachable { .. } => return ended(Status::L2Unreachable, ""),
             Bound::Finite { l1, .. } => l1,
         };
@@ -286,7 +304,15 @@ impl<'a> ExactMethod<'a> {
     }
 
     /// Solves `starts` in one cell until the bound is attained; keeps the best.
-    fn search(&self, cell: usize, direction_deg: f64, l2: f64, starts: Vec<Strained>, most: f64, cancel: &AtomicBool) -> Tally {
+    fn search(
+        &self,
+        cell: usize,
+        direction_deg: f64,
+        l2: f64,
+        starts: Vec<Strained>,
+        most: f64,
+        cancel: &AtomicBool,
+    ) -> Tally {
         let model = &self.models[cell];
         let family = Family { reference: [model.start.a1, model.start.a2], direction_deg };
         let mut search = Search { model, seed: self.options.seed, family, l2, cancel, iterations: 0, runs: 0 };
@@ -312,7 +338,15 @@ impl<'a> ExactMethod<'a> {
     }
 
     /// Status and figures of the best solve.
-    fn judge(&self, cell: usize, direction_deg: f64, l2: f64, most: f64, tally: Tally, mut figures: ExactFigures) -> LimitOutcome {
+    fn judge(
+        &self,
+        cell: usize,
+        direction_deg: f64,
+        l2: f64,
+        most: f64,
+        tally: Tally,
+        mut figures: ExactFigures,
+    ) -> LimitOutcome {
         figures.n_starts = tally.runs;
         figures.n_distinct = tally.distinct.len() as u64;
         figures.cell = cell;
@@ -320,7 +354,12 @@ impl<'a> ExactMethod<'a> {
         let (iterations, runs) = (tally.iterations, tally.runs);
         let Some(best) = tally.best else {
             let note = Some("no start reached this l2 without overlap; nothing is proved".to_owned());
-            return LimitOutcome { iterations, runs, note, ..self.nothing(Status::L2NotReached, ExactFigures { cell: 0, ..figures }) };
+            return LimitOutcome {
+                iterations,
+                runs,
+                note,
+                ..self.nothing(Status::L2NotReached, ExactFigures { cell: 0, ..figures })
+            };
         };
         let l1 = best.x.p[0];
         figures.own_image_force = Some(self.own_image_force(cell, &best));
@@ -391,7 +430,11 @@ fn shaken_from(model: &Model, state: &State, size: f64, rng: &mut ChaCha8Rng) ->
     let elements = state.poses.iter().map(|_| (vector(), vector())).collect();
     let motion = Motion { elements, lattice: [Vec3::zeros(); 2] };
     let fraction = StepBound::new(model, state).largest_fraction(model, &motion, f64::INFINITY);
-    let moved = state.poses.iter().zip(&motion.elements).map(|(p, (shift, turn))| p.moved(&(shift * fraction), &(turn * fraction)));
+    let moved = state
+        .poses
+        .iter()
+        .zip(&motion.elements)
+        .map(|(p, (shift, turn))| p.moved(&(shift * fraction), &(turn * fraction)));
     State { poses: moved.collect(), ..state.clone() }
 }
 

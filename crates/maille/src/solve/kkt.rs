@@ -95,7 +95,12 @@ pub fn polish<P: Program>(program: &P, end: &SqpEnd<P::Point>) -> (P::Point, Cer
         let before = active.len();
         let violated: Vec<&Row> =
             rows.iter().filter(|r| r.gap < -GAP_TOLERANCE && multiplier_of(r, &active) == 0.0).collect();
-        active.extend(violated.iter().map(|r| Multiplier { key: r.key, angle: r.angle, minimum: r.minimum, value: 1e-300 }));
+        active.extend(violated.iter().map(|r| Multiplier {
+            key: r.key,
+            angle: r.angle,
+            minimum: r.minimum,
+            value: 1e-300,
+        }));
         if active.len() == before {
             match active.iter().enumerate().min_by(|a, b| a.1.value.total_cmp(&b.1.value)) {
                 Some((k, m)) if m.value < 0.0 => drop(active.swap_remove(k)),
@@ -184,11 +189,17 @@ fn non_negative_multipliers(c: &[f64], rows: &[Row], most: f64) -> Vec<f64> {
     (0..m).for_each(|k| identity[k * m + k] = 1.0);
     let half_width = vec![10.0 * most + 1.0; m];
     let zeros = vec![0.0; m];
-    qp::solve(&QuadraticProgram { hessian: &hessian, linear: &linear, rows: &identity, lower: &zeros, half_width: &half_width })
-        .x
-        .iter()
-        .map(|mu| mu.max(0.0))
-        .collect()
+    qp::solve(&QuadraticProgram {
+        hessian: &hessian,
+        linear: &linear,
+        rows: &identity,
+        lower: &zeros,
+        half_width: &half_width,
+    })
+    .x
+    .iter()
+    .map(|mu| mu.max(0.0))
+    .collect()
 }
 
 fn dual_residual(c: &[f64], rows: &[Row], multipliers: &[f64]) -> f64 {
@@ -217,7 +228,8 @@ fn certify<P: Program>(program: &P, x: &P::Point, rows: &[Row], active: &[Multip
             multipliers = signed;
         }
     }
-    let loaded: Vec<&Row> = chosen_rows.iter().zip(&multipliers).filter(|(_, mu)| **mu > 1e-8).map(|(r, _)| r).collect();
+    let loaded: Vec<&Row> =
+        chosen_rows.iter().zip(&multipliers).filter(|(_, mu)| **mu > 1e-8).map(|(r, _)| r).collect();
     let mut hessian = lagrangian_hessian(n, &chosen_rows, &multipliers);
     for v in program.hidden_curvature(x, &labelled(&chosen_rows, &multipliers)) {
         for i in 0..n {

@@ -96,8 +96,14 @@ pub fn minimize<O: Objective>(
     options: &NewtonOptions,
     cancel: &AtomicBool,
 ) -> Minimization<O::Point> {
-    let mut out =
-        Minimization { point: start, outcome: Outcome::NotConverged, gradient_norm: f64::NAN, iterations: 0, escapes: 0, kicks: 0 };
+    let mut out = Minimization {
+        point: start,
+        outcome: Outcome::NotConverged,
+        gradient_norm: f64::NAN,
+        iterations: 0,
+        escapes: 0,
+        kicks: 0,
+    };
     while out.iterations < options.max_iterations {
         if cancel.load(Ordering::Relaxed) {
             out.outcome = Outcome::Interrupted;
@@ -132,7 +138,9 @@ pub fn minimize<O: Objective>(
         } else {
             let step = eigen.descent_step(&here.gradient, options.curvature_floor);
             descend(objective, &out.point, &here, &step)
-                .or_else(|| descend(objective, &out.point, &here, &here.gradient.iter().map(|g| -g).collect::<Vec<_>>()))
+                .or_else(|| {
+                    descend(objective, &out.point, &here, &here.gradient.iter().map(|g| -g).collect::<Vec<_>>())
+                })
                 .or_else(|| escape(objective, &out.point, &here, &eigen.lowest(), eigen.values[0].min(0.0)))
         };
         out.point = match next {

@@ -84,7 +84,10 @@ pub fn solve(program: &QuadraticProgram<'_>) -> QpSolution {
     for iteration in 0..MAX_ITERATIONS {
         // Residuals: dual H x + c − Aᵀ z_A − z_low + z_up; primal A x − b − s. The box slacks stay exact.
         let mut dual: Vec<f64> = (0..n)
-            .map(|i| program.linear[i] + (0..n).map(|j| program.hessian[(i, j)] * x[j]).sum::<f64>() - cone.z[m + i] + cone.z[m + n + i])
+            .map(|i| {
+                program.linear[i] + (0..n).map(|j| program.hessian[(i, j)] * x[j]).sum::<f64>() - cone.z[m + i]
+                    + cone.z[m + n + i]
+            })
             .collect();
         let mut primal = vec![0.0; m];
         for k in 0..m {
@@ -149,10 +152,9 @@ pub fn solve(program: &QuadraticProgram<'_>) -> QpSolution {
         let gap = cone.gap();
         let (_, ds, dz) = direction(&vec![0.0; m + 2 * n]);
         let (primal_step, dual_step) = (to_boundary(&cone.s, &ds), to_boundary(&cone.z, &dz));
-        let predicted = (0..m + 2 * n)
-            .map(|k| (cone.s[k] + primal_step * ds[k]) * (cone.z[k] + dual_step * dz[k]))
-            .sum::<f64>()
-            / (m + 2 * n) as f64;
+        let predicted =
+            (0..m + 2 * n).map(|k| (cone.s[k] + primal_step * ds[k]) * (cone.z[k] + dual_step * dz[k])).sum::<f64>()
+                / (m + 2 * n) as f64;
         let centering = (predicted / gap).powi(3) * gap;
         let target: Vec<f64> = ds.iter().zip(&dz).map(|(s, z)| centering - s * z).collect();
         let (dx, ds, dz) = direction(&target);

@@ -211,8 +211,13 @@ fn elastic_program(rows: &[Row], h: &Mat<f64>, linear: &[f64], weight: f64, radi
     let lower: Vec<f64> = rows.iter().map(|r| -r.gap).chain([0.0]).collect();
     let mut half_width = vec![radius; n];
     half_width.push(2.0 * violation(rows) + 1.0);
-    let solution =
-        qp::solve(&QuadraticProgram { hessian: &hessian, linear: &linear, rows: &matrix, lower: &lower, half_width: &half_width });
+    let solution = qp::solve(&QuadraticProgram {
+        hessian: &hessian,
+        linear: &linear,
+        rows: &matrix,
+        lower: &lower,
+        half_width: &half_width,
+    });
     (solution.x[..n].to_vec(), solution.multipliers[..rows.len()].to_vec(), solution.x[n].max(0.0))
 }
 

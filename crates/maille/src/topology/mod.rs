@@ -47,7 +47,8 @@ pub fn close_pairs(model: &Model, state: &State, margin: f64) -> Vec<RingPair> {
                 for ring_a in first.rings.clone() {
                     for ring_b in second.rings.clone() {
                         let (ra, rb) = (&model.rings[ring_a], &model.rings[ring_b]);
-                        let centers = offset + state.arm(model, ring_b) - state.arm(model, ring_a) + state.translation(shift);
+                        let centers =
+                            offset + state.arm(model, ring_b) - state.arm(model, ring_a) + state.translation(shift);
                         let near = ra.major_radius + rb.major_radius + ra.minor_radius + rb.minor_radius + margin;
                         if centers.norm_squared() <= near * near {
                             out.push(RingPair { ring_a, ring_b, shift });

@@ -1,0 +1,140 @@
+//! `maille replay`: solves rows of a record again, from the inputs that the record holds.
+
+use maille::{
+    characterize::{Finished, Method, Task, characterize},
+    lattice::Cell,
+    model::Model,
+    record::{LimitRow, Status},
+};
+use maille_io::record::Record;
+use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use serde_json::Value;
+use std::{
+    path::{Path, PathBuf},
+    process::ExitCode,
+    sync::{Mutex, atomic::AtomicBool},
+};
+
+/// Solve rows of a record again, by default those without a limit, and compare
+///
+/// A record holds the design and every parameter, so a failing solve is saved by itself: send the folder, replay it.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  maille replay maille-out/1.3
+  maille replay maille-out/1.3/run.json --at direction=30,l2=-0.125
+
+Exit codes: 0 all rows came out as recorded, 1 some did not, or the record cannot be read.")]
+pub struct Args {
+    /// A record's folder, or the run.json in it
+    record: PathBuf,
+    /// The row to solve, as direction=30,l2=-0.125
+    #[arg(long, value_parser = at)]
+    at: Option<(f64, f64)>,
+}
+
+fn at(text: &str) -> Result<(f64, f64), String> {
+    let wrong = || format!("\"{text}\" names no row; write direction=30,l2=-0.125");
+    let (mut direction, mut l2) = (None, None);
+    for part in text.split(',') {
+        let (name, value) = part.split_once('=').ok_or_else(wrong)?;
+        let value: f64 = value.trim().parse().map_err(|_| wrong())?;
+        match name.trim() {
+            "direction" => direction = Some(value),
+            "l2" => l2 = Some(value),
+            _ => return Err(wrong()),
+        }
+    }
+    direction.zip(l2).ok_or_else(wrong)
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<ExitCode> {
+    let folder = match args.record.file_name() {
+        Some(name) if name == "run.json" => args.record.parent().unwrap_or(Path::new(".")),
+        _ => &args.record,
+    };
+    let record = Record::read(folder)?;
+    let parameters = &record.run.parameters;
+    let cells: Vec<Cell> = numbers(parameters, "cells")?;
+    let design = &record.run.design;
+    let models: Vec<Model> = cells
+        .iter()
+        .map(|cell| Model::compile(design, *cell).map_err(|p| miette!("the record's design cannot be used: {}", p[0])))
+        .collect::<Result<_>>()?;
+    let options = parameters["options"].clone();
+    let method = match parameters["method"].as_str() {
+        Some("exact") => {
+            Method::Exact(serde_json::from_value(options).into_diagnostic().wrap_err("options in run.json")?)
+        }
+        Some("energy") => {
+            Method::Energy(serde_json::from_value(options).into_diagnostic().wrap_err("options in run.json")?)
+        }
+        other => return Err(miette!("run.json names the method {other:?}; exact and energy are known")),
+    };
+    let l2: Vec<f64> = serde_json::from_value(parameters["l2"].clone()).into_diagnostic().wrap_err("l2 in run.json")?;
+    let rows: Vec<&LimitRow> = match args.at {
+        Some(at) => record.rows.iter().filter(|r| (r.direction_deg, r.l2) == at).collect(),
+        None => record.rows.iter().filter(|r| r.l1.is_none()).collect(),
+    };
+    if rows.is_empty() {
+        match args.at {
+            Some((direction, l2)) => return Err(miette!("the record has no row at {direction}°, l2 = {l2}")),
+            None => println!("every row of the record has a limit; name one with --at direction=…,l2=…"),
+        }
+    }
+    let mut directions: Vec<f64> = rows.iter().map(|r| r.direction_deg).collect();
+    directions.dedup();
+    let wanted = |task: Task| rows.iter().any(|r| (r.direction_deg, r.l2) == (task.direction_deg, task.l2));
+    let found = Mutex::new(Vec::<Finished>::new());
+    let cancel = AtomicBool::new(false);
+    characterize(&models, design.minor_radius, &method, &directions, &l2, &wanted, &cancel, &|row| {
+        found.lock().unwrap_or_else(|e| e.into_inner()).push(row);
+    });
+    let found = found.into_inner().unwrap_or_else(|e| e.into_inner());
+    let mut same = true;
+    for then in rows {
+        let Some(now) = found.iter().find(|f| (f.row.direction_deg, f.row.l2) == (then.direction_deg, then.l2)) else {
+            continue;
+        };
+        let agrees = then.status == now.row.status && close(then.l1, now.row.l1);
+        same &= agrees;
+        println!("{}°, l2 = {}", then.direction_deg, then.l2);
+        println!("  recorded  {}", line(then));
+        println!("  now       {}{}", line(&now.row), if agrees { "" } else { "   DIFFERS" });
+        if let Some(note) = &now.state.note {
+            println!("  note      {note}");
+        }
+    }
+    Ok(if same { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+fn numbers(parameters: &Value, name: &str) -> Result<Vec<Cell>> {
+    let list = parameters[name].as_array().ok_or_else(|| miette!("run.json has no {name}"))?;
+    let texts = list.iter().map(|cell| cell.as_str().unwrap_or_default());
+    texts.map(|t| t.parse().map_err(|e: maille::error::InvalidInput| miette!("run.json: {}", e.problem))).collect()
+}
+
+fn close(a: Option<f64>, b: Option<f64>) -> bool {
+    match (a, b) {
+        (Some(a), Some(b)) => (a - b).abs() <= 1e-9,
+        (a, b) => a.is_none() && b.is_none(),
+    }
+}
+
+fn line(row: &LimitRow) -> String {
+    let number = |name: &str, x: Option<f64>| x.map_or(String::new(), |x| format!("  {name} {x:.3e}"));
+    let l1 = row.l1.map_or(String::new(), |l1| format!("  l1 {l1:.12}"));
+    let certificate = match row.status {
+        Status::L2Unreachable | Status::Unbounded => String::new(),
+        _ => [
+            number("uncertified l1", row.l1_uncertified),
+            number("gap", row.min_gap),
+            number("dual", row.dual_residual),
+            number("least multiplier", row.min_multiplier),
+            number("least curvature", row.min_curvature),
+        ]
+        .concat(),
+    };
+    format!("{}{l1}{certificate}  {} iterations, {} starts", row.status.name(), row.iterations, row.runs)
+}

@@ -1,0 +1,312 @@
+//! What is exported: the tori of a finite piece of the sheet, in millimetres.
+
+use super::{Fineness, MeshError, TorusMesh};
+use maille::{
+    lattice::Shift,
+    model::Model,
+    record::{ContactRecord, PoseRecord, StateRecord},
+    state::{Pose, State},
+};
+use maille_geometry::Vec3;
+use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
+use std::{fmt, str::FromStr};
+
+/// Cells along a1 and a2 that are exported.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tile(pub [u32; 2]);
+
+impl FromStr for Tile {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Tile, String> {
+        let count = |t: &str| t.parse::<u32>().ok().filter(|n| (1..=100_000).contains(n));
+        match text.split_once('x').map(|(m, n)| (count(m), count(n))) {
+            Some((Some(m), Some(n))) => Ok(Tile([m, n])),
+            _ => Err(format!("\"{text}\" is no tile; give the cells along a1 and a2, as 8x8")),
+        }
+    }
+}
+
+impl fmt::Display for Tile {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}x{}", self.0[0], self.0[1])
+    }
+}
+
+impl Tile {
+    /// Whether the pair of a ring and a ring `shift` cells away occurs within the tile.
+    pub fn holds(&self, shift: Shift) -> bool {
+        (0..2).all(|k| shift[k].unsigned_abs() < self.0[k])
+    }
+}
+
+/// Most rings of one export.
+const MOST_RINGS: usize = 5_000_000;
+
+/// A ring of a kind of element.
+#[derive(Clone, Debug)]
+pub struct KindRing {
+    /// Its mesh in [`Scene::shapes`].
+    pub shape: usize,
+    /// From the mesh's frame (axis z) to the element's.
+    pub local: Isometry3<f64>,
+}
+
+/// A kind of element: one element of the design, of which every cell has a copy.
+#[derive(Clone, Debug)]
+pub struct Kind {
+    /// Name in the design.
+    pub name: String,
+    /// Its rings.
+    pub rings: Vec<KindRing>,
+}
+
+/// An element of the tile.
+#[derive(Clone, Debug)]
+pub struct Placed {
+    /// Its kind in [`Scene::kinds`].
+    pub kind: usize,
+    /// Element of the solved cell that it is a copy of.
+    pub member: usize,
+    /// Its cell.
+    pub cell: [u32; 2],
+    /// From the element's frame to the sheet's.
+    pub pose: Isometry3<f64>,
+}
+
+/// A ring of the tile.
+#[derive(Clone, Debug)]
+pub struct PlacedRing<'a> {
+    /// Index of its element in [`Scene::elements`].
+    pub element: usize,
+    /// The element.
+    pub placed: &'a Placed,
+    /// Ring of the solved cell that it is a copy of, counted through all elements.
+    pub ring: usize,
+    /// Its mesh in [`Scene::shapes`].
+    pub shape: usize,
+    /// From the mesh's frame to the sheet's.
+    pub pose: Isometry3<f64>,
+}
+
+/// A contact of a locked state in the tile.
+#[derive(Clone, Debug)]
+pub struct PlacedContact {
+    /// Where the tori touch.
+    pub point: Vec3,
+    /// Force on ring B, per unit of pull; on ring A the opposite.
+    pub force: Vec3,
+    /// Ring A of the solved cell, and its cell.
+    pub ring_a: usize,
+    /// Ring B of the solved cell.
+    pub ring_b: usize,
+    /// Cell of ring A.
+    pub cell: [u32; 2],
+    /// Whether ring B is in the tile too.
+    pub inside: bool,
+}
+
+/// A piece of the sheet in one state, in millimetres; its meshes are shared by all rings of the same radii.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// Name of the design.
+    pub name: String,
+    /// What it shows, for the metadata of the file.
+    pub description: String,
+    /// Millimetres of one unit of the design file.
+    pub mm: f64,
+    /// One mesh for each pair of radii.
+    pub shapes: Vec<TorusMesh>,
+    /// The kinds of elements, in the design's order.
+    pub kinds: Vec<Kind>,
+    /// The elements of the tile, cell by cell.
+    pub elements: Vec<Placed>,
+    /// Contacts of a locked state.
+    pub contacts: Vec<PlacedContact>,
+    /// Sum of the contact forces' magnitudes on each element of the solved cell, where a state has contacts.
+    pub loads: Option<Vec<f64>>,
+    /// First ring of every element of the solved cell.
+    first_ring: Vec<usize>,
+}
+
+impl Scene {
+    /// The tile of `model` in `state`; `fineness` counts in the design file's unit, of `mm` millimetres.
+    pub fn new(model: &Model, state: &State, tile: Tile, fineness: Fineness, mm: f64) -> Result<Scene, MeshError> {
+        let [columns, rows] = tile.0.map(|n| n as usize);
+        let rings = columns.saturating_mul(rows).saturating_mul(model.rings.len());
+        if rings > MOST_RINGS {
+            return Err(MeshError::TooManyRings { rings, most: MOST_RINGS });
+        }
+        let to_mm = model.unit * mm;
+        let kind_count = model.elements.len() / model.cell.copies();
+        let (mut shapes, mut radii) = (Vec::new(), Vec::<[u64; 2]>::new());
+        let mut kinds = Vec::new();
+        for element in &model.elements[..kind_count] {
+            let mut rings = Vec::new();
+            for ring in &model.rings[element.rings.clone()] {
+                let pair = [ring.major_radius, ring.minor_radius];
+                let shape = match radii.iter().position(|known| *known == pair.map(f64::to_bits)) {
+                    Some(known) => known,
+                    None => {
+                        let [big, small] = pair.map(|x| x * model.unit);
+                        let segments = fineness.segments(big, small)?;
+                        shapes.push(TorusMesh::new(big * mm, small * mm, segments));
+                        radii.push(pair.map(f64::to_bits));
+                        shapes.len() - 1
+                    }
+                };
+                let offset = Translation3::from(ring.offset * to_mm);
+                rings.push(KindRing { shape, local: Isometry3::from_parts(offset, turn_of_axis(&ring.normal)) });
+            }
+            // In a supercell the model adds the copy to the name.
+            let name = match element.name.rsplit_once('@') {
+                Some((name, _)) if model.cell.copies() > 1 => name,
+                _ => &element.name,
+            };
+            kinds.push(Kind { name: name.to_owned(), rings });
+        }
+        let mut elements = Vec::with_capacity(columns * rows * model.elements.len());
+        for i in 0..tile.0[0] {
+            for j in 0..tile.0[1] {
+                let shift = state.translation([i as i32, j as i32]);
+                for (member, pose) in state.poses.iter().enumerate() {
+                    let translation = Translation3::from((pose.position + shift) * to_mm);
+                    let pose = Isometry3::from_parts(translation, pose.rotation);
+                    elements.push(Placed { kind: member % kind_count, member, cell: [i, j], pose });
+                }
+            }
+        }
+        Ok(Scene {
+            name: model.name.clone(),
+            description: String::new(),
+            mm,
+            shapes,
+            kinds,
+            elements,
+            contacts: Vec::new(),
+            loads: None,
+            first_ring: model.elements.iter().map(|e| e.rings.start).collect(),
+        })
+    }
+
+    /// Adds the contacts of a locked state to the tile, and the loads on its elements.
+    pub fn add_contacts(&mut self, model: &Model, state: &State, tile: Tile, contacts: &[ContactRecord]) {
+        self.add_loads(model, contacts);
+        for contact in contacts {
+            let normal = Vec3::from(contact.normal);
+            let inner = model.rings[contact.ring_a].minor_radius * model.unit;
+            let outer = model.rings[contact.ring_b].minor_radius * model.unit;
+            // The middle between the two surfaces: the same point where they touch.
+            let on_a = Vec3::from(contact.point_a) + normal * inner;
+            let on_b = Vec3::from(contact.point_b) - normal * outer;
+            for i in 0..tile.0[0] {
+                for j in 0..tile.0[1] {
+                    let shift = state.translation([i as i32, j as i32]) * model.unit;
+                    let there = [i as i32 + contact.shift[0], j as i32 + contact.shift[1]];
+                    self.contacts.push(PlacedContact {
+                        point: ((on_a + on_b) * 0.5 + shift) * self.mm,
+                        force: normal * contact.force,
+                        ring_a: contact.ring_a,
+                        ring_b: contact.ring_b,
+                        cell: [i, j],
+                        inside: (0..2).all(|k| (0..tile.0[k] as i32).contains(&there[k])),
+                    });
+                }
+            }
+        }
+    }
+
+    /// Adds the loads on the elements alone.
+    pub fn add_loads(&mut self, model: &Model, contacts: &[ContactRecord]) {
+        if contacts.is_empty() {
+            return;
+        }
+        let mut loads = vec![0.0; model.elements.len()];
+        for contact in contacts {
+            for ring in [contact.ring_a, contact.ring_b] {
+                loads[model.rings[ring].element] += contact.force;
+            }
+        }
+        self.loads = Some(loads);
+    }
+
+    /// The rings of the tile, element by element.
+    pub fn rings(&self) -> impl Iterator<Item = PlacedRing<'_>> {
+        self.elements.iter().enumerate().flat_map(move |(element, placed)| {
+            let first = self.first_ring[placed.member];
+            self.kinds[placed.kind].rings.iter().enumerate().map(move |(k, ring)| PlacedRing {
+                element,
+                placed,
+                ring: first + k,
+                shape: ring.shape,
+                pose: placed.pose * ring.local,
+            })
+        })
+    }
+
+    /// Number of rings.
+    pub fn ring_count(&self) -> usize {
+        self.elements.iter().map(|e| self.kinds[e.kind].rings.len()).sum()
+    }
+
+    /// Number of triangles where every ring has its own.
+    pub fn triangle_count(&self) -> usize {
+        let of_kind = |k: &Kind| k.rings.iter().map(|r| self.shapes[r.shape].triangle_count()).sum::<usize>();
+        let of_kinds: Vec<usize> = self.kinds.iter().map(of_kind).collect();
+        self.elements.iter().map(|e| of_kinds[e.kind]).sum()
+    }
+
+    /// Largest bound of the distance between a mesh and its torus.
+    pub fn chordal_error(&self) -> f64 {
+        self.shapes.iter().map(TorusMesh::chordal_error).fold(0.0, f64::max)
+    }
+
+    /// Least and largest corner of the box around the tori.
+    ///
+    /// A circle of radius R and normal n reaches R √(1 − n_k²) along axis k.
+    pub fn bounds(&self) -> [Vec3; 2] {
+        let (mut least, mut largest) = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
+        for ring in self.rings() {
+            let shape = &self.shapes[ring.shape];
+            let normal = ring.pose.rotation * Vec3::z();
+            let reach = normal.map(|n| shape.major_radius * (1.0 - n * n).max(0.0).sqrt() + shape.minor_radius);
+            least = least.inf(&(ring.pose.translation.vector - reach));
+            largest = largest.sup(&(ring.pose.translation.vector + reach));
+        }
+        [least, largest]
+    }
+}
+
+/// A rotation that takes the z axis to `normal`.
+fn turn_of_axis(normal: &Vector3<f64>) -> UnitQuaternion<f64> {
+    UnitQuaternion::rotation_between(&Vector3::z(), normal)
+        .unwrap_or_else(|| UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI))
+}
+
+/// The state of a record's line, for the model that was solved.
+pub fn state_of(model: &Model, record: &StateRecord) -> Result<State, MeshError> {
+    let names = model.elements.iter().map(|e| e.name.as_str());
+    if !record.poses.iter().map(|p| p.element.as_str()).eq(names) {
+        return Err(MeshError::OtherElements { state: record.poses.len(), cell: model.elements.len() });
+    }
+    let length = |x: [f64; 3]| Vec3::from(x) / model.unit;
+    let pose = |p: &PoseRecord| {
+        let [w, x, y, z] = p.rotation;
+        let rotation = UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z));
+        Pose { position: length(p.position), rotation }
+    };
+    Ok(State { poses: record.poses.iter().map(pose).collect(), a1: length(record.a1), a2: length(record.a2) })
+}
+
+/// The state a part `t` (0 to 1) of the way from `start` to `end`.
+///
+/// Lattice vectors and positions move along straight lines, rotations turn at a constant rate about one axis, the short
+/// way. It is a picture of the change, no motion that the rings could make: in between they may overlap.
+pub fn between(start: &State, end: &State, t: f64) -> State {
+    let mix = |a: &Vec3, b: &Vec3| a * (1.0 - t) + b * t;
+    let poses = start.poses.iter().zip(&end.poses).map(|(a, b)| Pose {
+        position: mix(&a.position, &b.position),
+        rotation: UnitQuaternion::from_scaled_axis((b.rotation * a.rotation.inverse()).scaled_axis() * t) * a.rotation,
+    });
+    State { poses: poses.collect(), a1: mix(&start.a1, &end.a1), a2: mix(&start.a2, &end.a2) }
+}

@@ -1,0 +1,60 @@
+//! Time of a limit, one core: `cargo bench -p maille`. Each figure is for one limit (divan's items).
+
+use divan::{Bencher, counter::ItemsCount};
+use maille::{
+    lattice::Cell,
+    limit::{
+        energy::{EnergyMethod, EnergyOptions},
+        exact::{ExactMethod, ExactOptions},
+    },
+    model::Model,
+};
+use maille_io::{builtin, read_design};
+use std::sync::atomic::AtomicBool;
+
+fn main() {
+    divan::main();
+}
+
+fn model(name: &str, cell: &str) -> Model {
+    let design = read_design(name, builtin(name).expect("built in")).expect("valid");
+    Model::compile(&design, cell.parse::<Cell>().expect("a cell")).expect("compiles")
+}
+
+/// Directions of a map, 7.5° apart.
+fn directions() -> impl Iterator<Item = f64> {
+    (0..24).map(|k| 7.5 * f64::from(k))
+}
+
+/// Small cells with continuation in l2: 2 to 4 elements.
+#[divan::bench(args = ["1.1", "2", "3.1"], sample_count = 5, sample_size = 1)]
+fn exact_map(bencher: Bencher<'_, '_>, name: &str) {
+    const L2: [f64; 3] = [0.0, -0.125, 0.125];
+    let models = [model(name, "1x1")];
+    bencher.counter(ItemsCount::new(24 * L2.len())).bench_local(|| {
+        let method = ExactMethod::new(&models, ExactOptions::default());
+        for direction in directions() {
+            method.limits(direction, &L2, &AtomicBool::new(false), &mut |_, limit| drop(divan::black_box(limit)));
+        }
+    });
+}
+
+/// One limit of larger cells of 1.1: 12, 27 and 108 elements.
+#[divan::bench(args = ["2x2", "3x3", "6x6"], sample_count = 3, sample_size = 1)]
+fn exact_cell(bencher: Bencher<'_, '_>, cell: &str) {
+    let models = [model("1.1", cell)];
+    bencher.counter(ItemsCount::new(1usize)).bench_local(|| {
+        let method = ExactMethod::new(&models, ExactOptions { starts: 1, ..ExactOptions::default() });
+        method.limits(15.0, &[0.0], &AtomicBool::new(false), &mut |_, limit| drop(divan::black_box(limit)));
+    });
+}
+
+/// The energy method on the same small cells.
+#[divan::bench(args = ["1.1", "2", "3.1"], sample_count = 3, sample_size = 1)]
+fn energy_limit(bencher: Bencher<'_, '_>, name: &str) {
+    let model = model(name, "1x1");
+    bencher.counter(ItemsCount::new(1usize)).bench_local(|| {
+        let cancel = AtomicBool::new(false);
+        EnergyMethod::new(&model, EnergyOptions::default(), &cancel).limit(15.0, 0.0, &cancel)
+    });
+}
