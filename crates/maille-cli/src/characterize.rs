@@ -336,7 +336,8 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     collected.folder.write_polar(&svg, &png)?;
     let interrupted = cancel.load(Ordering::Relaxed);
     if !args.quiet {
-        summary(&rows, open.len(), begun.elapsed(), &out);
+        let solved = rows.iter().filter(|r| r.status != Status::Interrupted).count() - (all.len() - open.len());
+        summary(&rows, solved, begun.elapsed(), &out);
         if interrupted {
             eprintln!("interrupted; the same command goes on from here");
         }
