@@ -1,7 +1,7 @@
 //! `maille characterize`: limits over directions and lateral strains, written as a record.
 
 use crate::{
-    input::Input,
+    input::{Input, file_name},
     numbers::{Numbers, parse, parse_l2, positive},
     progress::Progress,
 };
@@ -267,7 +267,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             Method::Energy(options) => json!(options.parameters(&models[0])),
         },
     });
-    let out = args.out.clone().unwrap_or_else(|| PathBuf::from("maille-out").join(folder_name(&input.design.name)));
+    let out = args.out.clone().unwrap_or_else(|| PathBuf::from("maille-out").join(file_name(&input.design.name)));
     let version = env!("CARGO_PKG_VERSION");
     let (folder, old_rows, old_states) = RecordFolder::open(&out, &input.design, &parameters, version, args.overwrite)?;
 
@@ -345,11 +345,6 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     Ok(if interrupted { ExitCode::from(130) } else { ExitCode::SUCCESS })
 }
 
-/// The design's name as a folder: a name with a path separator stays one folder.
-fn folder_name(name: &str) -> String {
-    name.chars().map(|c| if c.is_alphanumeric() || ".-_ ".contains(c) { c } else { '_' }).collect()
-}
-
 /// The first Ctrl-C ends the run cleanly, the second at once.
 fn stop_on_interrupt(cancel: &Arc<AtomicBool>) -> Result<()> {
     let cancel = Arc::clone(cancel);
@@ -387,12 +382,13 @@ fn summary(rows: &[LimitRow], solved: usize, took: Duration, out: &std::path::Pa
     for l2 in l2 {
         let of: Vec<&LimitRow> = rows.iter().filter(|r| r.l2 == l2).collect();
         let mut found: Vec<(f64, f64)> = of.iter().filter_map(|r| Some((r.l1?, r.direction_deg))).collect();
-        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        // Rounding decides nothing: of equal limits the first direction is named.
+        found.sort_by(|a, b| (a.0 * 1e9).round().total_cmp(&(b.0 * 1e9).round()));
         let show = |x: Option<&(f64, f64)>| x.map_or("-".into(), |(l1, at)| format!("{l1:.4} at {at}°"));
         println!(
             "{l2:>8}  {:>20}  {:>20}  {:>3}/{:<3}",
             show(found.first()),
-            show(found.last()),
+            show(found.iter().rev().take_while(|x| (x.0 - found[found.len() - 1].0).abs() < 1e-9).last()),
             found.len(),
             of.len()
         );

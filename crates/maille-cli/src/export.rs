@@ -1,6 +1,10 @@
 //! `maille export`: meshes of a sheet, to print, to show and to analyse.
 
-use crate::{input::Input, numbers::positive};
+use crate::{
+    at::{At, parse_at},
+    input::{Input, file_name},
+    numbers::positive,
+};
 use maille::{
     design::Design,
     error::InvalidInput,
@@ -157,31 +161,6 @@ enum ColorArg {
     Kind,
     /// The sum of the contact forces on the element
     Load,
-}
-
-/// A state of a record.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct At {
-    direction: Option<f64>,
-    l2: Option<f64>,
-}
-
-fn parse_at(text: &str) -> Result<At, String> {
-    let mut at = At::default();
-    for part in text.split(',') {
-        let wrong = || format!("\"{part}\" is no place; give direction=30,l2=-0.125");
-        let (key, value) = part.split_once('=').ok_or_else(wrong)?;
-        let value: f64 = value.trim().parse().ok().filter(|x: &f64| x.is_finite()).ok_or_else(wrong)?;
-        let slot = match key.trim() {
-            "direction" => &mut at.direction,
-            "l2" => &mut at.l2,
-            _ => return Err(wrong()),
-        };
-        if slot.replace(value).is_some() {
-            return Err(format!("{} is given twice", key.trim()));
-        }
-    }
-    Ok(at)
 }
 
 fn parse_segments(text: &str) -> Result<Fineness, String> {
@@ -391,8 +370,7 @@ fn source(args: &Args) -> Result<Source> {
 
 /// The only state that fits.
 fn pick<'a>(args: &Args, record: &'a Record, at: At, folder: &Path) -> Result<&'a StateRecord> {
-    let same = |wanted: Option<f64>, x: f64| wanted.is_none_or(|w| (w - x).abs() < 1e-9);
-    let fits = |s: &&StateRecord| same(at.direction, s.direction_deg) && same(at.l2, s.l2) && !s.poses.is_empty();
+    let fits = |s: &&StateRecord| at.fits(s.direction_deg, s.l2) && !s.poses.is_empty();
     let found: Vec<&StateRecord> = record.states.iter().filter(fits).collect();
     let list = |states: &[&StateRecord]| {
         let some: Vec<String> =
@@ -426,17 +404,6 @@ fn pick<'a>(args: &Args, record: &'a Record, at: At, folder: &Path) -> Result<&'
             found.len(),
             folder.display()
         )),
-    }
-}
-
-impl std::fmt::Display for At {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match (self.direction, self.l2) {
-            (Some(d), Some(l2)) => write!(f, "direction={d},l2={l2}"),
-            (Some(d), None) => write!(f, "direction={d}"),
-            (None, Some(l2)) => write!(f, "l2={l2}"),
-            (None, None) => write!(f, "any place"),
-        }
     }
 }
 
@@ -549,11 +516,6 @@ fn destination(args: &Args, source: &Source) -> Result<(PathBuf, Vec<FormatArg>)
             out.display()
         )),
     }
-}
-
-/// The design's name as a file: a name with a path separator stays one file.
-fn file_name(name: &str) -> String {
-    name.chars().map(|c| if c.is_alphanumeric() || ".-_ ".contains(c) { c } else { '_' }).collect()
 }
 
 fn with_ending(prefix: &Path, ending: &str) -> PathBuf {

@@ -59,3 +59,8 @@ fn unknown(name: &str) -> Report {
         "there is no built-in design and no file \"{name}\""
     )
 }
+
+/// A design's name as a file or folder: path separators and other odd characters become underscores.
+pub fn file_name(name: &str) -> String {
+    name.chars().map(|c| if c.is_alphanumeric() || ".-_ ".contains(c) { c } else { '_' }).collect()
+}

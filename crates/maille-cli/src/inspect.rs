@@ -38,7 +38,7 @@ pub fn run(args: &Args) -> Result<()> {
     let model = input.compile(&tolerant, args.cell)?;
     let design = &input.design;
     let unit = design.unit.as_deref().map_or(String::new(), |u| format!(" {u}"));
-    println!("{}  {}", design.name, design.title);
+    println!("{}", format!("{}  {}", design.name, design.title).trim_end());
     let length = |v: maille_geometry::Vec3| format!("({:.4}, {:.4})", v.x * model.unit, v.y * model.unit);
     println!("cell {}: a1 = {}, a2 = {}{unit}", model.cell, length(model.start.a1), length(model.start.a2));
     let (a1, a2) = (model.start.a1, model.start.a2);

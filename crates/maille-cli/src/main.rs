@@ -1,5 +1,6 @@
 //! The `maille` program: arguments, progress and exit codes. The mechanics are in the `maille` crate.
 
+mod at;
 mod characterize;
 mod designs;
 mod export;
@@ -39,6 +40,9 @@ enum Command {
 }
 
 fn main() -> ExitCode {
+    // Lines of a help are commands to copy: they are not broken.
+    let hook = miette::set_hook(Box::new(|_| Box::new(miette::MietteHandlerOpts::new().wrap_lines(false).build())));
+    debug_assert!(hook.is_ok(), "the hook is set once");
     let done: Result<ExitCode> = match Args::parse().command {
         Command::Characterize(args) => characterize::run(&args),
         Command::Inspect(args) => inspect::run(&args).map(|()| ExitCode::SUCCESS),

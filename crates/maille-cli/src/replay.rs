@@ -1,5 +1,6 @@
 //! `maille replay`: solves rows of a record again, from the inputs that the record holds.
 
+use crate::at::{At, parse_at};
 use maille::{
     characterize::{Finished, Method, Task, characterize},
     lattice::Cell,
@@ -28,24 +29,9 @@ Exit codes: 0 all rows came out as recorded, 1 some did not, or the record canno
 pub struct Args {
     /// A record's folder, or the run.json in it
     record: PathBuf,
-    /// The row to solve, as direction=30,l2=-0.125
-    #[arg(long, value_parser = at)]
-    at: Option<(f64, f64)>,
-}
-
-fn at(text: &str) -> Result<(f64, f64), String> {
-    let wrong = || format!("\"{text}\" names no row; write direction=30,l2=-0.125");
-    let (mut direction, mut l2) = (None, None);
-    for part in text.split(',') {
-        let (name, value) = part.split_once('=').ok_or_else(wrong)?;
-        let value: f64 = value.trim().parse().map_err(|_| wrong())?;
-        match name.trim() {
-            "direction" => direction = Some(value),
-            "l2" => l2 = Some(value),
-            _ => return Err(wrong()),
-        }
-    }
-    direction.zip(l2).ok_or_else(wrong)
+    /// The rows to solve, as direction=30,l2=-0.125; what is not named stays open
+    #[arg(long, value_parser = parse_at, allow_hyphen_values = true)]
+    at: Option<At>,
 }
 
 /// Runs the command.
@@ -74,12 +60,12 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     };
     let l2: Vec<f64> = serde_json::from_value(parameters["l2"].clone()).into_diagnostic().wrap_err("l2 in run.json")?;
     let rows: Vec<&LimitRow> = match args.at {
-        Some(at) => record.rows.iter().filter(|r| (r.direction_deg, r.l2) == at).collect(),
+        Some(at) => record.rows.iter().filter(|r| at.fits(r.direction_deg, r.l2)).collect(),
         None => record.rows.iter().filter(|r| r.l1.is_none()).collect(),
     };
     if rows.is_empty() {
         match args.at {
-            Some((direction, l2)) => return Err(miette!("the record has no row at {direction}°, l2 = {l2}")),
+            Some(at) => return Err(miette!("the record has no row at {at}")),
             None => println!("every row of the record has a limit; name one with --at direction=…,l2=…"),
         }
     }

@@ -52,7 +52,7 @@ pub struct ExactParameters {
     rounds: usize,
     shakes: [f64; 6],
     more_starts: usize,
-    cell_shakes: [f64; 2],
+    cell_shakes: [f64; 3],
     own_image_force: f64,
 }
 
@@ -99,7 +99,7 @@ const OWN_IMAGE_FORCE: f64 = 1e-6;
 /// Further starts where none reached the wanted l2.
 const MORE_STARTS: usize = 6;
 /// Shakes of a smaller cell's state that start a larger cell's solve.
-const CELL_SHAKES: [f64; 2] = [0.02, 0.1];
+const CELL_SHAKES: [f64; 3] = [0.02, 0.1, 0.3];
 
 /// Finds limits of one sheet by the exact method.
 pub struct ExactMethod<'a> {

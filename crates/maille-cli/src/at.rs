@@ -1,0 +1,50 @@
+//! `--at direction=30,l2=-0.125`: a row of a record.
+
+use std::fmt;
+
+/// Which row of a record is meant.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct At {
+    /// Direction of the pull, degrees.
+    pub direction: Option<f64>,
+    /// l2 of the row.
+    pub l2: Option<f64>,
+}
+
+/// Reads `direction=30,l2=-0.125`; what is not named stays open.
+pub fn parse_at(text: &str) -> Result<At, String> {
+    let mut at = At::default();
+    for part in text.split(',') {
+        let wrong = || format!("\"{part}\" is no place; give direction=30,l2=-0.125");
+        let (key, value) = part.split_once('=').ok_or_else(wrong)?;
+        let value: f64 = value.trim().parse().ok().filter(|x: &f64| x.is_finite()).ok_or_else(wrong)?;
+        let slot = match key.trim() {
+            "direction" => &mut at.direction,
+            "l2" => &mut at.l2,
+            _ => return Err(wrong()),
+        };
+        if slot.replace(value).is_some() {
+            return Err(format!("{} is given twice", key.trim()));
+        }
+    }
+    Ok(at)
+}
+
+impl At {
+    /// Whether a row of this direction and l2 is meant.
+    pub fn fits(&self, direction_deg: f64, l2: f64) -> bool {
+        let same = |wanted: Option<f64>, x: f64| wanted.is_none_or(|w| (w - x).abs() < 1e-9);
+        same(self.direction, direction_deg) && same(self.l2, l2)
+    }
+}
+
+impl fmt::Display for At {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (self.direction, self.l2) {
+            (Some(d), Some(l2)) => write!(f, "direction={d},l2={l2}"),
+            (Some(d), None) => write!(f, "direction={d}"),
+            (None, Some(l2)) => write!(f, "l2={l2}"),
+            (None, None) => write!(f, "any place"),
+        }
+    }
+}
