@@ -8,6 +8,7 @@ mod input;
 mod inspect;
 mod numbers;
 mod progress;
+mod render;
 mod replay;
 
 use clap::{Parser, Subcommand};
@@ -37,6 +38,7 @@ enum Command {
     Designs(designs::Args),
     Replay(replay::Args),
     Export(export::Args),
+    Render(render::Args),
 }
 
 fn main() -> ExitCode {
@@ -49,6 +51,7 @@ fn main() -> ExitCode {
         Command::Replay(args) => replay::run(&args),
         Command::Designs(args) => designs::run(&args).map(|()| ExitCode::SUCCESS),
         Command::Export(args) => export::run(&args).map(|()| ExitCode::SUCCESS),
+        Command::Render(args) => render::run(&args).map(|()| ExitCode::SUCCESS),
     };
     done.unwrap_or_else(|report| {
         eprintln!("{report:?}");

@@ -20,7 +20,7 @@ impl View {
     /// From above: x right, y up, angles as in the polar plots.
     pub const TOP: View = View { azimuth_deg: 0.0, elevation_deg: 90.0 };
     /// A little from the side, so that over and under are seen.
-    pub const TILTED: View = View { azimuth_deg: 24.0, elevation_deg: 52.0 };
+    pub const TILTED: View = View { azimuth_deg: 16.0, elevation_deg: 50.0 };
     /// Along the sheet.
     pub const SIDE: View = View { azimuth_deg: 0.0, elevation_deg: 0.0 };
 }

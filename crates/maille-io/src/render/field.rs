@@ -17,7 +17,7 @@ pub(super) struct Field<'a> {
     starts: Vec<u32>,
     nearest: Vec<u32>,
     /// Beyond this distance the field only says "at least so far".
-    reach: f64,
+    pub(super) reach: f64,
 }
 
 /// Boxes of the grid, about, and their least side in reference radii.

@@ -13,11 +13,23 @@ use super::{
 use maille_geometry::Vec3;
 use rayon::prelude::*;
 
-/// Light and cover of a pixel: `light` counts only what covers.
+/// What a pixel sees.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Pixel {
+    /// Light from rings and arrows.
     pub(super) light: Light,
+    /// Part of the pixel that they cover.
     pub(super) cover: f64,
+    /// Shadow on the rest: the part of the background's light that it takes away.
+    pub(super) shadow: f64,
+}
+
+impl Pixel {
+    fn add(&mut self, other: Pixel, weight: f64) {
+        self.light += other.light * weight;
+        self.cover += other.cover * weight;
+        self.shadow += other.shadow * weight;
+    }
 }
 
 /// The scene with all that makes rays fast.
@@ -152,9 +164,7 @@ impl<'a> Stage<'a> {
         let open = self.open(middle);
         let mut pixel = Pixel::default();
         for (sample, weight) in five.iter().zip([0.5, 0.125, 0.125, 0.125, 0.125]) {
-            let (light, cover) = self.look(sample, open);
-            pixel.light += light * weight;
-            pixel.cover += cover * weight;
+            pixel.add(self.look(sample, open), weight);
         }
         Some(pixel)
     }
@@ -176,17 +186,16 @@ impl<'a> Stage<'a> {
             let nearest = group.iter().min_by(|a, b| off(a).total_cmp(&off(b))).expect("a group has a sample");
             let open = self.open(nearest);
             for sample in group {
-                let (mut light, mut cover) = self.look(sample, open);
-                if let Some((arrow, opacity)) = sample.arrow {
-                    light = light * (1.0 - opacity) + arrow * opacity;
-                    cover = cover * (1.0 - opacity) + opacity;
+                let mut seen = Pixel::default();
+                let opacity = sample.arrow.map_or(0.0, |arrow| arrow.1);
+                seen.add(self.look(sample, open), 1.0 - opacity);
+                if let Some((light, opacity)) = sample.arrow {
+                    seen.add(Pixel { light, cover: 1.0, shadow: 0.0 }, opacity);
                 }
-                pixel.light += light;
-                pixel.cover += cover;
+                pixel.add(seen, 1.0 / (GRID * GRID) as f64);
             }
         }
-        let share = 1.0 / (GRID * GRID) as f64;
-        Pixel { light: pixel.light * share, cover: pixel.cover * share }
+        pixel
     }
 
     fn sample(&self, x: f64, y: f64) -> Sample {
@@ -230,14 +239,15 @@ impl<'a> Stage<'a> {
         }
     }
 
-    fn look(&self, sample: &Sample, open: Open) -> (Light, f64) {
-        match sample.thing {
-            Thing::Ring(k) => {
+    fn look(&self, sample: &Sample, open: Open) -> Pixel {
+        match (sample.thing, &self.ground) {
+            (Thing::Ring(k), _) => {
                 let view = -sample.ray.direction;
-                (self.lights.surface(&self.scene.colors[k], &sample.normal, &view, open), 1.0)
+                let light = self.lights.surface(&self.scene.colors[k], &sample.normal, &view, open);
+                Pixel { light, cover: 1.0, shadow: 0.0 }
             }
-            Thing::Ground => (Light::zeros(), self.ground.as_ref().map_or(0.0, |ground| ground.at(&sample.point))),
-            Thing::Nothing => (Light::zeros(), 0.0),
+            (Thing::Ground, Some(ground)) => Pixel { shadow: ground.at(&sample.point), ..Pixel::default() },
+            _ => Pixel::default(),
         }
     }
 }

@@ -16,7 +16,9 @@ pub(super) struct Ground {
 }
 
 /// Darkness where the key light is hidden, and where the surroundings are.
-const DARK: (f64, f64) = (0.20, 0.26);
+const DARK: (f64, f64) = (0.15, 0.26);
+/// As for the sheet's own shadows, but softer: the ground is to carry the sheet, not to draw its rings once more.
+const SOFTNESS: f64 = 0.3;
 /// Below the lowest ring, in reference radii.
 const BELOW: f64 = 0.02;
 
@@ -34,7 +36,7 @@ impl Ground {
                 let x = low[0] + step * (k % counts[0]) as f64;
                 let y = low[1] + step * (k / counts[0]) as f64;
                 let p = Vec3::new(x, y, height);
-                let light = DARK.0 * (1.0 - lights.shadow(field, &p, &Vec3::z(), 0.1));
+                let light = DARK.0 * (1.0 - lights.shadow(field, &p, &Vec3::z(), 0.1, SOFTNESS));
                 (light + DARK.1 * covered(field, &p)) as f32
             })
             .collect();

@@ -67,6 +67,9 @@ pub enum RenderError {
     Encode(String),
 }
 
+/// The dark background.
+const DARK: u32 = 0x1b1e24;
+
 /// Most pixels on one side.
 const MOST_SIDE: u32 = 16_384;
 
@@ -77,6 +80,16 @@ pub enum Extent {
     Cells([u32; 2]),
     /// The elements with their reference point in a rectangle around that of the first, in the file's unit.
     Patch([f64; 2]),
+}
+
+impl Extent {
+    /// A patch that about fills a picture of this size and view: 13 reference radii wide.
+    pub fn filling([width, height]: [u32; 2], view: View, reference_radius: f64) -> Self {
+        let across = 12.6 * reference_radius;
+        let foreshortened = view.elevation_deg.to_radians().sin().abs().max(0.5);
+        let deep = across * f64::from(height.max(1)) / f64::from(width.max(1)) / foreshortened;
+        Extent::Patch([across, deep.min(2.0 * across)])
+    }
 }
 
 /// What the colours mean.
@@ -226,18 +239,20 @@ pub fn render(subject: &Subject<'_>, options: &RenderOptions) -> Result<Picture,
 
 /// The pixel on its background, as the pixmap holds it: sRGB values times alpha.
 fn developed(pixel: &Pixel, background: Background) -> PremultipliedColorU8 {
-    let behind = match background {
-        Background::White => Some(Light::repeat(1.0)),
-        Background::Dark => Some(color::light(0x1b1e24)),
-        Background::Transparent => None,
+    let on = |behind: Light| (pixel.light + behind * (1.0 - pixel.cover - pixel.shadow), 1.0, 1.0);
+    let (light, cover, alpha) = match background {
+        Background::White => on(Light::repeat(1.0)),
+        Background::Dark => on(color::light(DARK)),
+        Background::Transparent => {
+            // Most programs lay pictures over others in sRGB values: a black of this alpha looks there as the shadow
+            // does on white.
+            let bare = (1.0 - pixel.cover).max(1e-9);
+            let shadow = 1.0 - color::encoded(1.0 - pixel.shadow / bare);
+            (pixel.light / pixel.cover.max(1e-9), pixel.cover, pixel.cover + (1.0 - pixel.cover) * shadow)
+        }
     };
-    let (light, alpha) = match behind {
-        Some(behind) => (pixel.light + behind * (1.0 - pixel.cover), 1.0),
-        None if pixel.cover > 0.0 => (pixel.light / pixel.cover, pixel.cover.min(1.0)),
-        None => (Light::zeros(), 0.0),
-    };
-    let alpha = (255.0 * alpha).round();
-    let byte = |x: f64| (color::encoded(x) * alpha).round() as u8;
+    let alpha = (255.0 * alpha).round().clamp(0.0, 255.0);
+    let byte = |x: f64| (255.0 * color::encoded(x) * cover).round().min(alpha) as u8;
     PremultipliedColorU8::from_rgba(byte(light.x), byte(light.y), byte(light.z), alpha as u8)
         .expect("no colour exceeds alpha")
 }

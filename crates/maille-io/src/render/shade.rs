@@ -34,7 +34,7 @@ const CONES: [([f64; 3], f64); 6] = [
 const PROBES: f64 = 1.75;
 /// How far occlusion is felt, in reference radii.
 const FELT: f64 = 1.3;
-/// Sine of half of the key light's angle: its shadows soften with distance.
+/// Sine of half of the key light's angle, for shadows of rings on rings.
 const SOFTNESS: f64 = 0.10;
 /// No shadow falls from further away, in reference radii.
 const SHADOW: f64 = 6.0;
@@ -61,11 +61,11 @@ impl Lights {
             }
             around += share * open;
         }
-        Open { around, key: self.shadow(field, p, normal, wire) }
+        Open { around, key: self.shadow(field, p, normal, wire, SOFTNESS) }
     }
 
-    /// How much of the key light reaches a point.
-    pub(super) fn shadow(&self, field: &Field<'_>, p: &Vec3, normal: &Vec3, wire: f64) -> f64 {
+    /// How much of the key light reaches a point; `softness` is the sine of half of the light's angle.
+    pub(super) fn shadow(&self, field: &Field<'_>, p: &Vec3, normal: &Vec3, wire: f64, softness: f64) -> f64 {
         if normal.dot(&self.key) < -0.15 {
             return 0.0;
         }
@@ -73,7 +73,7 @@ impl Lights {
         let (mut t, mut open) = (0.3 * wire, 1.0_f64);
         while t < SHADOW {
             let d = field.at(&(start + self.key * t));
-            open = open.min(0.5 + 0.5 * d / (SOFTNESS * t));
+            open = open.min(0.5 + 0.5 * d / (softness * t).min(field.reach));
             if open <= 0.0 {
                 return 0.0;
             }
