@@ -155,7 +155,7 @@ fn several_records_differ_in_colour_and_in_line() {
     let records = three();
     let plot = PolarPlot::from_records(&records, Quantity::Stretch);
     let (apart, labels) = &plot.records;
-    assert_eq!(apart, "R, Method");
+    assert_eq!(apart, "r, method");
     assert_eq!(labels, &["r = 0.1, exact", "r = 0.1, energy", "r = 0.05, exact"]);
     assert_eq!(plot.curves.len(), 6);
     let svg = polar_svg(&plot);

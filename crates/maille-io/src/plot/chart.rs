@@ -35,7 +35,7 @@ pub(super) struct Chart {
 
 impl Chart {
     pub(super) fn svg(&self) -> String {
-        self.frame.svg(BOTTOM + 62.0, |canvas| {
+        self.frame.svg(BOTTOM + 52.0, |canvas| {
             self.draw_grid(canvas);
             for series in &self.series {
                 for run in series.points.split(|point| point.y.is_none()) {

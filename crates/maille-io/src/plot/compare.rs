@@ -88,7 +88,8 @@ fn significant(x: f64) -> String {
     format!("{rounded}")
 }
 
-/// What is different in a record, as `exact` or `3.1, r = 0.05`, and above all of them what it is: `Method` or `Design, r`.
+/// What is different in a record, as `exact` or `3.1, r = 0.05`, and above all of them what it is: `Method`, or
+/// `Design, r`.
 pub(super) fn differences(records: &[NamedRecord]) -> (String, Vec<String>) {
     let method = |named: &NamedRecord| named.record.run.parameters["method"].as_str().unwrap_or_default().to_owned();
     let radius = |named: &NamedRecord| {
@@ -99,9 +100,9 @@ pub(super) fn differences(records: &[NamedRecord]) -> (String, Vec<String>) {
     let column =
         |name: &'static str, of: &dyn Fn(&NamedRecord) -> String| -> Part { (name, records.iter().map(of).collect()) };
     let first = [
-        column("Design", &|named| named.record.run.design.name.clone()),
+        column("design", &|named| named.record.run.design.name.clone()),
         column("r", &radius),
-        column("Method", &method),
+        column("method", &method),
     ];
     let mut parts: Vec<Part> = first.into_iter().filter(|(_, of)| of.windows(2).any(|w| w[0] != w[1])).collect();
     // The method says already that its parameters are others.
@@ -128,7 +129,7 @@ pub(super) fn differences(records: &[NamedRecord]) -> (String, Vec<String>) {
     let heading = parts.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
     let mut letters = heading.chars();
     let heading = match letters.next() {
-        Some('r') if heading == "r" => heading,
+        Some('r') if heading == "r" || heading.starts_with("r,") => heading, // a symbol
         Some(first) => first.to_uppercase().chain(letters).collect(),
         None => heading,
     };

@@ -55,7 +55,7 @@ pub fn difference_svg(records: &[NamedRecord], spread: Spread) -> String {
         legend.push(hollow_note("some directions have no limit"));
     }
     if spread == Spread::Lambda1 {
-        caption.push("λ₁ = (1 + l₁)², the square of the stretch along the pull.".into());
+        caption.push("λ₁ = (1 + l₁)² is the eigenvalue of C = FᵀF along the pull.".into());
     }
     caption.push("0 would be a sheet that locks at the same stretch in every direction that was computed.".into());
     let l2 = l2_values(records.iter().flat_map(|named| &named.record.rows));

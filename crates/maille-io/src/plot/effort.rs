@@ -29,7 +29,7 @@ pub(super) fn svg(records: &[NamedRecord], effort: Effort) -> String {
     let look = |record: usize, k: usize| match (records.len(), l2.len()) {
         (1, _) => of_l2[k].clone(),
         (_, 1) => of_record[record].clone(),
-        _ => Look { marker: of_l2[k].marker, ..of_record[record].clone() },
+        _ => of_record[record].with_l2(&of_l2[k]),
     };
     let mut series = Vec::new();
     for (i, named) in records.iter().enumerate() {
@@ -50,13 +50,14 @@ pub(super) fn svg(records: &[NamedRecord], effort: Effort) -> String {
         legend.push(Entry::Heading(apart));
         legend.extend(labels.iter().zip(&of_record).map(|(label, look)| sample(look, true, l2.len() == 1, label)));
     }
-    legend.push(Entry::Heading("l₂ across the pull".into()));
-    match l2[..] {
-        [only] if records.len() > 1 => legend.push(Entry::Note(l2_label(only))),
-        _ => legend.extend(l2.iter().zip(&of_l2).map(|(l2, look)| match records.len() {
+    if let ([only], true) = (&l2[..], records.len() > 1) {
+        legend.push(Entry::Heading(format!("l₂ = {}", l2_label(*only))));
+    } else {
+        legend.push(Entry::Heading("l₂ across the pull".into()));
+        legend.extend(l2.iter().zip(&of_l2).map(|(l2, look)| match records.len() {
             1 => sample(look, true, true, &l2_label(*l2)),
             _ => sample(&Look { color: INK.into(), ..look.clone() }, false, true, &l2_label(*l2)),
-        })),
+        }));
     }
     let mut caption = captions(records, &labels);
     caption.extend(effort.caption);

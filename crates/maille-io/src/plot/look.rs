@@ -20,12 +20,14 @@ pub(super) struct Look {
 pub(super) struct Marker {
     shape: &'static [[f64; 2]],
     pub(super) filled: bool,
+    /// Relative to others.
+    size: f64,
 }
 
 impl Marker {
     /// Filled where the sheet is held compressed or as it is, hollow where it is held stretched.
     fn of_rank(rank: i32) -> Self {
-        Self { shape: palette::marker(rank), filled: rank <= 0 }
+        Self { shape: palette::marker(rank), filled: rank <= 0, size: 1.0 }
     }
 }
 
@@ -37,6 +39,7 @@ impl Look {
     pub(super) fn draw_marker(&self, canvas: &mut Canvas, at: [f64; 2], size: f64) {
         let fill = if self.marker.filled { &self.color } else { "#ffffff" };
         let stroke = Stroke::solid(&self.color, 1.4);
+        let size = size * self.marker.size;
         if self.marker.shape.is_empty() {
             canvas.circle(at, size, fill, stroke);
         } else {
@@ -72,19 +75,35 @@ pub(super) fn of_l2(l2: &[f64]) -> Vec<Look> {
     l2.iter().map(look).collect()
 }
 
-/// Looks of `count` records: the first lines are wide and solid, those above them narrow and broken, so that both are seen
-/// where they coincide.
+/// Looks of `count` records: one line wide and the next narrow and broken, markers alike, so that both are seen where they
+/// coincide.
 pub(super) fn of_records(count: usize) -> Vec<Look> {
     let look = |i: usize| Look {
         color: palette::record(i).to_owned(),
-        width: [3.2, 1.9, 1.6][i.min(2)],
+        width: if i == 0 { 3.2 } else { [2.3, 1.7][i % 2] },
         dash: palette::dash(i),
-        marker: Marker { shape: palette::marker((i % 5) as i32), filled: (i / 5).is_multiple_of(2) },
+        marker: Marker {
+            shape: palette::marker((i % 5) as i32),
+            filled: (i / 5).is_multiple_of(2),
+            size: [1.3, 0.9][i % 2],
+        },
     };
     (0..count).map(look).collect()
 }
 
+impl Look {
+    /// The look of a record's curve among those of several l2, which the marker tells.
+    pub(super) fn with_l2(&self, l2: &Look) -> Look {
+        Look { marker: Marker { size: self.marker.size, ..l2.marker }, ..self.clone() }
+    }
+}
+
 /// A hollow circle, for the legend.
 pub(super) fn hollow() -> Look {
-    Look { color: palette::NEUTRAL.to_owned(), width: 1.4, dash: "", marker: Marker { shape: &[], filled: false } }
+    Look {
+        color: palette::NEUTRAL.to_owned(),
+        width: 1.4,
+        dash: "",
+        marker: Marker { shape: &[], filled: false, size: 1.0 },
+    }
 }

@@ -132,7 +132,7 @@ impl PolarPlot {
             match (of_record.get(curve.record), curve.kind) {
                 (None, CurveKind::Limits) => l2_look.clone(),
                 (None, CurveKind::Bound) => Look { width: 1.4, dash: "5 4", ..l2_look.clone() },
-                (Some(look), _) if l2.len() > 1 => Look { marker: l2_look.marker, ..look.clone() },
+                (Some(look), _) if l2.len() > 1 => look.with_l2(l2_look),
                 (Some(look), _) => look.clone(),
             }
         };
@@ -303,10 +303,14 @@ fn legend(input: &PolarPlot, looks: &[Look], scale: &Scale) -> Vec<Entry> {
             label: label.clone(),
         }));
     }
-    out.push(Entry::Heading("l₂ across the pull".into()));
     let empty =
         |l2: f64| input.curves.iter().filter(|curve| curve.l2 == l2).all(|curve| curve.values().next().is_none());
     let label = |l2: f64| format!("{}{}", l2_label(l2), if empty(l2) { ", no limit" } else { "" });
+    if let ([only], false) = (&l2[..], labels.is_empty()) {
+        out.push(Entry::Heading(format!("l₂ = {}", label(*only))));
+    } else {
+        out.push(Entry::Heading("l₂ across the pull".into()));
+    }
     if labels.is_empty() {
         let of_limits = input.curves.iter().zip(looks).filter(|(curve, _)| curve.kind == CurveKind::Limits);
         out.extend(of_limits.map(|(curve, look)| Entry::Sample {
@@ -315,9 +319,7 @@ fn legend(input: &PolarPlot, looks: &[Look], scale: &Scale) -> Vec<Entry> {
             marker: true,
             label: label(curve.l2),
         }));
-    } else if let [only] = l2[..] {
-        out.push(Entry::Note(label(only)));
-    } else {
+    } else if l2.len() > 1 {
         let samples = l2.iter().zip(look::of_l2(&l2));
         out.extend(samples.map(|(l2, look)| {
             let look = Look { color: INK.into(), ..look };

@@ -32,17 +32,17 @@ impl Table<'_> {
         let columns: Vec<(Field, ArrayRef)> =
             self.fields.iter().map(|&field| Ok((field, self.array(field)?))).collect::<Result<_, ArrowError>>()?;
         let schema = columns.iter().map(|(field, array)| self.arrow_field(*field, array.data_type().clone()));
-        let schema = Arc::new(Schema::new(schema.collect::<Vec<_>>()));
-        let batch = RecordBatch::try_new(schema.clone(), columns.into_iter().map(|(_, array)| array).collect())?;
         let records: serde_json::Value = self.records.iter().map(json::inputs).collect();
-        let pair = |key: &str, value: String| KeyValue::new(key.to_owned(), value);
+        let metadata = [("maille.schema", RECORD_SCHEMA.to_string()), ("maille.records", records.to_string())];
+        // Twice: pyarrow shows those of the Arrow schema, DuckDB those of the file.
+        let of_file = metadata.clone().map(|(key, value)| KeyValue::new(key.to_owned(), value));
+        let of_schema = HashMap::from(metadata.map(|(key, value)| (key.to_owned(), value)));
+        let schema = Arc::new(Schema::new_with_metadata(schema.collect::<Vec<_>>(), of_schema));
+        let batch = RecordBatch::try_new(schema.clone(), columns.into_iter().map(|(_, array)| array).collect())?;
         let properties = WriterProperties::builder()
             .set_compression(Compression::SNAPPY)
             .set_created_by(concat!("maille ", env!("CARGO_PKG_VERSION")).to_owned())
-            .set_key_value_metadata(Some(vec![
-                pair("maille.schema", RECORD_SCHEMA.to_string()),
-                pair("maille.records", records.to_string()),
-            ]))
+            .set_key_value_metadata(Some(of_file.into()))
             .build();
         let mut writer = ArrowWriter::try_new(out, schema, Some(properties))?;
         writer.write(&batch)?;
