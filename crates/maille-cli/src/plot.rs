@@ -15,15 +15,15 @@ use std::path::{Path, PathBuf};
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
-  maille plot 1.1                                              maille-out/polar-1.1.svg and .png
-  maille plot 1.1 1.2 --where l2=0                             one polar plot of two records of maille-out
+  maille plot 1.1                                      maille-out/polar-1.1.svg and .png
+  maille plot 1.1 1.2 --where l2=0                     two records of maille-out in one
   maille plot exact-3.1 energy-3.1 --kind steps -o steps.png
   maille plot r-0.05 r-0.1 r-0.2 --kind difference --quantity l1 -o spread.svg -o spread.png
   maille plot maille-out/1.1 --kind times --where 'direction<=90'
 
-Kinds: polar shows limits against the direction of the pull, 0\u{b0} right, counter-clockwise; difference the largest less the
-smallest limit of all directions, against l2; steps and times the solver's iterations and the wall time of each limit.
---where takes the conditions of `maille table`.")]
+Kinds: polar shows limits against the direction of the pull, 0\u{b0} right, counter-clockwise; difference the largest \
+less the smallest limit of all directions, against l2; steps and times the solver's iterations and the wall time of \
+each limit. --where takes the conditions of `maille table`.")]
 pub struct Args {
     /// Folders of records; NAME stands for maille-out/NAME
     #[arg(required = true, value_name = "RECORD")]

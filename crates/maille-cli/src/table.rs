@@ -25,9 +25,9 @@ Examples:
   maille table maille-out/* -o limits.parquet             for polars, pandas, DuckDB
   maille table 1.1 --where l1=none --format csv
 
-Conditions: = != < <= > >=, divided by commas, all must hold. a|b is either, none is an empty value, and what has a comma
-stands in double quotes: 'cell=\"1,0;-1,2\"'. Numbers are equal if nine digits are. direction is short for direction_deg, r
-for minor_radius; record is the folder that a row comes from.")]
+Conditions: = != < <= > >=, divided by commas, all must hold. a|b is either, none is an empty value, and what has a \
+comma stands in double quotes: 'cell=\"1,0;-1,2\"'. Numbers are equal if nine digits are. direction is short for \
+direction_deg, r for minor_radius; record is the folder that a row comes from.")]
 pub struct Args {
     /// Folders of records; NAME stands for maille-out/NAME
     #[arg(required = true, value_name = "RECORD")]

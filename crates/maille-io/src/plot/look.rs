@@ -82,11 +82,7 @@ pub(super) fn of_records(count: usize) -> Vec<Look> {
         color: palette::record(i).to_owned(),
         width: if i == 0 { 3.2 } else { [2.3, 1.7][i % 2] },
         dash: palette::dash(i),
-        marker: Marker {
-            shape: palette::marker((i % 5) as i32),
-            filled: (i / 5).is_multiple_of(2),
-            size: [1.3, 0.9][i % 2],
-        },
+        marker: Marker { shape: palette::record_marker(i), filled: true, size: [1.3, 0.9][i % 2] },
     };
     (0..count).map(look).collect()
 }

@@ -39,6 +39,30 @@ fn color(ramp: &[[u8; 3]; 4], t: f64) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
+/// Shapes of the markers of records, as those of [`marker`].
+pub(super) fn record_marker(i: usize) -> &'static [[f64; 2]] {
+    const PLUS: &[[f64; 2]] = &[
+        [-0.4, -1.2],
+        [0.4, -1.2],
+        [0.4, -0.4],
+        [1.2, -0.4],
+        [1.2, 0.4],
+        [0.4, 0.4],
+        [0.4, 1.2],
+        [-0.4, 1.2],
+        [-0.4, 0.4],
+        [-1.2, 0.4],
+        [-1.2, -0.4],
+        [-0.4, -0.4],
+    ];
+    const HOURGLASS: &[[f64; 2]] = &[[-1.0, -1.1], [1.0, -1.1], [-1.0, 1.1], [1.0, 1.1]];
+    match i % 7 {
+        5 => PLUS,
+        6 => HOURGLASS,
+        i => marker(i as i32),
+    }
+}
+
 /// Shape of a marker, as a polygon around the origin; a circle if empty.
 pub(super) fn marker(rank: i32) -> &'static [[f64; 2]] {
     const SQUARE: &[[f64; 2]] = &[[-0.9, -0.9], [0.9, -0.9], [0.9, 0.9], [-0.9, 0.9]];
