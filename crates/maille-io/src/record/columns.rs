@@ -19,7 +19,7 @@ pub enum Unit {
 
 impl Unit {
     /// Its name, where the design's file calls its unit of lengths `length`; none where there is nothing to measure.
-    pub fn name<'a>(self, length: Option<&'a str>) -> Option<&'a str> {
+    pub fn name(self, length: Option<&str>) -> Option<&str> {
         match self {
             Unit::None => None,
             Unit::One => Some("1"),

@@ -18,8 +18,8 @@ const FIRST_LOOK: [&str; 10] =
     ["design", "minor_radius", "method", "direction_deg", "l2", "l1", "status", "bound_l1", "iterations", "wall_s"];
 /// Decimals of a rounded number.
 const DECIMALS: usize = 6;
-/// Below this the largest number of a column is shown as a power of ten, and above the other.
-const POWERS: [f64; 2] = [1e-3, 1e7];
+/// Where the largest number of a column is outside of these, its numbers are shown with powers of ten.
+const PLAIN: std::ops::Range<f64> = 1e-3..1e7;
 const GAP: &str = "  ";
 const EMPTY: &str = "-";
 
@@ -100,7 +100,7 @@ impl Table<'_> {
         let values: Vec<Cell<'_>> = self.rows[..shown].iter().map(|row| field.of(row)).collect();
         let numbers = || values.iter().filter_map(|cell| if let Cell::Number(x) = cell { Some(*x) } else { None });
         let largest = numbers().fold(0.0, |most: f64, x| most.max(x.abs()));
-        let power = largest > 0.0 && (largest < POWERS[0] || largest >= POWERS[1]);
+        let power = largest > 0.0 && !PLAIN.contains(&largest);
         let decimals = numbers().map(decimals).max().unwrap_or(0);
         let number = |x: f64| match power {
             true if x == 0.0 => "0".to_owned(),
