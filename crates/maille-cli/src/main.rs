@@ -3,13 +3,16 @@
 mod at;
 mod characterize;
 mod designs;
+mod exit;
 mod export;
 mod input;
 mod inspect;
 mod numbers;
+mod output;
 mod progress;
 mod render;
 mod replay;
+mod source;
 
 use clap::{Parser, Subcommand};
 use miette::Result;
@@ -55,6 +58,6 @@ fn main() -> ExitCode {
     };
     done.unwrap_or_else(|report| {
         eprintln!("{report:?}");
-        ExitCode::FAILURE
+        ExitCode::from(exit::code(&report))
     })
 }
