@@ -55,3 +55,9 @@ pub fn print(bytes: &[u8]) -> Result<()> {
         done => done.into_diagnostic().wrap_err("cannot write to standard output"),
     }
 }
+
+/// Prints one JSON document.
+pub fn print_json(document: &impl serde::Serialize) -> Result<()> {
+    let text = serde_json::to_string_pretty(document).into_diagnostic().wrap_err("cannot write JSON")?;
+    print(format!("{text}\n").as_bytes())
+}

@@ -1,14 +1,17 @@
 //! `maille replay`: solves rows of a record again, from the inputs that the record holds.
 
-use crate::at::{At, parse_at};
+use crate::{
+    at::{At, parse_at},
+    exit::{self, wrong},
+    source::read_record,
+};
 use maille::{
     characterize::{Finished, Method, Task, characterize},
     lattice::Cell,
     model::Model,
     record::{LimitRow, Status},
 };
-use maille_io::record::Record;
-use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use miette::{Report, Result};
 use serde_json::Value;
 use std::{
     path::{Path, PathBuf},
@@ -25,7 +28,7 @@ Examples:
   maille replay maille-out/1.3
   maille replay maille-out/1.3/run.json --at direction=30,l2=-0.125
 
-Exit codes: 0 all rows came out as recorded, 1 some did not, or the record cannot be read.")]
+Exit codes: 0 all rows came out as recorded, 5 some did not, 4 the record cannot be read.")]
 pub struct Args {
     /// A record's folder, or the run.json in it
     record: PathBuf,
@@ -40,32 +43,39 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         Some(name) if name == "run.json" => args.record.parent().unwrap_or(Path::new(".")),
         _ => &args.record,
     };
-    let record = Record::read(folder)?;
+    let record = read_record(folder)?;
     let parameters = &record.run.parameters;
     let cells: Vec<Cell> = numbers(parameters, "cells")?;
     let design = &record.run.design;
     let models: Vec<Model> = cells
         .iter()
-        .map(|cell| Model::compile(design, *cell).map_err(|p| miette!("the record's design cannot be used: {}", p[0])))
+        .map(|cell| {
+            Model::compile(design, *cell).map_err(|p| damaged(format!("the record's design cannot be used: {}", p[0])))
+        })
         .collect::<Result<_>>()?;
     let options = parameters["options"].clone();
+    let unread = |name: &str, e: serde_json::Error| damaged(format!("{name} in run.json: {e}"));
     let method = match parameters["method"].as_str() {
-        Some("exact") => {
-            Method::Exact(serde_json::from_value(options).into_diagnostic().wrap_err("options in run.json")?)
+        Some("exact") => Method::Exact(serde_json::from_value(options).map_err(|e| unread("options", e))?),
+        Some("energy") => Method::Energy(serde_json::from_value(options).map_err(|e| unread("options", e))?),
+        other => {
+            let other = other.unwrap_or("none");
+            return Err(damaged(format!("run.json names the method \"{other}\"; exact and energy are known")));
         }
-        Some("energy") => {
-            Method::Energy(serde_json::from_value(options).into_diagnostic().wrap_err("options in run.json")?)
-        }
-        other => return Err(miette!("run.json names the method {other:?}; exact and energy are known")),
     };
-    let l2: Vec<f64> = serde_json::from_value(parameters["l2"].clone()).into_diagnostic().wrap_err("l2 in run.json")?;
+    let l2: Vec<f64> = serde_json::from_value(parameters["l2"].clone()).map_err(|e| unread("l2", e))?;
     let rows: Vec<&LimitRow> = match args.at {
         Some(at) => record.rows.iter().filter(|r| at.fits(r.direction_deg, r.l2)).collect(),
         None => record.rows.iter().filter(|r| r.l1.is_none()).collect(),
     };
     if rows.is_empty() {
         match args.at {
-            Some(at) => return Err(miette!("the record has no row at {at}")),
+            Some(at) => {
+                let rows =
+                    record.rows.iter().take(6).map(|r| format!("  --at direction={},l2={}", r.direction_deg, r.l2));
+                let help = format!("it has, among others:\n{}", rows.collect::<Vec<_>>().join("\n"));
+                return Err(wrong(exit::RECORD, format!("the record has no row at {at}"), help));
+            }
             None => println!("every row of the record has a limit; name one with --at direction=…,l2=…"),
         }
     }
@@ -92,13 +102,24 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             println!("  note      {note}");
         }
     }
-    Ok(if same { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    Ok(ExitCode::from(if same { exit::DONE } else { exit::INCOMPLETE }))
+}
+
+/// A record whose run.json is not what `characterize` writes.
+fn damaged(problem: String) -> Report {
+    wrong(
+        exit::RECORD,
+        problem,
+        "the file is damaged or was edited: restore it, or compute the record again with --overwrite",
+    )
 }
 
 fn numbers(parameters: &Value, name: &str) -> Result<Vec<Cell>> {
-    let list = parameters[name].as_array().ok_or_else(|| miette!("run.json has no {name}"))?;
+    let list = parameters[name].as_array().ok_or_else(|| damaged(format!("run.json has no {name}")))?;
     let texts = list.iter().map(|cell| cell.as_str().unwrap_or_default());
-    texts.map(|t| t.parse().map_err(|e: maille::error::InvalidInput| miette!("run.json: {}", e.problem))).collect()
+    texts
+        .map(|t| t.parse().map_err(|e: maille::error::InvalidInput| damaged(format!("run.json: {}", e.problem))))
+        .collect()
 }
 
 fn close(a: Option<f64>, b: Option<f64>) -> bool {

@@ -88,19 +88,16 @@ impl SourceArgs {
 
     fn of_record(&self, input: Option<&Input>, folder: &Path) -> Result<Source> {
         let at = self.at.unwrap_or_default();
-        let record = Record::read(folder).map_err(|e| match input {
-            _ if self.from.is_some() && folder.exists() => Report::new(e),
-            Some(input) => wrong(
-                exit::RECORD,
-                format!("{} holds no record to take a state from", folder.display()),
-                format!("compute it with\n  {}", self.characterize_line(&input.design, None, at, folder)),
-            ),
-            None => wrong(
-                exit::RECORD,
-                format!("there is no folder {}", folder.display()),
-                "give the folder that `maille characterize` wrote: it holds run.json and states.jsonl",
-            ),
-        })?;
+        let record = match input {
+            Some(input) if self.from.is_none() && !holds_record(folder) => {
+                return Err(wrong(
+                    exit::RECORD,
+                    format!("{} holds no record to take a state from", folder.display()),
+                    format!("compute it with\n  {}", self.characterize_line(&input.design, None, at, folder)),
+                ));
+            }
+            _ => read_record(folder)?,
+        };
         let design = &record.run.design;
         if let Some(input) = input.filter(|input| input.design != *design) {
             let line = self.characterize_line(&input.design, Some(&record), at, &another(folder, at));
@@ -272,6 +269,23 @@ impl Source {
         };
         (0..count).map(frame).collect()
     }
+}
+
+fn holds_record(folder: &Path) -> bool {
+    folder.join("run.json").is_file()
+}
+
+/// The record of a folder that was named.
+pub fn read_record(folder: &Path) -> Result<Record> {
+    if holds_record(folder) {
+        return Ok(Record::read(folder)?);
+    }
+    let problem = match folder.exists() {
+        true => format!("{} holds no record of maille", folder.display()),
+        false => format!("there is no folder {}", folder.display()),
+    };
+    let help = "give the folder that `maille characterize` wrote: it holds run.json, limits.csv and states.jsonl";
+    Err(wrong(exit::RECORD, problem, help))
 }
 
 /// The design with overlaps of its start accepted.

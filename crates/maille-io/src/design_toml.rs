@@ -7,6 +7,7 @@ mod read;
 mod syntax;
 mod write;
 
+pub(crate) use fields::nearest;
 pub use problem::{DesignError, DesignProblem};
 pub use write::write_design;
 
@@ -15,6 +16,9 @@ use maille::design::Design;
 use maille::error::InvalidInput;
 use std::sync::Arc;
 use toml::de::DeTable;
+
+/// JSON Schema of a design file, for editors; it takes what the reader takes, but for relations between fields.
+pub const DESIGN_JSON_SCHEMA: &str = include_str!("../../../designs/schema.json");
 
 /// The text of a design file with the name to show for it, so that errors can point into it.
 ///

@@ -7,8 +7,9 @@ use crate::{
     numbers::positive,
     output,
     source::{Frame, Source, SourceArgs, Wanted},
+    units::millimetres,
 };
-use advice::{fuse, millimetres, size, summary};
+use advice::{fuse, size, summary};
 use destination::{Destination, FormatArg, destination, with_ending};
 use maille::topology;
 use maille_io::mesh::{self, Colours, Fineness, MeshFile, Objects, Scene, Tile, WriteOptions};
@@ -123,6 +124,7 @@ const MANY: usize = 5_000_000;
 pub fn run(args: &Args) -> Result<()> {
     let source = args.source.read(Wanted { locked: args.frames.is_some(), overlaps: false })?;
     let Source { design, model, locked } = &source;
+    let (destination, formats) = destination(args.out.as_deref(), &args.format, args.frames.is_some(), &source)?;
     let note = |text: String| {
         if !args.quiet {
             eprintln!("note: {text}");
@@ -142,7 +144,6 @@ pub fn run(args: &Args) -> Result<()> {
     source.caution().into_iter().for_each(note);
     let tolerance = args.tolerance.unwrap_or(0.01 * design.reference_radius);
     let fineness = args.segments.unwrap_or(Fineness::Tolerance(tolerance));
-    let (destination, formats) = destination(args.out.as_deref(), &args.format, args.frames.is_some(), &source)?;
     let options = WriteOptions {
         objects: match args.objects {
             ObjectsArg::Element => Objects::Element,

@@ -39,7 +39,7 @@ pub(super) fn unknown_key_help(key: &str, known: &[&str]) -> String {
 }
 
 /// The word that `word` was probably meant to be.
-pub(super) fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
+pub(crate) fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     let word = word.to_lowercase();
     let distance = |k: &str| {
         let contained = word.len() >= 4 && (k.contains(&word) || word.contains(k));
