@@ -52,7 +52,7 @@ fn once(args: &Args) -> Result<ExitCode> {
         match check(name) {
             Ok(found) => {
                 if !args.json && !args.quiet {
-                    println!("{name}: {}", words(&found));
+                    output::say!("{name}: {}", words(&found));
                 }
                 files.push(found);
             }

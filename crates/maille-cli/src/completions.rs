@@ -44,7 +44,7 @@ pub fn man(args: &ManArgs) -> Result<()> {
         clap_mangen::Man::new(command.clone()).title(name.to_uppercase()).render(&mut bytes).into_diagnostic()?;
         let path = args.folder.join(format!("{name}.1"));
         output::write(&path, &bytes)?;
-        println!("{}", path.display());
+        output::say!("{}", path.display());
         Ok(())
     };
     page(&command, "maille".into())?;

@@ -133,8 +133,13 @@ pub fn run(args: &Args) -> Result<()> {
             format!(", smallest gap {:.4} {}", gap * model.unit, rings.unit.as_deref().unwrap_or_default())
         });
         let file = out.display();
-        println!("{file}  {}: {} rings and {} links a cell{gap}", design.title, model.rings.len(), model.links.len());
-        println!("see it with   maille render {file}\nits limits    maille characterize {file}");
+        output::say!(
+            "{file}  {}: {} rings and {} links a cell{gap}",
+            design.title,
+            model.rings.len(),
+            model.links.len()
+        );
+        output::say!("see it with   maille render {file}\nits limits    maille characterize {file}");
     }
     Ok(())
 }

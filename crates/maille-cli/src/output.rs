@@ -2,7 +2,7 @@
 
 use miette::{IntoDiagnostic, Result, WrapErr};
 use std::{
-    fs,
+    fmt, fs,
     io::{BufWriter, Write},
     path::Path,
 };
@@ -54,6 +54,17 @@ pub fn print(bytes: &[u8]) -> Result<()> {
         Err(e) if e.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
         done => done.into_diagnostic().wrap_err("cannot write to standard output"),
     }
+}
+
+/// A line on standard output, as `println!`, which would panic where the reader has gone.
+macro_rules! say {
+    ($($text:tt)*) => { $crate::output::line(format_args!($($text)*)) };
+}
+pub(crate) use say;
+
+/// See [`say`]. What is said here is a word on results that are in files: if nobody can read it, nothing is lost.
+pub fn line(text: fmt::Arguments<'_>) {
+    let _ = writeln!(std::io::stdout(), "{text}");
 }
 
 /// Prints one JSON document.

@@ -172,7 +172,7 @@ pub fn run(args: &Args) -> Result<()> {
     output::write(&out, &png)?;
     if !args.quiet && !output::is_standard(&out) {
         let ([w, h], rings) = (args.size, picture.rings);
-        println!("{}  {w} × {h}, {rings} rings, {:.1} s", out.display(), begun.elapsed().as_secs_f64());
+        output::say!("{}  {w} × {h}, {rings} rings, {:.1} s", out.display(), begun.elapsed().as_secs_f64());
     }
     Ok(())
 }

@@ -3,6 +3,7 @@
 use crate::{
     at::{At, parse_at},
     exit::{self, wrong},
+    output,
     source::read_record,
 };
 use maille::{
@@ -76,7 +77,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
                 let help = format!("it has, among others:\n{}", rows.collect::<Vec<_>>().join("\n"));
                 return Err(wrong(exit::RECORD, format!("the record has no row at {at}"), help));
             }
-            None => println!("every row of the record has a limit; name one with --at direction=…,l2=…"),
+            None => output::say!("every row of the record has a limit; name one with --at direction=…,l2=…"),
         }
     }
     let mut directions: Vec<f64> = rows.iter().map(|r| r.direction_deg).collect();
@@ -95,11 +96,11 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         };
         let agrees = then.status == now.row.status && close(then.l1, now.row.l1);
         same &= agrees;
-        println!("{}°, l2 = {}", then.direction_deg, then.l2);
-        println!("  recorded  {}", line(then));
-        println!("  now       {}{}", line(&now.row), if agrees { "" } else { "   DIFFERS" });
+        output::say!("{}°, l2 = {}", then.direction_deg, then.l2);
+        output::say!("  recorded  {}", line(then));
+        output::say!("  now       {}{}", line(&now.row), if agrees { "" } else { "   DIFFERS" });
         if let Some(note) = &now.state.note {
-            println!("  note      {note}");
+            output::say!("  note      {note}");
         }
     }
     Ok(ExitCode::from(if same { exit::DONE } else { exit::INCOMPLETE }))

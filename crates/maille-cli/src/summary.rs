@@ -1,5 +1,6 @@
 //! The summary of a record: least and largest limit of each l2, what has no limit, and where the files are.
 
+use crate::output;
 use maille::record::{LimitRow, Status};
 use serde::Serialize;
 use std::{
@@ -71,23 +72,23 @@ impl Summary {
 
     /// Prints it for people.
     pub fn print(&self) {
-        println!("{:>8}  {:>20}  {:>20}  {:>7}", "l2", "least l1", "largest l1", "limits");
+        output::say!("{:>8}  {:>20}  {:>20}  {:>7}", "l2", "least l1", "largest l1", "limits");
         let show = |x: &Option<Extreme>| x.map_or("-".into(), |x| format!("{:.4} at {}°", x.l1, x.direction_deg));
         for of in &self.limits {
             let (least, largest) = (show(&of.least), show(&of.largest));
-            println!("{:>8}  {least:>20}  {largest:>20}  {:>3}/{:<3}", of.l2, of.found, of.asked);
+            output::say!("{:>8}  {least:>20}  {largest:>20}  {:>3}/{:<3}", of.l2, of.found, of.asked);
         }
         for status in Status::ALL {
             if let Some(count) = self.statuses.get(status.name()) {
-                println!("{count} {}", status.name());
+                output::say!("{count} {}", status.name());
             }
         }
-        println!(
+        output::say!(
             "{} limits in {:.1} s; {}, states.jsonl, run.json, polar.svg",
             self.solved,
             self.wall_s,
             self.record.join("limits.csv").display()
         );
-        println!("look at {}", self.record.join("polar.png").display());
+        output::say!("look at {}", self.record.join("polar.png").display());
     }
 }

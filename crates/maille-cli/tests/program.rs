@@ -124,7 +124,7 @@ fn limits_that_are_not_found_have_an_exit_code_of_their_own() {
     let proved = maille(folder.path(), "characterize 1.1 --directions 45 --l2 2 --quiet --out proved", b"");
     assert_eq!(proved.status.code(), Some(0), "{}", String::from_utf8_lossy(&proved.stderr));
     assert!(fs::read_to_string(folder.path().join("proved/limits.csv")).unwrap().contains("l2-unreachable"));
-    // Rings that start overlapped, by the energy method with no sample to push them apart.
+    // Beyond what the sheet can do: the energy method fails to reach it, and proves nothing.
     let open =
         maille(folder.path(), "characterize 1.1 --method energy --directions 0 --l2 1.5 --quiet --out open", b"");
     let table = fs::read_to_string(folder.path().join("open/limits.csv")).unwrap();
@@ -189,5 +189,22 @@ fn shells_and_man_know_every_command() {
         assert!(page.contains(".SH NAME"), "{command}");
         let text = String::from_utf8(done(folder.path(), &format!("{command} --help"), b"")).unwrap();
         assert!(text.contains("Examples:"), "{command} --help has no examples");
+    }
+}
+
+#[test]
+fn a_reader_that_goes_away_is_no_failure() {
+    let folder = tempfile::tempdir().unwrap();
+    for line in ["designs", "inspect 5.2", "check 1.1 1.2 1.3", "schema", "completions bash"] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_maille"))
+            .args(line.split_whitespace())
+            .current_dir(folder.path())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        assert_eq!((output.status.code(), output.stderr.is_empty()), (Some(0), true), "{line}");
     }
 }

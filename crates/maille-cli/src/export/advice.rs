@@ -1,6 +1,9 @@
 //! What is said about a mesh: rings that would fuse, sizes.
 
-use crate::exit::{self, wrong};
+use crate::{
+    exit::{self, wrong},
+    output,
+};
 use maille::design::Design;
 use maille_io::mesh::{self, Scene};
 use miette::Report;
@@ -66,7 +69,7 @@ pub fn size(bytes: u64) -> String {
 pub fn summary(scene: &Scene) {
     let [least, largest] = scene.bounds();
     let extent = largest - least;
-    println!(
+    output::say!(
         "{} rings, {} triangles (meshes within {:.3} mm of the tori); {:.1} × {:.1} × {:.1} mm",
         scene.ring_count(),
         scene.triangle_count(),

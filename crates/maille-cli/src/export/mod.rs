@@ -199,7 +199,7 @@ pub fn run(args: &Args) -> Result<()> {
             let path = with_ending(prefix, &format!("{}{}", frame.suffix, file.ending()));
             let bytes = write(&path, &scene, file, options)?;
             if !args.quiet {
-                println!("{}  {}", path.display(), size(bytes));
+                output::say!("{}  {}", path.display(), size(bytes));
             }
             series.push((file, frame.time, path));
         }
@@ -214,7 +214,7 @@ pub fn run(args: &Args) -> Result<()> {
         for (path, text) in collections(prefix, &series) {
             output::write(&path, text.as_bytes())?;
             if !args.quiet {
-                println!("{}  {} frames", path.display(), frames.len());
+                output::say!("{}  {} frames", path.display(), frames.len());
             }
         }
     }
