@@ -208,3 +208,20 @@ fn a_reader_that_goes_away_is_no_failure() {
         assert_eq!((output.status.code(), output.stderr.is_empty()), (Some(0), true), "{line}");
     }
 }
+
+/// Along a chain of Japanese 4-in-1 and 6-in-1 a period holds two rings, pulled until each touches the next inside:
+/// 4 (R − r).
+#[test]
+fn japanese_weaves_lock_along_their_chains_where_the_closed_form_says() {
+    let folder = tempfile::tempdir().unwrap();
+    for weave in ["japanese-4-in-1", "japanese-6-in-1"] {
+        let design = json(folder.path(), &format!("inspect {weave} --json"));
+        let ring = &design["elements"][0]["rings"][0];
+        let [major, minor] = ["major_radius", "minor_radius"].map(|key| ring[key].as_f64().unwrap());
+        let expected = 4.0 * (major - minor) / design["a1"][0].as_f64().unwrap() - 1.0;
+        let found = json(folder.path(), &format!("characterize {weave} --directions 0 --l2 0 --json"));
+        let l1 = found["limits"][0]["largest"]["l1"].as_f64().unwrap();
+        assert!((l1 - expected).abs() < 1e-9, "{weave}: {l1}, not {expected}");
+        assert_eq!(found["statuses"]["global"], 1);
+    }
+}

@@ -52,6 +52,22 @@ fn built_in_weaves_have_their_links_and_gaps() {
     }
 }
 
+/// European 4-in-1 has a rounded cell of its own; the others are what `maille new` writes for their rings.
+#[test]
+fn built_in_weaves_are_those_that_are_generated() {
+    for weave in Weave::ALL.into_iter().filter(|w| *w != Weave::European4In1) {
+        let built_in = read_design(weave.name(), builtin(weave.name()).unwrap()).unwrap();
+        let minor = built_in.minor_radius.unwrap();
+        let rings = Rings { major: built_in.reference_radius, minor, unit: Some("mm".into()) };
+        let generated = Design { source: built_in.source, ..weave.design(weave.name(), &rings).unwrap() };
+        assert_eq!(built_in, generated);
+    }
+    let european = read_design("e", builtin("european-4-in-1").unwrap()).unwrap();
+    assert_eq!((european.lattice.a1, european.lattice.a2), ([12.2, 0.0, 0.0], [0.0, 6.0, 0.0]));
+    let [_, y, z] = european.elements[0].rings[0].normal;
+    assert!((y.atan2(z).to_degrees() - 35.0).abs() < 1e-4);
+}
+
 #[test]
 fn generated_weaves_have_their_links_at_every_proportion() {
     for weave in Weave::ALL {
