@@ -40,6 +40,12 @@ pub fn symmetric_eigen(h: &Mat<f64>) -> Result<Eigen, EigenFailure> {
     Ok(Eigen { values, vectors })
 }
 
+/// Least eigenvalue of the symmetric matrix `h`, unchecked; `None` where the decomposition fails.
+pub fn least_eigenvalue(h: &Mat<f64>) -> Option<f64> {
+    let values = h.self_adjoint_eigenvalues(Side::Lower).ok()?;
+    values.into_iter().reduce(f64::min).filter(|least| least.is_finite())
+}
+
 impl Eigen {
     /// −Σ v_k (v_k·g) / max(|λ_k|, floor): Newton's step with every curvature made positive. Always descends.
     pub fn descent_step(&self, gradient: &[f64], floor: f64) -> Vec<f64> {
