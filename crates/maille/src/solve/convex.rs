@@ -1,7 +1,7 @@
 //! The Hessian of the model made positive.
 
 use super::{
-    eigen::{least_eigenvalue, symmetric_eigen},
+    eigen::{block, coupled, least_eigenvalue, symmetric_eigen},
     rows::Row,
 };
 use faer::Mat;
@@ -26,28 +26,23 @@ pub fn convexified(mut h: Mat<f64>, rows: &[Row], multipliers: &[f64], floor: f6
     raised(h, floor)
 }
 
-/// `h` with its eigenvalues raised to `floor`. Unknowns that no entry couples (elements that carry nothing) are left
-/// out of the decomposition: theirs are 0.
-fn raised(mut h: Mat<f64>, floor: f64) -> Mat<f64> {
+/// `h` with its eigenvalues raised to `floor`.
+fn raised(h: Mat<f64>, floor: f64) -> Mat<f64> {
     let n = h.nrows();
-    let coupled: Vec<usize> = (0..n).filter(|&j| h.col(j).iter().any(|v| *v != 0.0)).collect();
-    let block = Mat::from_fn(coupled.len(), coupled.len(), |i, j| h[(coupled[i], coupled[j])]);
-    let Ok(mut eigen) = symmetric_eigen(&block) else { return Mat::identity(n, n) };
+    let of = coupled(&h);
+    let mut positive = block(&h, &of);
+    let Ok(mut eigen) = symmetric_eigen(&positive) else { return Mat::identity(n, n) };
+    if eigen.values.first().is_some_and(|least| *least < floor) {
+        for (k, value) in eigen.values.iter().enumerate() {
+            let root = value.max(floor).sqrt();
+            eigen.vectors.col_mut(k).iter_mut().for_each(|v| *v *= root);
+        }
+        positive = &eigen.vectors * eigen.vectors.transpose();
+    }
     let mut out = Mat::zeros(n, n);
     (0..n).for_each(|i| out[(i, i)] = floor);
-    if eigen.values.first().is_none_or(|least| *least >= floor) {
-        coupled.iter().for_each(|&i| out[(i, i)] = 0.0);
-        std::mem::swap(&mut h, &mut out);
-        // Now `out` is the given matrix and `h` the floor on the unknowns that nothing couples.
-        return out + h;
-    }
-    for (k, value) in eigen.values.iter().enumerate() {
-        let root = value.max(floor).sqrt();
-        eigen.vectors.col_mut(k).iter_mut().for_each(|v| *v *= root);
-    }
-    let positive = &eigen.vectors * eigen.vectors.transpose();
-    for (q, &j) in coupled.iter().enumerate() {
-        for (p, &i) in coupled.iter().enumerate() {
+    for (q, &j) in of.iter().enumerate() {
+        for (p, &i) in of.iter().enumerate() {
             out[(i, j)] = positive[(p, q)];
         }
     }

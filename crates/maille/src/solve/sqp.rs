@@ -90,7 +90,13 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 /// Solves min ½ dᵀ H d + linear·d + weight · t under gap + ∇g·d + t ≥ 0, t ≥ 0, |d| ≤ radius: the step d, the rows'
 /// multipliers, and the violation t that is left.
-fn elastic_program(rows: &[Row], h: &Mat<f64>, linear: &[f64], weight: f64, radius: f64) -> (Vec<f64>, Vec<f64>, f64) {
+pub(super) fn elastic_program(
+    rows: &[Row],
+    h: &Mat<f64>,
+    linear: &[f64],
+    weight: f64,
+    radius: f64,
+) -> (Vec<f64>, Vec<f64>, f64) {
     let n = linear.len();
     let mut hessian = Mat::zeros(n + 1, n + 1);
     hessian.submatrix_mut(0, 0, n, n).copy_from(h);
