@@ -41,8 +41,8 @@ impl Cholesky {
             if !(pivot > 0.0) {
                 return false;
             }
-            let root = pivot.sqrt();
-            column.iter_mut().for_each(|v| *v /= root);
+            let inverse = 1.0 / pivot.sqrt();
+            column.iter_mut().for_each(|v| *v *= inverse);
             for (j, later) in right.chunks_exact_mut(n).enumerate() {
                 let below = &column[j + 1..];
                 let by = below[0];

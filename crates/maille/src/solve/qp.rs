@@ -92,6 +92,8 @@ fn to_boundary(v: &[f64], dv: &[f64]) -> f64 {
 struct Cone {
     s: Vec<f64>,
     z: Vec<f64>,
+    /// 1/s, once for each iteration.
+    inverse: Vec<f64>,
 }
 
 impl Cone {
@@ -107,7 +109,7 @@ pub fn solve(program: &QuadraticProgram<'_>) -> QpSolution {
     let row = |k: usize| program.rows.row(k);
     let scale = 1.0 + program.linear.iter().fold(0.0f64, |a, c| a.max(c.abs()));
     let mut x = vec![0.0; n];
-    let mut cone = Cone { s: vec![0.0; sides], z: vec![0.0; sides] };
+    let mut cone = Cone { s: vec![0.0; sides], z: vec![0.0; sides], inverse: vec![0.0; sides] };
     for k in 0..m {
         cone.s[k] = (-program.lower[k]).max(1e-2);
         cone.z[k] = 1e-2 * scale / cone.s[k].max(1e-1);
@@ -148,18 +150,19 @@ pub fn solve(program: &QuadraticProgram<'_>) -> QpSolution {
         if residual < TOLERANCE || !residual.is_finite() {
             break;
         }
+        cone.inverse.iter_mut().zip(&cone.s).for_each(|(inverse, s)| *inverse = 1.0 / s);
         // H + Aᵀ diag(z/s) A + diag(box).
         let matrix = system.matrix_mut();
         matrix.copy_from_slice(&hessian);
         for k in 0..m {
-            let ((columns, values), weight) = (row(k), cone.z[k] / cone.s[k]);
+            let ((columns, values), weight) = (row(k), cone.z[k] * cone.inverse[k]);
             for (p, (&j, a)) in columns.iter().zip(values).enumerate() {
                 let (wa, column) = (weight * a, &mut matrix[j * n..(j + 1) * n]);
                 columns[p..].iter().zip(&values[p..]).for_each(|(&i, a)| column[i] += wa * a);
             }
         }
         for i in 0..n {
-            let sides = cone.z[m + i] / cone.s[m + i] + cone.z[m + n + i] / cone.s[m + n + i];
+            let sides = cone.z[m + i] * cone.inverse[m + i] + cone.z[m + n + i] * cone.inverse[m + n + i];
             matrix[i * n + i] += sides + 1e-13;
         }
         if !system.factor() {
@@ -214,11 +217,12 @@ impl Direction {
         let (n, m) = (dual.len(), primal.len());
         for i in 0..n {
             let (low, up) = (m + i, m + n + i);
-            let sides = target[low] / cone.s[low] - cone.z[low] - (target[up] / cone.s[up] - cone.z[up]);
+            let side = |k: usize| target[k] * cone.inverse[k] - cone.z[k];
+            let sides = side(low) - side(up);
             self.x[i] = sides - dual[i];
         }
         for k in 0..m {
-            let pull = (target[k] - cone.z[k] * primal[k]) / cone.s[k] - cone.z[k];
+            let pull = (target[k] - cone.z[k] * primal[k]) * cone.inverse[k] - cone.z[k];
             let (columns, values) = program.rows.row(k);
             columns.iter().zip(values).for_each(|(&i, a)| self.x[i] += a * pull);
         }
@@ -231,7 +235,7 @@ impl Direction {
             (self.s[m + i], self.s[m + n + i]) = (self.x[i], -self.x[i]);
         }
         for k in 0..m + 2 * n {
-            self.z[k] = (target[k] - cone.z[k] * self.s[k]) / cone.s[k] - cone.z[k];
+            self.z[k] = (target[k] - cone.z[k] * self.s[k]) * cone.inverse[k] - cone.z[k];
         }
     }
 }

@@ -102,12 +102,17 @@ pub(super) fn elastic_program(
     hessian.submatrix_mut(0, 0, n, n).copy_from(h);
     hessian[(n, n)] = 1e-8;
     let linear: Vec<f64> = linear.iter().copied().chain([weight]).collect();
+    // Rows that no step in the box can reach are left out: they change nothing.
+    let within = |row: &Row| row.gap < radius * row.gradient.iter().map(|a| a.abs()).sum::<f64>();
+    let reached: Vec<usize> = (0..rows.len()).filter(|&k| within(&rows[k])).collect();
     let mut matrix = SparseRows::default();
-    for row in rows {
+    let mut lower = Vec::with_capacity(reached.len() + 1);
+    for row in reached.iter().map(|&k| &rows[k]) {
         matrix.push(row.columns.iter().copied().zip(row.gradient.iter().copied()).chain([(n, 1.0)]));
+        lower.push(-row.gap);
     }
     matrix.push([(n, 1.0)]);
-    let lower: Vec<f64> = rows.iter().map(|r| -r.gap).chain([0.0]).collect();
+    lower.push(0.0);
     let mut half_width = vec![radius; n];
     half_width.push(2.0 * violation(rows) + 1.0);
     let solution = qp::solve(&QuadraticProgram {
@@ -117,9 +122,10 @@ pub(super) fn elastic_program(
         lower: &lower,
         half_width: &half_width,
     });
-    (solution.x[..n].to_vec(), solution.multipliers[..rows.len()].to_vec(), solution.x[n].max(0.0))
+    let mut multipliers = vec![0.0; rows.len()];
+    reached.iter().zip(&solution.multipliers).for_each(|(&k, mu)| multipliers[k] = *mu);
+    (solution.x[..n].to_vec(), multipliers, solution.x[n].max(0.0))
 }
-
 /// Least curvature of the convexified model: it follows the step's size between these. Far from the limit it keeps
 /// free motions from being spent on tiny gains (which would carry contacts to the edge where their minima merge).
 const LEAST_FLOOR: f64 = 1e-4;
