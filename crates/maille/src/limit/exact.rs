@@ -15,7 +15,8 @@ use crate::{
     record::Status,
     solve::{
         kkt::{Certificate, GAP_TOLERANCE, RESIDUAL_TOLERANCE, polish},
-        sqp::{Multiplier, Program, SqpOptions, maximize, violation},
+        rows::{Derivatives, Multiplier, violation},
+        sqp::{Program, SqpOptions, maximize},
     },
     state::{Pose, State},
     topology::{
@@ -554,5 +555,5 @@ impl Search<'_> {
 }
 
 fn feasible(program: &SheetProgram<'_>, x: &Posed) -> bool {
-    violation(&program.rows(x, 0.0, false)) < 1e-9
+    violation(&program.rows(x, 0.0, Derivatives::None)) < 1e-9
 }
