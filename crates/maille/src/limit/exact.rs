@@ -102,7 +102,7 @@ const ROUNDS: usize = 6;
 const OWN_IMAGE_FORCE: f64 = 1e-6;
 /// Further starts where none reached the wanted l2.
 const MORE_STARTS: usize = 6;
-/// Shakes of a smaller cell's state that start a larger cell's solve.
+/// Shakes of the smaller cell's state, and of the design's, that start a larger cell's solve.
 const CELL_SHAKES: [f64; 3] = [0.02, 0.1, 0.3];
 
 /// Finds limits of one sheet by the exact method.
@@ -262,14 +262,20 @@ impl<'a> ExactMethod<'a> {
             if !asks || idle || tally.attains(most) || cancel.load(Ordering::Relaxed) {
                 break;
             }
+            let design = Strained { state: self.models[0].start.clone(), l1: 0.0, l2: 0.0 };
             let from = reached.clone().or_else(|| neighbour.clone());
-            let from = from.unwrap_or_else(|| Strained { state: self.models[0].start.clone(), l1: 0.0, l2: 0.0 });
+            let from = from.unwrap_or_else(|| design.clone());
             let mut rng = ChaCha8Rng::seed_from_u64(self.options.seed.wrapping_add(larger as u64));
-            let starts = CELL_SHAKES.iter().map(|&size| {
-                let state = tiled(&self.models[larger], &from.state);
-                Strained { state: shaken_from(&self.models[larger], &state, size, &mut rng), ..from.clone() }
-            });
-            let found = self.search(larger, direction_deg, l2, starts.collect(), most, cancel);
+            let mut starts = Vec::new();
+            // The design's state knows nothing of the smaller cell's answer, and finds what that one hides.
+            for origin in [&from, &design] {
+                for size in CELL_SHAKES {
+                    let state = tiled(&self.models[larger], &origin.state);
+                    let state = shaken_from(&self.models[larger], &state, size, &mut rng);
+                    starts.push(Strained { state, ..origin.clone() });
+                }
+            }
+            let found = self.search(larger, direction_deg, l2, starts, most, cancel);
             trend.push((larger, found.l1()));
             let better = match (&found.best, &tally.best) {
                 (Some(new), Some(old)) => (new.certified, new.x.p[0]) > (old.certified, old.x.p[0] + SAME_LIMIT),
