@@ -20,6 +20,7 @@
 
 mod bounds;
 mod circle;
+mod floor;
 mod grid;
 mod linking;
 mod minima;
@@ -38,6 +39,7 @@ pub type Vec3 = nalgebra::Vector3<f64>;
 pub const ROUNDING: f64 = 1e-14;
 
 pub use circle::{Circle, PointOnCircle, point_circle_distance};
+pub use floor::circle_distance_floor;
 pub use linking::{interlocks, linking_number};
 pub use minima::{MAX_MINIMA, Minima, Minimum, PairKind, circle_distance_minima};
 pub use polynomial::circle_distance_minima_polynomial;

@@ -1,6 +1,6 @@
 //! Bounds of every attainable limit: what a certified limit is compared with.
 //!
-//! Both bounds rest on the links alone and are proofs: no state of any cell of the sheet, reached on any path that
+//! Both rest on the links alone and are proofs: no state of any cell of the sheet, reached on any path that
 //! keeps the links, has a larger l1. A limit that attains its bound is therefore global.
 //!
 //! | bound | idea | cost |
@@ -8,7 +8,10 @@
 //! | [`ChainBound`] | a lattice vector is no longer than the chain of links that joins its ends | microseconds |
 //! | [`LinkBound`] | all links at once, poses relaxed to a convex set; the value of a dual solution | a millisecond |
 //!
-//! The lemma behind both. Let the circles a and b be linked, their tori disjoint: core distance ≥ r_a + r_b. Then a
+//! A third, [`ImageBound`], tells from the shapes of the elements alone how near own images can come. It proves for a
+//! single cell that an l2 is out of reach.
+//!
+//! The lemma behind the first two. Let the circles a and b be linked, their tori disjoint: core distance ≥ r_a + r_b. Then a
 //! crosses b's disc at some point p; p lies in b's plane, so its distance to b's core is R_b − |p − c_b|, hence
 //! |p − c_b| ≤ R_b − r_a − r_b, and |c_a − c_b| ≤ |c_a − p| + |p − c_b| ≤ R_a + R_b − r_a − r_b.
 //!
@@ -18,9 +21,11 @@
 
 mod chain;
 pub mod cone;
+mod image;
 mod link;
 
 pub use chain::{BindingChain, ChainBound};
+pub use image::{ImageBound, NearImages};
 pub use link::{LinkBound, LinkSolution};
 
 use nalgebra::Vector2;

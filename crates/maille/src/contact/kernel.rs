@@ -111,6 +111,23 @@ impl PairFrame {
         z.hypot((w - self.normal_a * z).norm() - self.radius_a)
     }
 
+    /// That distance and its gradient at the fixed angle. The nearest point of A may be taken as fixed on A (it is a
+    /// minimum), so only the direction e from it to B's point counts: (e, −foot × e, b × e).
+    pub fn distance_gradient(&self, angle_rad: f64) -> (f64, Grad) {
+        let (sin, cos) = angle_rad.sin_cos();
+        let b = self.arm_b + (self.u * cos + self.v * sin) * self.radius_b;
+        let w = self.x + b - self.arm_a;
+        let z = self.normal_a.dot(&w);
+        let across = w - self.normal_a * z;
+        let rho = across.norm().max(1e-12 * self.radius_a);
+        let outwards = across / rho;
+        let lack = rho - self.radius_a;
+        let distance = z.hypot(lack);
+        let e = (self.normal_a * z + outwards * lack) / distance.max(1e-12);
+        let foot = self.arm_a + outwards * self.radius_a;
+        (distance, stack(e, e.cross(&foot), b.cross(&e)))
+    }
+
     /// s of b (with `own`: its b-free terms too) or of a θ-derivative of b.
     fn s_jet(&self, b: &Vec3, value: f64, own: bool) -> Jet {
         let (x, a) = (self.x, self.arm_a);
@@ -248,5 +265,24 @@ impl PointJet {
         let d = self.distance.max(1e-12);
         let grad = half_grad / d;
         (grad, (half_hess - grad * grad.transpose()) / d)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn short_gradient_is_that_of_the_jet() {
+        let normal = |x, y, z| nalgebra::UnitVector3::new_normalize(Vec3::new(x, y, z));
+        let a = Circle::new(Vec3::new(0.3, -0.2, 0.1), normal(0.1, 0.4, 1.0), 1.0);
+        let b = Circle::new(Vec3::new(0.9, 0.5, -0.4), normal(1.0, -0.3, 0.2), 0.8);
+        let frame = PairFrame::new(&a, &Vec3::new(0.1, 0.0, 0.3), &b, &Vec3::new(1.0, 0.2, -0.1));
+        for k in 0..20 {
+            let angle = 0.31 * f64::from(k);
+            let (jet, (distance, gradient)) = (frame.jet(angle), frame.distance_gradient(angle));
+            assert!((distance - jet.distance).abs() < 1e-14);
+            assert!((gradient - jet.distance_derivatives_fixed().0).amax() < 1e-13, "{angle}");
+        }
     }
 }

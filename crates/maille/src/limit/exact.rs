@@ -7,7 +7,7 @@
 
 use super::{ExactFigures, LimitOutcome};
 use crate::{
-    bound::{Bound, ChainBound, LinkBound, best_bound},
+    bound::{Bound, ChainBound, ImageBound, LinkBound, NearImages, best_bound},
     constraint::{Contact, Parameter, Posed, Pull, SheetProgram},
     energy::target::target_gradient,
     lattice::direction,
@@ -15,7 +15,8 @@ use crate::{
     record::Status,
     solve::{
         kkt::{Certificate, GAP_TOLERANCE, RESIDUAL_TOLERANCE, polish},
-        sqp::{Multiplier, Program, SqpOptions, maximize, violation},
+        rows::{Derivatives, Multiplier, violation},
+        sqp::{Program, SqpOptions, maximize},
     },
     state::{Pose, State},
     topology::{
@@ -27,7 +28,10 @@ use maille_geometry::Vec3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{
+    OnceLock,
+    atomic::{AtomicBool, Ordering},
+};
 
 /// Parameters of the exact method.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -98,7 +102,7 @@ const ROUNDS: usize = 6;
 const OWN_IMAGE_FORCE: f64 = 1e-6;
 /// Further starts where none reached the wanted l2.
 const MORE_STARTS: usize = 6;
-/// Shakes of a smaller cell's state that start a larger cell's solve.
+/// Shakes of the smaller cell's state, and of the design's, that start a larger cell's solve.
 const CELL_SHAKES: [f64; 3] = [0.02, 0.1, 0.3];
 
 /// Finds limits of one sheet by the exact method.
@@ -107,6 +111,8 @@ pub struct ExactMethod<'a> {
     options: ExactOptions,
     chain: ChainBound,
     link: LinkBound,
+    /// Found where a limit is not reached.
+    image: OnceLock<ImageBound>,
 }
 
 /// A solve from one start.
@@ -169,7 +175,7 @@ impl<'a> ExactMethod<'a> {
     pub fn new(models: &'a [Model], options: ExactOptions) -> Self {
         let chain = ChainBound::new(&models[0]);
         let link = LinkBound::new(&models[0], &chain);
-        ExactMethod { models, options, chain, link }
+        ExactMethod { models, options, chain, link, image: OnceLock::new() }
     }
 
     /// The limits along one direction, in the order of `l2`. Solved outwards from l2 = 0, each from its neighbour's state.
@@ -236,7 +242,8 @@ impl<'a> ExactMethod<'a> {
         let fresh = self.options.starts.max(1) - starts.len();
         starts.extend((0..fresh).map(|k| Strained { state: self.shaken(k), l1: 0.0, l2: 0.0 }));
         let mut first = self.search(0, direction_deg, l2, starts, most, cancel);
-        if first.best.is_none() {
+        let near = if first.best.is_none() { self.too_near(direction_deg, l2, most) } else { None };
+        if first.best.is_none() && near.is_none() {
             // Not reached: try harder before giving up.
             let more = (fresh..fresh + MORE_STARTS).map(|k| Strained { state: self.shaken(k), l1: 0.0, l2: 0.0 });
             let again = self.search(0, direction_deg, l2, more.collect(), most, cancel);
@@ -255,14 +262,20 @@ impl<'a> ExactMethod<'a> {
             if !asks || idle || tally.attains(most) || cancel.load(Ordering::Relaxed) {
                 break;
             }
+            let design = Strained { state: self.models[0].start.clone(), l1: 0.0, l2: 0.0 };
             let from = reached.clone().or_else(|| neighbour.clone());
-            let from = from.unwrap_or_else(|| Strained { state: self.models[0].start.clone(), l1: 0.0, l2: 0.0 });
+            let from = from.unwrap_or_else(|| design.clone());
             let mut rng = ChaCha8Rng::seed_from_u64(self.options.seed.wrapping_add(larger as u64));
-            let starts = CELL_SHAKES.iter().map(|&size| {
-                let state = tiled(&self.models[larger], &from.state);
-                Strained { state: shaken_from(&self.models[larger], &state, size, &mut rng), ..from.clone() }
-            });
-            let found = self.search(larger, direction_deg, l2, starts.collect(), most, cancel);
+            let mut starts = Vec::new();
+            // The design's state knows nothing of the smaller cell's answer, and finds what that one hides.
+            for origin in [&from, &design] {
+                for size in CELL_SHAKES {
+                    let state = tiled(&self.models[larger], &origin.state);
+                    let state = shaken_from(&self.models[larger], &state, size, &mut rng);
+                    starts.push(Strained { state, ..origin.clone() });
+                }
+            }
+            let found = self.search(larger, direction_deg, l2, starts, most, cancel);
             trend.push((larger, found.l1()));
             let better = match (&found.best, &tally.best) {
                 (Some(new), Some(old)) => (new.certified, new.x.p[0]) > (old.certified, old.x.p[0] + SAME_LIMIT),
@@ -277,6 +290,15 @@ impl<'a> ExactMethod<'a> {
         if cancel.load(Ordering::Relaxed) {
             return ended(Status::Interrupted, "");
         }
+        if let (None, Some(near)) = (&tally.best, &near) {
+            let name = &self.models[0].elements[near.element].name;
+            let [p, q] = near.shift;
+            let note = format!(
+                "in this cell element `{name}` and its image at ({p}, {q}) would be {:.3} R apart, which cannot be less than {:.3} R",
+                near.distance, near.least
+            );
+            return ended(Status::L2Unreachable, &note);
+        }
         let mut outcome = self.judge(cell, direction_deg, l2, most, tally, figures);
         if trend.len() > 1 && outcome.note.is_none() {
             let list: Vec<String> = trend
@@ -288,6 +310,15 @@ impl<'a> ExactMethod<'a> {
             outcome.note = Some(format!("{says}: {}", list.join(", ")));
         }
         (outcome, reached)
+    }
+
+    /// Own images that would be too near in the first cell, whatever l1 up to its bound `most`.
+    fn too_near(&self, direction_deg: f64, l2: f64, most: f64) -> Option<NearImages> {
+        let model = &self.models[0];
+        let family = Family { reference: [model.start.a1, model.start.a2], direction_deg };
+        let [a1, a2] = family.lattice(most, l2);
+        let state = State { poses: Vec::new(), a1, a2 };
+        self.image.get_or_init(|| ImageBound::new(model)).too_near(model, &state)
     }
 
     fn nothing(&self, status: Status, figures: ExactFigures) -> LimitOutcome {
@@ -530,5 +561,5 @@ impl Search<'_> {
 }
 
 fn feasible(program: &SheetProgram<'_>, x: &Posed) -> bool {
-    violation(&program.rows(x, 0.0, false)) < 1e-9
+    violation(&program.rows(x, 0.0, Derivatives::None)) < 1e-9
 }

@@ -40,6 +40,26 @@ pub fn symmetric_eigen(h: &Mat<f64>) -> Result<Eigen, EigenFailure> {
     Ok(Eigen { values, vectors })
 }
 
+/// Least eigenvalue of the symmetric matrix `h`, unchecked; `None` where the decomposition fails.
+pub fn least_eigenvalue(h: &Mat<f64>) -> Option<f64> {
+    let of = coupled(h);
+    let values = block(h, &of).self_adjoint_eigenvalues(Side::Lower).ok()?;
+    // Unknowns that nothing couples have the eigenvalue 0.
+    let zero = (of.len() < h.ncols()).then_some(0.0);
+    values.into_iter().chain(zero).reduce(f64::min).filter(|least| least.is_finite())
+}
+
+/// Indices of the unknowns that the symmetric matrix `h` couples with anything, themselves included. Elements that carry
+/// nothing have none: decompositions leave them out.
+pub fn coupled(h: &Mat<f64>) -> Vec<usize> {
+    (0..h.ncols()).filter(|&j| h.col(j).iter().any(|v| *v != 0.0)).collect()
+}
+
+/// The rows and columns `of` of a matrix.
+pub fn block(h: &Mat<f64>, of: &[usize]) -> Mat<f64> {
+    Mat::from_fn(of.len(), of.len(), |i, j| h[(of[i], of[j])])
+}
+
 impl Eigen {
     /// −Σ v_k (v_k·g) / max(|λ_k|, floor): Newton's step with every curvature made positive. Always descends.
     pub fn descent_step(&self, gradient: &[f64], floor: f64) -> Vec<f64> {

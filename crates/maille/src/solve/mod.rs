@@ -1,7 +1,10 @@
 //! Solvers' outer loops. They know no ring: they see an objective.
 
+pub mod cholesky;
+pub mod convex;
 pub mod eigen;
 pub mod kkt;
 pub mod newton;
 pub mod qp;
+pub mod rows;
 pub mod sqp;

@@ -1,22 +1,56 @@
-//! A small dense convex quadratic program by Mehrotra's predictor–corrector interior-point method.
+//! A convex quadratic program by Mehrotra's predictor–corrector interior-point method.
 //!
 //!   minimise ½ xᵀ H x + cᵀ x   subject to   A x ≥ b,  −w ≤ x ≤ w
 //!
 //! H symmetric positive semidefinite; every x is boxed, so the program is feasible iff A x ≥ b meets the box, and the
 //! caller keeps it so with an elastic unknown. Slacks are kept positive throughout; multipliers belong to A x ≥ b and
-//! are non-negative. Tens of unknowns and up to hundreds of rows: each iteration forms H + Aᵀ diag(z/s) A and factors
-//! it by Cholesky.
+//! are non-negative. The rows of A are sparse, H is dense: each iteration forms H + Aᵀ diag(z/s) A and factors it by
+//! Cholesky.
 
-use faer::{Mat, Side, linalg::solvers::Solve, prelude::ReborrowMut};
+use super::cholesky::Cholesky;
+use faer::Mat;
 
-/// The program's data; rows of A are stored one after the other.
+/// Rows of A, by their entries that are not zero.
+#[derive(Clone, Debug)]
+pub struct SparseRows {
+    starts: Vec<usize>,
+    columns: Vec<usize>,
+    values: Vec<f64>,
+}
+
+impl Default for SparseRows {
+    fn default() -> Self {
+        SparseRows { starts: vec![0], columns: Vec::new(), values: Vec::new() }
+    }
+}
+
+impl SparseRows {
+    /// Adds a row of (column, value), each column once.
+    pub fn push(&mut self, entries: impl IntoIterator<Item = (usize, f64)>) {
+        let start = self.columns.len();
+        for (column, value) in entries {
+            // In ascending order; rows are short and nearly so.
+            let at = self.columns[start..].iter().rposition(|c| *c < column).map_or(start, |k| start + k + 1);
+            self.columns.insert(at, column);
+            self.values.insert(at, value);
+        }
+        self.starts.push(self.columns.len());
+    }
+
+    fn row(&self, k: usize) -> (&[usize], &[f64]) {
+        let range = self.starts[k]..self.starts[k + 1];
+        (&self.columns[range.clone()], &self.values[range])
+    }
+}
+
+/// The program's data.
 pub struct QuadraticProgram<'a> {
     /// H.
     pub hessian: &'a Mat<f64>,
     /// c.
     pub linear: &'a [f64],
-    /// A, row-major, b.len() × c.len().
-    pub rows: &'a [f64],
+    /// A, b.len() rows.
+    pub rows: &'a SparseRows,
     /// b.
     pub lower: &'a [f64],
     /// w > 0, finite.
@@ -45,6 +79,10 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
+fn sparse_dot(columns: &[usize], values: &[f64], x: &[f64]) -> f64 {
+    columns.iter().zip(values).map(|(&i, a)| a * x[i]).sum()
+}
+
 /// Largest step in (0, 1] that keeps v + step · dv ≥ 0.
 fn to_boundary(v: &[f64], dv: &[f64]) -> f64 {
     v.iter().zip(dv).filter(|(_, d)| **d < 0.0).map(|(x, d)| -x / d).fold(1.0, f64::min)
@@ -54,6 +92,8 @@ fn to_boundary(v: &[f64], dv: &[f64]) -> f64 {
 struct Cone {
     s: Vec<f64>,
     z: Vec<f64>,
+    /// 1/s, once for each iteration.
+    inverse: Vec<f64>,
 }
 
 impl Cone {
@@ -65,10 +105,11 @@ impl Cone {
 /// Solves the program. The residual says how far it came; at most 60 iterations.
 pub fn solve(program: &QuadraticProgram<'_>) -> QpSolution {
     let (n, m) = (program.linear.len(), program.lower.len());
-    let row = |k: usize| &program.rows[k * n..(k + 1) * n];
+    let sides = m + 2 * n;
+    let row = |k: usize| program.rows.row(k);
     let scale = 1.0 + program.linear.iter().fold(0.0f64, |a, c| a.max(c.abs()));
     let mut x = vec![0.0; n];
-    let mut cone = Cone { s: vec![0.0; m + 2 * n], z: vec![0.0; m + 2 * n] };
+    let mut cone = Cone { s: vec![0.0; sides], z: vec![0.0; sides], inverse: vec![0.0; sides] };
     for k in 0..m {
         cone.s[k] = (-program.lower[k]).max(1e-2);
         cone.z[k] = 1e-2 * scale / cone.s[k].max(1e-1);
@@ -79,106 +120,135 @@ pub fn solve(program: &QuadraticProgram<'_>) -> QpSolution {
             cone.z[side] = 1e-2 * scale / cone.s[side].max(1e-1);
         }
     }
+    let hessian: Vec<f64> = program.hessian.col_iter().flat_map(|column| column.iter().copied()).collect();
     let mut best = QpSolution { x: x.clone(), multipliers: vec![0.0; m], residual: f64::INFINITY, iterations: 0 };
-    let mut system = Mat::<f64>::zeros(n, n);
+    let (mut dual, mut primal) = (vec![0.0; n], vec![0.0; m]);
+    let mut system = Cholesky::new(n);
+    let mut direction = Direction { x: vec![0.0; n], s: vec![0.0; sides], z: vec![0.0; sides] };
+    let mut target = vec![0.0; sides];
     for iteration in 0..MAX_ITERATIONS {
         // Residuals: dual H x + c − Aᵀ z_A − z_low + z_up; primal A x − b − s. The box slacks stay exact.
-        let mut dual: Vec<f64> = (0..n)
-            .map(|i| {
-                program.linear[i] + (0..n).map(|j| program.hessian[(i, j)] * x[j]).sum::<f64>() - cone.z[m + i]
-                    + cone.z[m + n + i]
-            })
-            .collect();
-        let mut primal = vec![0.0; m];
+        for i in 0..n {
+            dual[i] = program.linear[i] - cone.z[m + i] + cone.z[m + n + i];
+        }
+        for (column, &xj) in hessian.chunks_exact(n).zip(&x) {
+            dual.iter_mut().zip(column).for_each(|(d, h)| *d += h * xj);
+        }
         for k in 0..m {
-            let a = row(k);
-            primal[k] = dot(a, &x) - program.lower[k] - cone.s[k];
-            for i in 0..n {
-                dual[i] -= a[i] * cone.z[k];
-            }
+            let (columns, values) = row(k);
+            primal[k] = sparse_dot(columns, values, &x) - program.lower[k] - cone.s[k];
+            columns.iter().zip(values).for_each(|(&i, a)| dual[i] -= a * cone.z[k]);
         }
         let worst = |v: &[f64]| v.iter().fold(0.0f64, |a, x| a.max(x.abs()));
-        let residual = (worst(&dual) / scale).max(worst(&primal)).max(cone.gap() / scale);
+        let gap = cone.gap();
+        let residual = (worst(&dual) / scale).max(worst(&primal)).max(gap / scale);
         if residual < best.residual {
-            best = QpSolution { x: x.clone(), multipliers: cone.z[..m].to_vec(), residual, iterations: iteration };
+            best.x.copy_from_slice(&x);
+            best.multipliers.copy_from_slice(&cone.z[..m]);
+            (best.residual, best.iterations) = (residual, iteration);
         }
         if residual < TOLERANCE || !residual.is_finite() {
             break;
         }
+        cone.inverse.iter_mut().zip(&cone.s).for_each(|(inverse, s)| *inverse = 1.0 / s);
         // H + Aᵀ diag(z/s) A + diag(box).
-        system.copy_from(program.hessian);
+        let matrix = system.matrix_mut();
+        matrix.copy_from_slice(&hessian);
         for k in 0..m {
-            let (a, weight) = (row(k), cone.z[k] / cone.s[k]);
-            for j in 0..n {
-                let wa = weight * a[j];
-                if wa != 0.0 {
-                    for i in j..n {
-                        system[(i, j)] += wa * a[i];
-                    }
-                }
+            let ((columns, values), weight) = (row(k), cone.z[k] * cone.inverse[k]);
+            for (p, (&j, a)) in columns.iter().zip(values).enumerate() {
+                let (wa, column) = (weight * a, &mut matrix[j * n..(j + 1) * n]);
+                columns[p..].iter().zip(&values[p..]).for_each(|(&i, a)| column[i] += wa * a);
             }
         }
         for i in 0..n {
-            system[(i, i)] += cone.z[m + i] / cone.s[m + i] + cone.z[m + n + i] / cone.s[m + n + i] + 1e-13;
+            let sides = cone.z[m + i] * cone.inverse[m + i] + cone.z[m + n + i] * cone.inverse[m + n + i];
+            matrix[i * n + i] += sides + 1e-13;
         }
-        let Ok(factor) = system.llt(Side::Lower) else { break };
-        let direction = |target: &[f64]| -> (Vec<f64>, Vec<f64>, Vec<f64>) {
-            // s dz + z ds = target − s z for every slack.
-            let mut rhs = Mat::from_fn(n, 1, |i, _| -dual[i]);
-            let mut right = rhs.rb_mut();
-            for k in 0..m {
-                let pull = (target[k] - cone.z[k] * primal[k]) / cone.s[k] - cone.z[k];
-                for (i, a) in row(k).iter().enumerate() {
-                    right[(i, 0)] += a * pull;
-                }
-            }
-            for i in 0..n {
-                right[(i, 0)] += target[m + i] / cone.s[m + i] - cone.z[m + i];
-                right[(i, 0)] -= target[m + n + i] / cone.s[m + n + i] - cone.z[m + n + i];
-            }
-            let step = factor.solve(&rhs);
-            let dx: Vec<f64> = (0..n).map(|i| step[(i, 0)]).collect();
-            let mut ds = vec![0.0; m + 2 * n];
-            for k in 0..m {
-                ds[k] = dot(row(k), &dx) + primal[k];
-            }
-            for i in 0..n {
-                ds[m + i] = dx[i];
-                ds[m + n + i] = -dx[i];
-            }
-            let dz = (0..m + 2 * n).map(|k| (target[k] - cone.z[k] * ds[k]) / cone.s[k] - cone.z[k]).collect();
-            (dx, ds, dz)
-        };
-        let gap = cone.gap();
-        let (_, ds, dz) = direction(&vec![0.0; m + 2 * n]);
-        let (primal_step, dual_step) = (to_boundary(&cone.s, &ds), to_boundary(&cone.z, &dz));
-        let predicted =
-            (0..m + 2 * n).map(|k| (cone.s[k] + primal_step * ds[k]) * (cone.z[k] + dual_step * dz[k])).sum::<f64>()
-                / (m + 2 * n) as f64;
+        if !system.factor() {
+            break;
+        }
+        target.fill(0.0);
+        direction.find(program, &system, &cone, (&dual, &primal), &target);
+        let (primal_step, dual_step) = (to_boundary(&cone.s, &direction.s), to_boundary(&cone.z, &direction.z));
+        let after = |k: usize| (cone.s[k] + primal_step * direction.s[k]) * (cone.z[k] + dual_step * direction.z[k]);
+        let predicted = (0..sides).map(after).sum::<f64>() / sides as f64;
         let centering = (predicted / gap).powi(3) * gap;
-        let target: Vec<f64> = ds.iter().zip(&dz).map(|(s, z)| centering - s * z).collect();
-        let (dx, ds, dz) = direction(&target);
+        for k in 0..sides {
+            target[k] = centering - direction.s[k] * direction.z[k];
+        }
+        direction.find(program, &system, &cone, (&dual, &primal), &target);
         // One common step length: with a quadratic term separate ones need not lower the dual residual.
-        let step = (TO_BOUNDARY * to_boundary(&cone.s, &ds).min(to_boundary(&cone.z, &dz))).min(1.0);
+        let step = to_boundary(&cone.s, &direction.s).min(to_boundary(&cone.z, &direction.z));
+        let step = (TO_BOUNDARY * step).min(1.0);
         for i in 0..n {
-            x[i] += step * dx[i];
+            x[i] += step * direction.x[i];
             cone.s[m + i] = program.half_width[i] + x[i];
             cone.s[m + n + i] = program.half_width[i] - x[i];
         }
         for k in 0..m {
-            cone.s[k] += step * ds[k];
+            cone.s[k] += step * direction.s[k];
         }
-        for k in 0..m + 2 * n {
-            cone.z[k] += step * dz[k];
+        for k in 0..sides {
+            cone.z[k] += step * direction.z[k];
             cone.s[k] = cone.s[k].max(1e-300);
         }
     }
     best
 }
 
+/// A Newton direction of x, s and z.
+struct Direction {
+    x: Vec<f64>,
+    s: Vec<f64>,
+    z: Vec<f64>,
+}
+
+impl Direction {
+    /// The direction with s dz + z ds = target − s z for every slack, and the residuals taken away.
+    fn find(
+        &mut self,
+        program: &QuadraticProgram<'_>,
+        system: &Cholesky,
+        cone: &Cone,
+        (dual, primal): (&[f64], &[f64]),
+        target: &[f64],
+    ) {
+        let (n, m) = (dual.len(), primal.len());
+        for i in 0..n {
+            let (low, up) = (m + i, m + n + i);
+            let side = |k: usize| target[k] * cone.inverse[k] - cone.z[k];
+            let sides = side(low) - side(up);
+            self.x[i] = sides - dual[i];
+        }
+        for k in 0..m {
+            let pull = (target[k] - cone.z[k] * primal[k]) * cone.inverse[k] - cone.z[k];
+            let (columns, values) = program.rows.row(k);
+            columns.iter().zip(values).for_each(|(&i, a)| self.x[i] += a * pull);
+        }
+        system.solve(&mut self.x);
+        for k in 0..m {
+            let (columns, values) = program.rows.row(k);
+            self.s[k] = sparse_dot(columns, values, &self.x) + primal[k];
+        }
+        for i in 0..n {
+            (self.s[m + i], self.s[m + n + i]) = (self.x[i], -self.x[i]);
+        }
+        for k in 0..m + 2 * n {
+            self.z[k] = (target[k] - cone.z[k] * self.s[k]) * cone.inverse[k] - cone.z[k];
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn sparse(rows: &[[f64; 2]]) -> SparseRows {
+        let mut out = SparseRows::default();
+        rows.iter().for_each(|row| out.push(row.iter().copied().enumerate().filter(|(_, a)| *a != 0.0)));
+        out
+    }
 
     /// minimise (x−1)² + (y−2)² with x + y ≤ 2 and y ≤ ½: x = 1, y = ½; the rows' multipliers are 0 and 3.
     #[test]
@@ -187,7 +257,7 @@ mod tests {
         let program = QuadraticProgram {
             hessian: &hessian,
             linear: &[-2.0, -4.0],
-            rows: &[-1.0, -1.0, 0.0, -1.0],
+            rows: &sparse(&[[-1.0, -1.0], [0.0, -1.0]]),
             lower: &[-2.0, -0.5],
             half_width: &[10.0, 10.0],
         };
@@ -204,7 +274,7 @@ mod tests {
         let program = QuadraticProgram {
             hessian: &hessian,
             linear: &[-1.0, 0.0],
-            rows: &[-1.0, 0.0, -1.0, 0.0],
+            rows: &sparse(&[[-1.0, 0.0], [-1.0, 0.0]]),
             lower: &[-0.3, -0.3],
             half_width: &[1.0, 1.0],
         };

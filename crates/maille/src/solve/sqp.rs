@@ -7,37 +7,12 @@
 //! what the program's guard allows, so that what the guard protects (the topology) is kept on every path.
 
 use super::{
-    eigen::symmetric_eigen,
-    qp::{self, QuadraticProgram},
+    convex::convexified,
+    qp::{self, QuadraticProgram, SparseRows},
+    rows::{Derivatives, Multiplier, Row, lagrangian_hessian, multiplier_of, violation},
 };
 use faer::Mat;
 use std::sync::atomic::{AtomicBool, Ordering};
-
-/// One gap g(x) ≥ 0 with its derivatives in the unknowns `columns`.
-#[derive(Clone, Debug)]
-pub struct Row {
-    /// What the row belongs to; several rows may share it.
-    pub key: u64,
-    /// Tells apart the rows of one key; changes little from point to point.
-    pub angle: f64,
-    /// Value.
-    pub gap: f64,
-    /// A true gap; otherwise a sample beside one, valid but never the smallest.
-    pub minimum: bool,
-    /// The unknowns that it depends on.
-    pub columns: Vec<usize>,
-    /// ∂g in those.
-    pub gradient: Vec<f64>,
-    /// ∂²g in those, k × k.
-    pub hessian: Vec<f64>,
-}
-
-impl Row {
-    /// A row without derivatives.
-    pub fn value(key: u64, angle: f64, gap: f64) -> Row {
-        Row { key, angle, gap, minimum: true, columns: Vec::new(), gradient: Vec::new(), hessian: Vec::new() }
-    }
-}
 
 /// What is maximised.
 pub trait Program {
@@ -49,8 +24,8 @@ pub trait Program {
     fn objective(&self) -> Vec<f64>;
     /// The objective at `x`.
     fn value(&self, x: &Self::Point) -> f64;
-    /// All rows with a gap of at most `band`, with derivatives if asked.
-    fn rows(&self, x: &Self::Point, band: f64, derivatives: bool) -> Vec<Row>;
+    /// All rows with a gap of at most `band`, with the derivatives that are asked for.
+    fn rows(&self, x: &Self::Point, band: f64, derivatives: Derivatives<'_>) -> Vec<Row>;
     /// Data for [`Program::largest_step`] at `x`.
     fn guard(&self, x: &Self::Point) -> Self::Guard;
     /// Largest fraction of `step` (at most 1) that is allowed.
@@ -94,19 +69,6 @@ impl Default for SqpOptions {
     }
 }
 
-/// A multiplier with the row that it belongs to.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Multiplier {
-    /// Key of the row.
-    pub key: u64,
-    /// Angle of the row.
-    pub angle: f64,
-    /// Whether the row is a true gap.
-    pub minimum: bool,
-    /// μ ≥ 0.
-    pub value: f64,
-}
-
 /// Where the iteration ended.
 #[derive(Clone, Debug)]
 pub struct SqpEnd<P> {
@@ -126,89 +88,31 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
-/// Largest violation among `rows`.
-pub fn violation(rows: &[Row]) -> f64 {
-    rows.iter().map(|r| -r.gap).fold(0.0, f64::max)
-}
-
-/// Multiplier of `row` among `known`: that of the nearest angle under the same key.
-pub fn multiplier_of(row: &Row, known: &[Multiplier]) -> f64 {
-    let apart = |m: &Multiplier| {
-        let turn = (m.angle - row.angle).rem_euclid(std::f64::consts::TAU);
-        turn.min(std::f64::consts::TAU - turn)
-    };
-    known
-        .iter()
-        .filter(|m| m.key == row.key && m.minimum == row.minimum)
-        .map(|m| (apart(m), m.value))
-        .filter(|(apart, _)| *apart < if row.minimum { 0.4 } else { 0.05 })
-        .min_by(|a, b| a.0.total_cmp(&b.0))
-        .map_or(0.0, |(_, value)| value)
-}
-
-/// −Σ μ ∇²g over all unknowns.
-pub fn lagrangian_hessian(n: usize, rows: &[Row], multipliers: &[f64]) -> Mat<f64> {
-    let mut h = Mat::zeros(n, n);
-    for (row, mu) in rows.iter().zip(multipliers).filter(|(_, mu)| **mu != 0.0) {
-        let k = row.columns.len();
-        for (p, &i) in row.columns.iter().enumerate() {
-            for (q, &j) in row.columns.iter().enumerate() {
-                h[(i, j)] -= mu * row.hessian[p * k + q];
-            }
-        }
-    }
-    h
-}
-
-/// H made positive: first by adding σ Σ ∇g ∇gᵀ / |∇g|² over the loaded rows, which changes nothing on the directions
-/// that keep them, so that the model stays exact there; what is still negative is raised to `floor`.
-fn convexified(mut h: Mat<f64>, rows: &[Row], multipliers: &[f64], floor: f64) -> Mat<f64> {
-    let n = h.nrows();
-    let raise = |h: Mat<f64>| match symmetric_eigen(&h) {
-        Ok(eigen) if eigen.values[0] >= floor => h,
-        Ok(eigen) => {
-            let scaled = Mat::from_fn(n, n, |i, k| eigen.vectors[(i, k)] * eigen.values[k].max(floor));
-            scaled * eigen.vectors.transpose()
-        }
-        Err(_) => Mat::identity(n, n),
-    };
-    let sigma = match symmetric_eigen(&h) {
-        Ok(eigen) => 2.0 * (floor - eigen.values[0]).max(0.0),
-        Err(_) => return Mat::identity(n, n),
-    };
-    if sigma > 0.0 {
-        for (row, _) in rows.iter().zip(multipliers).filter(|(_, mu)| **mu > 1e-6) {
-            let weight = sigma / dot(&row.gradient, &row.gradient).max(1e-300);
-            for (&i, &a) in row.columns.iter().zip(&row.gradient) {
-                for (&j, &b) in row.columns.iter().zip(&row.gradient) {
-                    h[(i, j)] += weight * a * b;
-                }
-            }
-        }
-    }
-    raise(h)
-}
-
 /// Solves min ½ dᵀ H d + linear·d + weight · t under gap + ∇g·d + t ≥ 0, t ≥ 0, |d| ≤ radius: the step d, the rows'
 /// multipliers, and the violation t that is left.
-fn elastic_program(rows: &[Row], h: &Mat<f64>, linear: &[f64], weight: f64, radius: f64) -> (Vec<f64>, Vec<f64>, f64) {
+pub(super) fn elastic_program(
+    rows: &[Row],
+    h: &Mat<f64>,
+    linear: &[f64],
+    weight: f64,
+    radius: f64,
+) -> (Vec<f64>, Vec<f64>, f64) {
     let n = linear.len();
-    let hessian = Mat::from_fn(n + 1, n + 1, |i, j| match (i < n, j < n) {
-        (true, true) => h[(i, j)],
-        (false, false) => 1e-8,
-        _ => 0.0,
-    });
+    let mut hessian = Mat::zeros(n + 1, n + 1);
+    hessian.submatrix_mut(0, 0, n, n).copy_from(h);
+    hessian[(n, n)] = 1e-8;
     let linear: Vec<f64> = linear.iter().copied().chain([weight]).collect();
-    let width = n + 1;
-    let mut matrix = vec![0.0; (rows.len() + 1) * width];
-    for (k, row) in rows.iter().enumerate() {
-        for (&column, &value) in row.columns.iter().zip(&row.gradient) {
-            matrix[k * width + column] = value;
-        }
-        matrix[k * width + n] = 1.0;
+    // Rows that no step in the box can reach are left out: they change nothing.
+    let within = |row: &Row| row.gap < radius * row.gradient.iter().map(|a| a.abs()).sum::<f64>();
+    let reached: Vec<usize> = (0..rows.len()).filter(|&k| within(&rows[k])).collect();
+    let mut matrix = SparseRows::default();
+    let mut lower = Vec::with_capacity(reached.len() + 1);
+    for row in reached.iter().map(|&k| &rows[k]) {
+        matrix.push(row.columns.iter().copied().zip(row.gradient.iter().copied()).chain([(n, 1.0)]));
+        lower.push(-row.gap);
     }
-    matrix[rows.len() * width + n] = 1.0;
-    let lower: Vec<f64> = rows.iter().map(|r| -r.gap).chain([0.0]).collect();
+    matrix.push([(n, 1.0)]);
+    lower.push(0.0);
     let mut half_width = vec![radius; n];
     half_width.push(2.0 * violation(rows) + 1.0);
     let solution = qp::solve(&QuadraticProgram {
@@ -218,9 +122,10 @@ fn elastic_program(rows: &[Row], h: &Mat<f64>, linear: &[f64], weight: f64, radi
         lower: &lower,
         half_width: &half_width,
     });
-    (solution.x[..n].to_vec(), solution.multipliers[..rows.len()].to_vec(), solution.x[n].max(0.0))
+    let mut multipliers = vec![0.0; rows.len()];
+    reached.iter().zip(&solution.multipliers).for_each(|(&k, mu)| multipliers[k] = *mu);
+    (solution.x[..n].to_vec(), multipliers, solution.x[n].max(0.0))
 }
-
 /// Least curvature of the convexified model: it follows the step's size between these. Far from the limit it keeps
 /// free motions from being spent on tiny gains (which would carry contacts to the edge where their minima merge).
 const LEAST_FLOOR: f64 = 1e-4;
@@ -243,7 +148,8 @@ pub fn maximize<P: Program>(
     let band = |radius: f64| 0.1 + 2.0 * radius;
     let mut floor = MOST_FLOOR;
     let mut end = SqpEnd { point: start, multipliers: known, iterations: 0, settled: false, violation: f64::INFINITY };
-    let mut rows = program.rows(&end.point, band(radius), true);
+    let mut reach = band(radius);
+    let mut rows = program.rows(&end.point, reach, Derivatives::Second(&end.multipliers));
     end.violation = violation(&rows);
     while end.iterations < options.max_iterations && !cancel.load(Ordering::Relaxed) {
         if end.violation < 1e-13 && program.value(&end.point) >= options.enough {
@@ -275,14 +181,14 @@ pub fn maximize<P: Program>(
         let step: Vec<f64> = step.iter().map(|s| s * fraction).collect();
         let merit = -program.value(&end.point) + penalty * end.violation;
         let judge = |point: &P::Point| {
-            let violation = violation(&program.rows(point, 0.0, false));
+            let violation = violation(&program.rows(point, 0.0, Derivatives::None));
             (-program.value(point) + penalty * violation, violation)
         };
         let mut trial = program.moved(&end.point, &step);
         let (mut reached, mut worst) = judge(&trial);
         let wanted = promised * fraction;
         if merit - reached < 0.5 * wanted && worst > 0.0 {
-            let there = program.rows(&trial, band(radius).min(0.2), true);
+            let there = program.rows(&trial, band(radius).min(0.2), Derivatives::First);
             let none = vec![0.0; n];
             let (correction, _, _) = elastic_program(&there, &Mat::identity(n, n), &none, 1e3 * radius, radius);
             let guard = program.guard(&trial);
@@ -303,12 +209,15 @@ pub fn maximize<P: Program>(
             } else if ratio < 0.3 {
                 radius *= 0.5;
             }
-            rows = program.rows(&end.point, band(radius), true);
+            reach = band(radius);
+            rows = program.rows(&end.point, reach, Derivatives::Second(&end.multipliers));
         } else {
             radius = 0.3 * radius.min(size);
             if radius < 1e-13 {
                 break;
             }
+            // The same rows with the Hessians of those that are loaded now.
+            rows = program.rows(&end.point, reach, Derivatives::Second(&end.multipliers));
         }
     }
     end

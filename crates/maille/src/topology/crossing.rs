@@ -5,9 +5,10 @@
 //! distance the circles cannot meet, so the isotopy class of the whole sheet is kept, which linking numbers alone do
 //! not ensure for elements of several rings.
 
-use super::{RingPair, close_pairs, core_distance};
+use super::near::{NearPair, near_pairs};
 use crate::{model::Model, state::State};
 use maille_geometry::Vec3;
+use std::rc::Rc;
 
 /// A step: translation and rotation vector of every element, and the change of the lattice vectors.
 pub struct Motion {
@@ -17,25 +18,27 @@ pub struct Motion {
     pub lattice: [Vec3; 2],
 }
 
-/// Core distances around a state, from which steps are bounded.
+/// Core distances around a state, from which steps are bounded. A distance is looked for only where its floor would cut
+/// the step.
 pub struct StepBound {
-    pairs: Vec<(RingPair, f64)>,
+    pairs: Rc<[NearPair]>,
     reach_growth: f64,
     spread: f64,
 }
 
 /// Pairs up to this many largest radii apart bound a step one by one.
-const MARGIN: f64 = 1.5;
+pub const MARGIN: f64 = 1.5;
 /// Largest fraction of a pair's core distance that a step may use.
 const SAFETY: f64 = 0.9;
 
 impl StepBound {
     /// At `state`.
     pub fn new(model: &Model, state: &State) -> Self {
-        let pairs = close_pairs(model, state, MARGIN * model.largest_radius)
-            .into_iter()
-            .map(|pair| (pair, core_distance(model, state, &pair)))
-            .collect();
+        Self::of(state, near_pairs(model, state, MARGIN * model.largest_radius).into())
+    }
+
+    /// At `state`, whose near pairs up to [`MARGIN`] largest radii or more are `pairs`.
+    pub fn of(state: &State, pairs: Rc<[NearPair]>) -> Self {
         // |Δa1 s1 + Δa2 s2| ≤ (|Δa1| |b1| + |Δa2| |b2|) |s1 a1 + s2 a2| with the dual vectors b of the lattice.
         let (g11, g12, g22) = (state.a1.norm_squared(), state.a1.dot(&state.a2), state.a2.norm_squared());
         let reach_growth = (g11.max(g22) / (g11 * g22 - g12 * g12)).sqrt();
@@ -66,11 +69,15 @@ impl StepBound {
         let growth = (da1.norm() + da2.norm()) * self.reach_growth;
         limit(2.0 * largest + growth * (2.0 * widest + margin + self.spread), SAFETY * margin);
         limit(growth, 0.5);
-        for (pair, distance) in &self.pairs {
+        for near in self.pairs.iter() {
+            let pair = &near.pair;
             let (i, j) = (model.rings[pair.ring_a].element, model.rings[pair.ring_b].element);
             let (p, q) = (f64::from(pair.shift[0]), f64::from(pair.shift[1]));
             let relative = motion.elements[j].0 - motion.elements[i].0 + da1 * p + da2 * q;
-            limit(relative.norm() + swing(i) + swing(j), SAFETY * distance);
+            let motion = relative.norm() + swing(i) + swing(j);
+            if motion > SAFETY * near.floor {
+                limit(motion, SAFETY * near.distance());
+            }
         }
         fraction
     }

@@ -1,6 +1,7 @@
 //! Which rings are near, which are linked, and in which directions chains of links bind the sheet.
 
 pub mod crossing;
+pub mod near;
 
 use crate::{
     lattice::{Shift, shifts_within},
@@ -36,6 +37,7 @@ pub struct Link {
 pub fn close_pairs(model: &Model, state: &State, margin: f64) -> Vec<RingPair> {
     let mut out = Vec::new();
     let thickest = model.rings.iter().map(|r| r.minor_radius).fold(0.0, f64::max);
+    let arms: Vec<_> = (0..model.rings.len()).map(|ring| state.arm(model, ring)).collect();
     for (i, first) in model.elements.iter().enumerate() {
         for (j, second) in model.elements.iter().enumerate().skip(i) {
             let offset = state.poses[j].position - state.poses[i].position;
@@ -47,8 +49,7 @@ pub fn close_pairs(model: &Model, state: &State, margin: f64) -> Vec<RingPair> {
                 for ring_a in first.rings.clone() {
                     for ring_b in second.rings.clone() {
                         let (ra, rb) = (&model.rings[ring_a], &model.rings[ring_b]);
-                        let centers =
-                            offset + state.arm(model, ring_b) - state.arm(model, ring_a) + state.translation(shift);
+                        let centers = offset + arms[ring_b] - arms[ring_a] + state.translation(shift);
                         let near = ra.major_radius + rb.major_radius + ra.minor_radius + rb.minor_radius + margin;
                         if centers.norm_squared() <= near * near {
                             out.push(RingPair { ring_a, ring_b, shift });

@@ -1,0 +1,71 @@
+//! Pairs of rings that touch along nearly the whole circle.
+
+use super::{
+    Posed, SheetProgram,
+    pair::{pair_key, pair_of_key},
+};
+use crate::{solve::rows::Multiplier, topology};
+use maille_geometry::Vec3;
+use std::collections::BTreeSet;
+
+/// Sine of the tilt below which a pair can be flat.
+const FLAT_TILT: f64 = 0.08;
+/// Offset of the axes below which a pair can be flat, in radii.
+const FLAT_APART: f64 = 0.08;
+
+impl SheetProgram<'_> {
+    /// Takes the pairs of `x` that touch along nearly the whole circle as flat: equal radii, nearly parallel and
+    /// coaxial. Their one gap is a cone there, h − s − R |tilt|, with its tip at the limit; from now on sixteen heights
+    /// of B's points over A's plane must be at least s, which implies the gap, is smooth, and is exact where the rings
+    /// are parallel. Returns whether the set of flat pairs has changed.
+    pub fn take_flat_pairs(&mut self, x: &Posed) -> bool {
+        let (model, state) = (self.model, &x.state);
+        let mut flat = BTreeSet::new();
+        for pair in topology::close_pairs(model, state, 0.0) {
+            let a = state.circle(model, pair.ring_a, [0, 0]);
+            let b = state.circle(model, pair.ring_b, pair.shift);
+            let touching = model.contact_distance(pair.ring_a, pair.ring_b);
+            let between = b.center - a.center;
+            let height = between.dot(&a.normal);
+            let apart = (between - a.normal.into_inner() * height).norm();
+            let tilt = a.normal.cross(&b.normal).norm();
+            let equal = (a.radius - b.radius).abs() < 1e-9 * a.radius;
+            if equal && tilt < FLAT_TILT && apart < FLAT_APART * a.radius && height.abs() < touching * 1.1 {
+                flat.insert(pair_key(&pair));
+            }
+        }
+        let changed = flat != self.flat;
+        self.flat = flat;
+        changed
+    }
+
+    /// A flat pair with offset e of its axes: the true gap at B's direction u is (e·u)²/2s above the height. Of all ways
+    /// to spread the pair's force Σ μ = N and moment Σ μ u = T over the circle, the one that uses this least leaves a
+    /// curvature −(T·e)²/(N s).
+    pub(super) fn curvature_of_flat_pairs(&self, x: &Posed, multipliers: &[Multiplier]) -> Vec<Vec<f64>> {
+        let (model, state) = (self.model, &x.state);
+        let n = self.first_parameter + self.pull.parameters.len();
+        let mut out = Vec::new();
+        for &key in &self.flat {
+            let pair = pair_of_key(key);
+            let b = state.circle(model, pair.ring_b, pair.shift);
+            let (u, v) = b.frame();
+            let (mut force, mut moment) = (0.0, Vec3::zeros());
+            for m in multipliers.iter().filter(|m| m.key == key && m.value > 0.0) {
+                force += m.value;
+                moment += (u * m.angle.cos() + v * m.angle.sin()) * m.value;
+            }
+            if force < 1e-9 {
+                continue;
+            }
+            let weight = (force * model.contact_distance(pair.ring_a, pair.ring_b)).sqrt();
+            let map = self.pair_map(&pair, &self.all_turns(state));
+            let mut term = vec![0.0; n];
+            for (&column, motion) in map.columns.iter().zip(&map.motions) {
+                term[column] = (0..3).map(|axis| motion[axis] * moment[axis]).sum::<f64>() / weight;
+            }
+            out.push(term);
+        }
+        out
+    }
+}

@@ -1,0 +1,222 @@
+//! The sheet as a constrained program: maximise one strain parameter over poses, every gap non-negative.
+//!
+//! Unknowns of a step: a translation and a turn for every element (the first element's translation is fixed, because
+//! a common translation changes nothing; the turn of a single ring about its own axis is left out for the same
+//! reason), then the free strain parameters p. The lattice is affine in p: a_k = base_k + Σ p_m rate_mk.
+
+mod flat;
+mod pair;
+
+use self::pair::{bound_key, pair_key, pair_of_key};
+use crate::{
+    model::Model,
+    solve::{
+        rows::{Derivatives, Multiplier, Row},
+        sqp::Program,
+    },
+    state::State,
+    topology::{
+        RingPair,
+        crossing::{MARGIN, Motion, StepBound},
+        near::{NearPair, near_pairs},
+    },
+};
+use maille_geometry::{Vec3, point_circle_distance};
+use std::{cell::OnceCell, collections::BTreeSet, rc::Rc};
+
+/// One free strain parameter: how fast it moves the lattice vectors, and its weight in the objective.
+#[derive(Clone, Debug)]
+pub struct Parameter {
+    /// Rates of a1 and a2.
+    pub rate: [Vec3; 2],
+    /// Weight in the maximised sum.
+    pub weight: f64,
+    /// The parameter may not exceed this.
+    pub most: Option<f64>,
+}
+
+/// A family of lattices, and what of it is maximised.
+#[derive(Clone, Debug)]
+pub struct Pull {
+    /// Lattice vectors where all parameters are 0.
+    pub base: [Vec3; 2],
+    /// The free parameters.
+    pub parameters: Vec<Parameter>,
+}
+
+/// Poses with the values of the strain parameters.
+#[derive(Clone)]
+pub struct Posed {
+    /// Poses and the lattice that the parameters give.
+    pub state: State,
+    /// Values of the parameters.
+    pub p: Vec<f64>,
+    /// Its near pairs, once they are asked for.
+    near: OnceCell<Rc<[NearPair]>>,
+}
+
+/// The program of one pull.
+pub struct SheetProgram<'a> {
+    model: &'a Model,
+    pull: &'a Pull,
+    /// First unknown of each element's translation (none for the first), and of its turn.
+    columns: Vec<(Option<usize>, usize)>,
+    spins_freely: Vec<bool>,
+    first_parameter: usize,
+    flat: BTreeSet<u64>,
+}
+
+/// Rows are asked for up to this gap, in units of the reference radius.
+const WIDEST_BAND: f64 = 1.0;
+/// Largest motion of an element in one step, in largest radii.
+const STEP_CAP: f64 = 0.5;
+/// A loaded contact of a locked state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact {
+    /// The rings.
+    pub pair: RingPair,
+    /// Point on A's core circle.
+    pub point_a: Vec3,
+    /// Point on B's core circle, in the image.
+    pub point_b: Vec3,
+    /// Force on B per unit of the objective, along point_b − point_a: the row's multiplier.
+    pub force: f64,
+}
+
+impl<'a> SheetProgram<'a> {
+    /// The program of `pull` on `model`.
+    pub fn new(model: &'a Model, pull: &'a Pull) -> Self {
+        let mut next = 0;
+        let mut take = |n: usize| {
+            next += n;
+            next - n
+        };
+        let spins_freely: Vec<bool> = model
+            .elements
+            .iter()
+            .map(|e| e.rings.len() == 1 && model.rings[e.rings.start].offset.norm() < 1e-12)
+            .collect();
+        let columns = spins_freely
+            .iter()
+            .enumerate()
+            .map(|(e, &free)| ((e > 0).then(|| take(3)), take(if free { 2 } else { 3 })))
+            .collect();
+        let first_parameter = next;
+        SheetProgram { model, pull, columns, spins_freely, first_parameter, flat: BTreeSet::new() }
+    }
+
+    /// Poses of `state` with the lattice of the parameters `p`.
+    pub fn posed(&self, mut state: State, p: Vec<f64>) -> Posed {
+        let lattice = |k: usize| {
+            let free = self.pull.parameters.iter().zip(&p);
+            self.pull.base[k] + free.map(|(parameter, value)| parameter.rate[k] * *value).sum::<Vec3>()
+        };
+        (state.a1, state.a2) = (lattice(0), lattice(1));
+        Posed { state, p, near: OnceCell::new() }
+    }
+
+    /// The contacts that carry `multipliers` at `x`.
+    pub fn contacts(&self, x: &Posed, multipliers: &[Multiplier]) -> Vec<Contact> {
+        let loaded = multipliers.iter().filter(|m| m.value > 1e-9 && m.key < bound_key(0xffff));
+        loaded
+            .map(|m| {
+                let pair = pair_of_key(m.key);
+                let a = x.state.circle(self.model, pair.ring_a, [0, 0]);
+                let point_b = x.state.circle(self.model, pair.ring_b, pair.shift).point(m.angle);
+                Contact { pair, point_a: point_circle_distance(&point_b, &a).point, point_b, force: m.value }
+            })
+            .collect()
+    }
+
+    /// The near pairs of `x`.
+    fn near<'x>(&self, x: &'x Posed) -> &'x Rc<[NearPair]> {
+        let margin = (MARGIN * self.model.largest_radius).max(WIDEST_BAND);
+        x.near.get_or_init(|| near_pairs(self.model, &x.state, margin).into())
+    }
+
+    /// Basis of the turns of element `e` at `state`: two axes across a single ring's normal, or x, y, z.
+    fn turns(&self, state: &State, e: usize) -> Vec<Vec3> {
+        if !self.spins_freely[e] {
+            return vec![Vec3::x(), Vec3::y(), Vec3::z()];
+        }
+        let circle = state.circle(self.model, self.model.elements[e].rings.start, [0, 0]);
+        let (u, v) = circle.frame();
+        vec![u, v]
+    }
+
+    fn all_turns(&self, state: &State) -> Vec<Vec<Vec3>> {
+        (0..self.model.elements.len()).map(|e| self.turns(state, e)).collect()
+    }
+
+    /// Motion of the step `y` at `state`.
+    fn motion(&self, state: &State, y: &[f64]) -> Motion {
+        let elements = (0..self.model.elements.len())
+            .map(|e| {
+                let (translation, turn) = self.columns[e];
+                let shift = translation.map_or(Vec3::zeros(), |t| Vec3::new(y[t], y[t + 1], y[t + 2]));
+                let turn = self.turns(state, e).iter().enumerate().map(|(k, axis)| axis * y[turn + k]).sum();
+                (shift, turn)
+            })
+            .collect();
+        let lattice = [0, 1].map(|k| {
+            let rates = self.pull.parameters.iter().enumerate();
+            rates.map(|(m, parameter)| parameter.rate[k] * y[self.first_parameter + m]).sum()
+        });
+        Motion { elements, lattice }
+    }
+}
+
+impl Program for SheetProgram<'_> {
+    type Point = Posed;
+    type Guard = StepBound;
+
+    fn objective(&self) -> Vec<f64> {
+        let mut c = vec![0.0; self.first_parameter + self.pull.parameters.len()];
+        for (m, parameter) in self.pull.parameters.iter().enumerate() {
+            c[self.first_parameter + m] = parameter.weight;
+        }
+        c
+    }
+
+    fn value(&self, x: &Posed) -> f64 {
+        self.pull.parameters.iter().zip(&x.p).map(|(parameter, value)| parameter.weight * value).sum()
+    }
+
+    fn rows(&self, x: &Posed, band: f64, derivatives: Derivatives<'_>) -> Vec<Row> {
+        let mut rows = self.bound_rows(x);
+        let near = self.near(x);
+        let within = near.iter().filter(|near| near.within(band));
+        if matches!(derivatives, Derivatives::None) {
+            for near in within {
+                let key = pair_key(&near.pair);
+                rows.extend(near.minima().iter().map(|m| Row::value(key, m.angle_b_rad, m.distance - near.touching)));
+            }
+            return rows;
+        }
+        let turns = self.all_turns(&x.state);
+        for near in within {
+            self.pair_rows(x, near, band, &turns, derivatives, &mut rows);
+        }
+        rows
+    }
+
+    fn guard(&self, x: &Posed) -> StepBound {
+        StepBound::of(&x.state, Rc::clone(self.near(x)))
+    }
+
+    fn largest_step(&self, x: &Posed, guard: &StepBound, step: &[f64]) -> f64 {
+        guard.largest_fraction(self.model, &self.motion(&x.state, step), STEP_CAP * self.model.largest_radius)
+    }
+
+    fn moved(&self, x: &Posed, step: &[f64]) -> Posed {
+        let motion = self.motion(&x.state, step);
+        let poses =
+            x.state.poses.iter().zip(&motion.elements).map(|(pose, (shift, turn))| pose.moved(shift, turn)).collect();
+        let p = x.p.iter().zip(&step[self.first_parameter..]).map(|(p, dp)| p + dp).collect();
+        self.posed(State { poses, ..x.state.clone() }, p)
+    }
+
+    fn hidden_curvature(&self, x: &Posed, multipliers: &[Multiplier]) -> Vec<Vec<f64>> {
+        self.curvature_of_flat_pairs(x, multipliers)
+    }
+}

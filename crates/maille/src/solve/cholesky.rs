@@ -1,0 +1,101 @@
+//! Cholesky's factorisation of a dense positive matrix, again and again in the same room.
+
+use faer::{
+    MatMut, MatRef, Side,
+    linalg::solvers::{Llt, Solve},
+};
+
+/// From this size on faer's blocked kernels are faster than the plain loop.
+const BLOCKED_FROM: usize = 40;
+
+/// A symmetric matrix, column after column, and its factor L (A = L Lᵀ).
+pub struct Cholesky {
+    n: usize,
+    matrix: Vec<f64>,
+    blocked: Option<Llt<f64>>,
+}
+
+impl Cholesky {
+    /// For matrices of n rows.
+    pub fn new(n: usize) -> Self {
+        Cholesky { n, matrix: vec![0.0; n * n], blocked: None }
+    }
+
+    /// The matrix, column-major, to be written before each factorisation; only its lower triangle is read.
+    pub fn matrix_mut(&mut self) -> &mut [f64] {
+        &mut self.matrix
+    }
+
+    /// Factors the matrix; false where it is not positive. The matrix is lost.
+    pub fn factor(&mut self) -> bool {
+        let n = self.n;
+        if n >= BLOCKED_FROM {
+            self.blocked = MatRef::from_column_major_slice(&self.matrix, n, n).llt(Side::Lower).ok();
+            return self.blocked.is_some();
+        }
+        for k in 0..n {
+            let (left, right) = self.matrix.split_at_mut((k + 1) * n);
+            let column = &mut left[k * n + k..];
+            let pivot = column[0];
+            // Not `<=`: it shall be false for NaN.
+            if !(pivot > 0.0) {
+                return false;
+            }
+            let inverse = 1.0 / pivot.sqrt();
+            column.iter_mut().for_each(|v| *v *= inverse);
+            for (j, later) in right.chunks_exact_mut(n).enumerate() {
+                let below = &column[j + 1..];
+                let by = below[0];
+                if by != 0.0 {
+                    later[k + 1 + j..].iter_mut().zip(below).for_each(|(a, l)| *a -= by * l);
+                }
+            }
+        }
+        true
+    }
+
+    /// Puts A⁻¹ b in the place of b.
+    pub fn solve(&self, b: &mut [f64]) {
+        let n = self.n;
+        if let Some(factor) = &self.blocked {
+            factor.solve_in_place(MatMut::from_column_major_slice_mut(b, n, 1));
+            return;
+        }
+        for k in 0..n {
+            let column = &self.matrix[k * n + k..(k + 1) * n];
+            b[k] /= column[0];
+            let bk = b[k];
+            b[k + 1..].iter_mut().zip(&column[1..]).for_each(|(b, l)| *b -= l * bk);
+        }
+        for k in (0..n).rev() {
+            let column = &self.matrix[k * n + k..(k + 1) * n];
+            let known: f64 = column[1..].iter().zip(&b[k + 1..]).map(|(l, b)| l * b).sum();
+            b[k] = (b[k] - known) / column[0];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A x = b with A = M Mᵀ + I, below and above the size where the kernel changes; and an indefinite matrix.
+    #[test]
+    fn solves_what_it_factors() {
+        for n in [1, 7, BLOCKED_FROM - 1, BLOCKED_FROM, 90] {
+            let entry = |i: usize, j: usize| ((3 * i + 7 * j) as f64).sin();
+            let a = |i: usize, j: usize| {
+                (0..n).map(|k| entry(i, k) * entry(j, k)).sum::<f64>() + f64::from(u8::from(i == j))
+            };
+            let x: Vec<f64> = (0..n).map(|i| (i as f64).cos()).collect();
+            let mut b: Vec<f64> = (0..n).map(|i| (0..n).map(|j| a(i, j) * x[j]).sum()).collect();
+            let mut system = Cholesky::new(n);
+            (0..n * n).for_each(|k| system.matrix_mut()[k] = a(k % n, k / n));
+            assert!(system.factor());
+            system.solve(&mut b);
+            assert!(b.iter().zip(&x).all(|(b, x)| (b - x).abs() < 1e-10), "{n}");
+            (0..n).for_each(|k| system.matrix_mut()[k * n + k] = -1.0);
+            assert!(!system.factor());
+        }
+    }
+}

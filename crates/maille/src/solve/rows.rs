@@ -1,0 +1,93 @@
+//! The rows of a program, gaps g ≥ 0 with derivatives, and the multipliers that go with them from point to point.
+
+use faer::Mat;
+
+/// One gap g(x) ≥ 0 with its derivatives in the unknowns `columns`.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// What the row belongs to; several rows may share it.
+    pub key: u64,
+    /// Tells apart the rows of one key; changes little from point to point.
+    pub angle: f64,
+    /// Value.
+    pub gap: f64,
+    /// A true gap; otherwise a sample beside one, valid but never the smallest.
+    pub minimum: bool,
+    /// The unknowns that it depends on.
+    pub columns: Vec<usize>,
+    /// ∂g in those.
+    pub gradient: Vec<f64>,
+    /// ∂²g in those, k × k; empty where it was not asked for.
+    pub hessian: Vec<f64>,
+}
+
+impl Row {
+    /// A row without derivatives.
+    pub fn value(key: u64, angle: f64, gap: f64) -> Row {
+        Row { key, angle, gap, minimum: true, columns: Vec::new(), gradient: Vec::new(), hessian: Vec::new() }
+    }
+}
+
+/// Which derivatives of the rows are wanted.
+#[derive(Clone, Copy, Debug)]
+pub enum Derivatives<'a> {
+    /// None: gaps alone.
+    None,
+    /// Gradients.
+    First,
+    /// Gradients, and Hessians of the rows to which one of these multipliers belongs.
+    Second(&'a [Multiplier]),
+}
+
+/// A multiplier with the row that it belongs to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Multiplier {
+    /// Key of the row.
+    pub key: u64,
+    /// Angle of the row.
+    pub angle: f64,
+    /// Whether the row is a true gap.
+    pub minimum: bool,
+    /// μ ≥ 0.
+    pub value: f64,
+}
+
+/// Largest violation among `rows`.
+pub fn violation(rows: &[Row]) -> f64 {
+    rows.iter().map(|r| -r.gap).fold(0.0, f64::max)
+}
+
+/// Multiplier of `row` among `known`: that of the nearest angle under the same key.
+pub fn multiplier_of(row: &Row, known: &[Multiplier]) -> f64 {
+    multiplier_at(row.key, row.angle, row.minimum, known)
+}
+
+/// [`multiplier_of`] the row with this key, angle and kind.
+pub fn multiplier_at(key: u64, angle: f64, minimum: bool, known: &[Multiplier]) -> f64 {
+    let apart = |m: &Multiplier| {
+        let turn = (m.angle - angle).rem_euclid(std::f64::consts::TAU);
+        turn.min(std::f64::consts::TAU - turn)
+    };
+    known
+        .iter()
+        .filter(|m| m.key == key && m.minimum == minimum)
+        .map(|m| (apart(m), m.value))
+        .filter(|(apart, _)| *apart < if minimum { 0.4 } else { 0.05 })
+        .min_by(|a, b| a.0.total_cmp(&b.0))
+        .map_or(0.0, |(_, value)| value)
+}
+
+/// −Σ μ ∇²g over all unknowns; the rows with μ ≠ 0 must have Hessians.
+pub fn lagrangian_hessian(n: usize, rows: &[Row], multipliers: &[f64]) -> Mat<f64> {
+    let mut h = Mat::zeros(n, n);
+    for (row, mu) in rows.iter().zip(multipliers).filter(|(_, mu)| **mu != 0.0) {
+        let k = row.columns.len();
+        assert_eq!(row.hessian.len(), k * k, "a loaded row without its Hessian");
+        for (p, &i) in row.columns.iter().enumerate() {
+            for (q, &j) in row.columns.iter().enumerate() {
+                h[(i, j)] -= mu * row.hessian[p * k + q];
+            }
+        }
+    }
+    h
+}
