@@ -92,7 +92,11 @@ const MANY: usize = 12;
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
     if args.quantity.is_some() && matches!(args.kind, Kind::Steps | Kind::Times) {
-        return Err(wrong(exit::USAGE, "steps and times have no --quantity", "leave --quantity out, or choose --kind polar or difference"));
+        return Err(wrong(
+            exit::USAGE,
+            "steps and times have no --quantity",
+            "leave --quantity out, or choose --kind polar or difference",
+        ));
     }
     let outputs: Vec<(&Path, Format)> =
         args.output.iter().map(|file| Ok((file.as_path(), format(file)?))).collect::<Result<_>>()?;
@@ -169,7 +173,11 @@ fn format(file: &Path) -> Result<Format> {
     match ending.as_str() {
         "svg" => Ok(Format::Svg),
         "png" => Ok(Format::Png),
-        _ => Err(wrong(exit::USAGE, format!("the ending of {} names no format of a plot", file.display()), "call it .svg or .png")),
+        _ => Err(wrong(
+            exit::USAGE,
+            format!("the ending of {} names no format of a plot", file.display()),
+            "call it .svg or .png",
+        )),
     }
 }
 

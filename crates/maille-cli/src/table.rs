@@ -150,6 +150,10 @@ fn format_of(file: &Path) -> Result<Format> {
         "csv" => Ok(Format::Csv),
         "json" => Ok(Format::Json),
         "parquet" => Ok(Format::Parquet),
-        _ => Err(wrong(exit::USAGE, format!("the ending of {} names no format of a table", file.display()), "call it .txt, .csv, .json or .parquet, or give --format")),
+        _ => Err(wrong(
+            exit::USAGE,
+            format!("the ending of {} names no format of a table", file.display()),
+            "call it .txt, .csv, .json or .parquet, or give --format",
+        )),
     }
 }
