@@ -29,9 +29,12 @@ use maille_geometry::Vec3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
-use std::sync::{
-    OnceLock,
-    atomic::{AtomicBool, Ordering},
+use std::{
+    ops::Range,
+    sync::{
+        OnceLock,
+        atomic::{AtomicBool, Ordering},
+    },
 };
 
 /// Parameters of the exact method.
@@ -103,7 +106,7 @@ const ROUNDS: usize = 6;
 const OWN_IMAGE_FORCE: f64 = 1e-6;
 /// Further starts where none reached the wanted l2.
 const MORE_STARTS: usize = 6;
-/// Shakes of the smaller cell's state, and of the design's, that start a larger cell's solve.
+/// Shakes of the smaller cell's state that start a larger cell's solve.
 const CELL_SHAKES: [f64; 3] = [0.02, 0.1, 0.3];
 
 /// Finds limits of one sheet by the exact method.
@@ -241,13 +244,13 @@ impl<'a> ExactMethod<'a> {
         };
         let mut starts: Vec<Strained> = neighbour.iter().cloned().collect();
         let fresh = self.options.starts.max(1) - starts.len();
-        starts.extend((0..fresh).map(|k| Strained { state: self.shaken(k), l1: 0.0, l2: 0.0 }));
+        starts.extend(self.fresh(0, 0..fresh));
         let mut first = self.search(0, direction_deg, l2, starts, most, cancel);
         let near = if first.best.is_none() { self.too_near(direction_deg, l2, most) } else { None };
         if first.best.is_none() && near.is_none() {
             // Not reached: try harder before giving up.
-            let more = (fresh..fresh + MORE_STARTS).map(|k| Strained { state: self.shaken(k), l1: 0.0, l2: 0.0 });
-            let again = self.search(0, direction_deg, l2, more.collect(), most, cancel);
+            let more = self.fresh(0, fresh..fresh + MORE_STARTS).collect();
+            let again = self.search(0, direction_deg, l2, more, most, cancel);
             first = Tally { runs: first.runs + again.runs, iterations: first.iterations + again.iterations, ..again };
         }
         let reached = first.best.as_ref().map(|b| Strained { state: b.x.state.clone(), l1: b.x.p[0], l2 });
@@ -263,19 +266,15 @@ impl<'a> ExactMethod<'a> {
             if !asks || idle || tally.attains(most) || cancel.load(Ordering::Relaxed) {
                 break;
             }
-            let design = Strained { state: self.models[0].start.clone(), l1: 0.0, l2: 0.0 };
             let from = reached.clone().or_else(|| neighbour.clone());
-            let from = from.unwrap_or_else(|| design.clone());
+            let from = from.unwrap_or_else(|| Strained { state: self.models[0].start.clone(), l1: 0.0, l2: 0.0 });
             let mut rng = ChaCha8Rng::seed_from_u64(self.options.seed.wrapping_add(larger as u64));
-            let mut starts = Vec::new();
-            // The design's state knows nothing of the smaller cell's answer, and finds what that one hides.
-            for origin in [&from, &design] {
-                for size in CELL_SHAKES {
-                    let state = tiled(&self.models[larger], &origin.state);
-                    let state = shaken_from(&self.models[larger], &state, size, &mut rng);
-                    starts.push(Strained { state, ..origin.clone() });
-                }
-            }
+            let shaken = CELL_SHAKES.iter().map(|&size| {
+                let state = tiled(&self.models[larger], &from.state);
+                Strained { state: shaken_from(&self.models[larger], &state, size, &mut rng), ..from.clone() }
+            });
+            // Then those of this cell solved alone: the smaller cell's answer can hide what they find.
+            let starts = shaken.chain(self.fresh(larger, 0..self.options.starts)).collect();
             let found = self.search(larger, direction_deg, l2, starts, most, cancel);
             trend.push((larger, found.l1()));
             let better = match (&found.best, &tally.best) {
@@ -419,10 +418,15 @@ impl<'a> ExactMethod<'a> {
         own.map(|c| c.force).fold(0.0, f64::max)
     }
 
-    /// The design's state, every element moved and turned at random, but no circle across another.
-    fn shaken(&self, start: usize) -> State {
-        let mut rng = ChaCha8Rng::seed_from_u64(self.options.seed.wrapping_mul(0x9e37_79b9).wrapping_add(start as u64));
-        shaken_from(&self.models[0], &self.models[0].start, SHAKES[start % SHAKES.len()], &mut rng)
+    /// Starts of a cell: the design's state, every element moved and turned at random, but no circle across another.
+    fn fresh(&self, cell: usize, starts: Range<usize>) -> impl Iterator<Item = Strained> {
+        let model = &self.models[cell];
+        starts.map(move |k| {
+            let seed = self.options.seed.wrapping_mul(0x9e37_79b9).wrapping_add(k as u64);
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            let state = shaken_from(model, &model.start, SHAKES[k % SHAKES.len()], &mut rng);
+            Strained { state, l1: 0.0, l2: 0.0 }
+        })
     }
 }
 
