@@ -34,7 +34,8 @@ pub fn with_palette(png: &[u8]) -> Result<Vec<u8>, PlotError> {
     encoder.set_compression(png::Compression::High);
     encoder.set_filter(png::Filter::NoFilter);
     encoder.set_palette(colours.chunks_exact(4).flat_map(|c| [c[0], c[1], c[2]]).collect::<Vec<u8>>());
-    if colours.chunks_exact(4).any(|c| c[3] < u8::MAX) {
+    // A palette that was trained on opaque pixels alone has alphas of 254 too: rounding.
+    if rgba.chunks_exact(4).any(|pixel| pixel[3] < u8::MAX) {
         encoder.set_trns(colours.chunks_exact(4).map(|c| c[3]).collect::<Vec<u8>>());
     }
     let mut writer = encoder.write_header().map_err(|e| fail(&e))?;

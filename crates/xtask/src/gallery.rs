@@ -57,7 +57,7 @@ fn build(root: &Path) -> Result<PathBuf, String> {
     let output = output.map_err(|e| format!("cargo did not start: {e}"))?;
     let messages = String::from_utf8_lossy(&output.stdout);
     let executables = messages.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
-    let executable = executables.filter_map(|message| message["executable"].as_str().map(PathBuf::from)).last();
+    let executable = executables.filter_map(|message| message["executable"].as_str().map(PathBuf::from)).next_back();
     executable.filter(|_| output.status.success()).ok_or_else(|| "the program was not built".to_string())
 }
 
