@@ -12,10 +12,11 @@ use std::{
 /// Where the gallery is written, and where a quick one.
 const FOLDER: &str = "docs/gallery";
 const QUICK_FOLDER: &str = "maille-out/gallery";
-/// Arguments of `maille characterize`; a quick one, to see whether all is well, has few directions.
-const PULLS: &str = "--directions 0:180:15 --l2=0";
-const QUICK_PULLS: &str = "--directions 0:90:45 --l2=0 --starts 1";
-const RENDER: &str = "--size 480x360 --palette";
+/// Arguments of `maille characterize`; a quick one, to see whether all is well, has few directions. One cell only:
+/// larger ones take minutes for each limit of the tighter weaves.
+const PULLS: &str = "--directions 0:180:5 --l2=0 --cell 1x1";
+const QUICK_PULLS: &str = "--directions 0:90:45 --l2=0 --cell 1x1 --starts 1";
+const RENDER: &str = "--size 440x330 --palette";
 const PLOT: &str = "--scale 0.75 --palette";
 /// Exit code of the program where some limits were not found.
 const SOME_MISSING: i32 = 5;
@@ -158,9 +159,11 @@ fn document(pages: &[Page], pulls: &str) -> String {
         maille render NAME {RENDER}\n    \
         maille plot NAME {PLOT}\n    \
         maille inspect NAME --json\n\n\
-        Lengths are relative to R, the design's reference radius. l1 is the largest stretch along the pull, less 1, with\n\
+        Lengths are relative to R, the design's reference radius; a negative gap is an overlap that the file allows at\n\
+        the start. l1 is the largest stretch along the pull, less 1, with\n\
         the width held (l2 = 0), and the direction where it is least and largest; of equal ones the first. *Attained* says\n\
-        how many limits, of all l2 in the plot, attain their proven bound: none of these can be larger. See\n\
+        how many limits attain their proven bound: none of these can be larger. All are of a single cell (`--cell 1x1`);\n\
+        in a larger one, those that do not attain their bound can be larger. See\n\
         [reading plots](../guide/reading-plots.md) and [certificates](../guide/certificates.md).\n\n\
         | design | rings | links | smallest gap / R | wire / R | least l1 | largest l1 | attained |\n\
         | --- | --- | --- | --- | --- | --- | --- | --- |\n"
