@@ -5,6 +5,8 @@ mod characterize;
 mod check;
 mod completions;
 mod designs;
+#[cfg(test)]
+mod docs;
 mod exit;
 mod export;
 mod input;

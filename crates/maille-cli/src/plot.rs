@@ -3,12 +3,14 @@
 use crate::{
     exit::{self, wrong},
     input::file_name,
+    numbers::positive,
     output::{self, say},
     records, table,
 };
 use maille_io::{
     plot::{PolarPlot, Quantity, Spread, difference_svg, parameter_words, polar_svg, steps_svg, svg_to_png, times_svg},
     record::NamedRecord,
+    with_palette,
 };
 use miette::{IntoDiagnostic, Result, WrapErr};
 use std::path::{Path, PathBuf};
@@ -23,6 +25,7 @@ Examples:
   maille plot 1.1                                      maille-out/polar-1.1.svg and .png
   maille plot 1.1 1.2 --where l2=0                     two records of maille-out in one
   maille plot exact-3.1 energy-3.1 --kind steps -o steps.png
+  maille plot 1.1 -o small.png --scale 0.75 --palette   645 pixels wide, in few bytes
   maille plot r-0.05 r-0.1 r-0.2 --kind difference --quantity l1 -o spread.svg -o spread.png
   maille plot maille-out/1.1 --kind times --where 'direction<=90'
 
@@ -45,6 +48,12 @@ pub struct Args {
     /// The file, .svg or .png; may be given several times [default: maille-out/KIND-DESIGNS.svg and .png]
     #[arg(long, short, value_name = "FILE")]
     output: Vec<PathBuf>,
+    /// Pixels of a PNG for each unit of its SVG, most of which are 860 units wide
+    #[arg(long, default_value = "2", value_parser = positive)]
+    scale: f64,
+    /// A PNG of 256 colours, chosen for the figure: a third of the bytes, for web pages
+    #[arg(long)]
+    palette: bool,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -126,7 +135,9 @@ pub fn run(args: &Args) -> Result<()> {
         match format {
             Format::Svg => output::write(file, svg.as_bytes())?,
             Format::Png => {
-                let png = svg_to_png(&svg, 2.0).into_diagnostic().wrap_err("cannot draw the plot")?;
+                let png = svg_to_png(&svg, args.scale as f32)
+                    .and_then(|png| if args.palette { with_palette(&png) } else { Ok(png) });
+                let png = png.into_diagnostic().wrap_err("cannot draw the plot")?;
                 output::write(file, &png)?;
             }
         }

@@ -9,6 +9,7 @@ use crate::{
 use maille_io::{
     mesh::Tile,
     render::{Background, ColorBy, Extent, Forces, RenderError, RenderOptions, Subject, View, render},
+    with_palette,
 };
 use miette::{IntoDiagnostic, Report, Result, WrapErr};
 use std::{
@@ -70,6 +71,9 @@ pub struct Args {
     /// No shadow on the ground below the sheet
     #[arg(long)]
     no_shadow: bool,
+    /// 256 colours, chosen for the picture: a third of the bytes, for web pages
+    #[arg(long)]
+    palette: bool,
     /// The file, or - for standard output [default: maille-out/DESIGN.png, with the state in its name]
     #[arg(long)]
     out: Option<PathBuf>,
@@ -168,7 +172,10 @@ pub fn run(args: &Args) -> Result<()> {
         RenderError::NoForces => args.source.no_forces(&source),
         e => Report::new(e),
     })?;
-    let png = picture.to_png()?;
+    let mut png = picture.to_png()?;
+    if args.palette {
+        png = with_palette(&png).into_diagnostic()?;
+    }
     output::write(&out, &png)?;
     if !args.quiet && !output::is_standard(&out) {
         let ([w, h], rings) = (args.size, picture.rings);

@@ -7,6 +7,7 @@ pub mod builtin;
 pub mod design_toml;
 pub mod mesh;
 mod nearest;
+mod palette;
 pub mod plot;
 pub mod record;
 pub mod render;
@@ -15,3 +16,4 @@ pub mod weave;
 
 pub use builtin::{Builtin, builtin, builtin_designs, nearest_builtin};
 pub use design_toml::{DESIGN_JSON_SCHEMA, DesignError, DesignProblem, DesignSource, read_design, write_design};
+pub use palette::with_palette;

@@ -110,6 +110,23 @@ fn the_picture_has_the_size_asked_for_and_is_not_blank() {
 }
 
 #[test]
+fn a_palette_saves_bytes_and_keeps_the_picture() {
+    let svg = "<svg xmlns='http://www.w3.org/2000/svg' width='200' height='100'><rect width='200' height='100' fill='#fff'/>\
+        <circle cx='60' cy='50' r='40' fill='#c04010'/><circle cx='110' cy='50' r='40' fill='#2060c0' fill-opacity='0.5'/></svg>";
+    let full = svg_to_png(svg, 1.0).unwrap();
+    let small = maille_io::with_palette(&full).unwrap();
+    assert!(2 * small.len() < full.len(), "{} of {} bytes", small.len(), full.len());
+    let [full, small] = [full, small].map(|png| resvg::tiny_skia::Pixmap::decode_png(&png).unwrap());
+    assert_eq!((small.width(), small.height()), (200, 100));
+    assert_eq!(small.pixels()[0], full.pixels()[0], "the ground");
+    for (a, b) in full.pixels().iter().zip(small.pixels()) {
+        let of = |p: &resvg::tiny_skia::PremultipliedColorU8| [p.red(), p.green(), p.blue(), p.alpha()];
+        let off = of(a).into_iter().zip(of(b)).map(|(a, b)| a.abs_diff(b)).max();
+        assert!(off <= Some(24), "{a:?} became {b:?}");
+    }
+}
+
+#[test]
 fn every_letter_of_the_plot_is_in_the_font() {
     // A letter that the font lacks would be drawn as nothing or as a box: compare with text that has none.
     let draw = |text: &str| {

@@ -1,7 +1,8 @@
 //! Chores of the repository: `cargo xtask test`, `cargo xtask ci`, and the checks that `ci` is made of.
 //!
-//! It has no dependencies, so that the first command after a clone starts at once.
+//! It depends on `serde_json` alone, so that the first command after a clone starts soon.
 
+mod gallery;
 mod layers;
 mod paths;
 mod steps;
@@ -21,6 +22,9 @@ cargo xtask COMMAND
   ci       format, clippy, layers, paths, rustdoc, then test
   layers   no `use` points backward in the order of crates and modules
   paths    every path named in the documents exists
+  gallery  write docs/gallery: pictures, plots and numbers of every built-in design, by the program
+           --quick         few directions, into maille-out/gallery
+           --program PATH  this program; otherwise it is built
 ";
 
 fn main() -> ExitCode {
@@ -38,6 +42,10 @@ fn main() -> ExitCode {
         ["ci"] => steps::ci(&root),
         ["layers"] => steps::layers(&root),
         ["paths"] => steps::paths(&root),
+        ["gallery"] => steps::gallery(&root, false, None),
+        ["gallery", "--quick"] => steps::gallery(&root, true, None),
+        ["gallery", "--program", program] => steps::gallery(&root, false, Some(program)),
+        ["gallery", "--quick", "--program", program] => steps::gallery(&root, true, Some(program)),
         [] | ["help" | "--help" | "-h"] => {
             print!("{HELP}");
             return ExitCode::SUCCESS;

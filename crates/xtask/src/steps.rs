@@ -1,6 +1,6 @@
 //! The steps of `ci`, each announced and timed.
 
-use crate::{Finding, layers, paths};
+use crate::{Finding, gallery, layers, paths};
 use std::{
     path::Path,
     process::{Command, Stdio},
@@ -48,6 +48,14 @@ pub fn layers(root: &Path) -> Result<(), Failed> {
 /// The check of the paths named in the documents.
 pub fn paths(root: &Path) -> Result<(), Failed> {
     report(paths::check(root))
+}
+
+/// The gallery of the built-in designs, written anew.
+pub fn gallery(root: &Path, quick: bool, program: Option<&str>) -> Result<(), Failed> {
+    gallery::write(root, quick, program).map_err(|problem| {
+        eprintln!("xtask: {problem}");
+        Failed
+    })
 }
 
 fn report(findings: Vec<Finding>) -> Result<(), Failed> {

@@ -1,0 +1,239 @@
+//! `cargo xtask gallery`: a picture, a plot and the numbers of every built-in design, as the program gives them.
+
+use serde_json::Value;
+use std::{
+    fmt::Write,
+    fs,
+    path::{Path, PathBuf},
+    process::{Command, Stdio},
+    time::Instant,
+};
+
+/// Where the gallery is written, and where a quick one.
+const FOLDER: &str = "docs/gallery";
+const QUICK_FOLDER: &str = "maille-out/gallery";
+/// Arguments of `maille characterize`; a quick one, to see whether all is well, has few directions. One cell only:
+/// larger ones take minutes for each limit of the tighter weaves.
+const PULLS: &str = "--directions 0:180:5 --l2=0 --cell 1x1";
+const QUICK_PULLS: &str = "--directions 0:90:45 --l2=0 --cell 1x1 --starts 1";
+const RENDER: &str = "--size 440x330 --palette";
+const PLOT: &str = "--scale 0.75 --palette";
+/// Exit code of the program where some limits were not found.
+const SOME_MISSING: i32 = 5;
+
+/// Writes the gallery anew with `program`, which is built if none is given; says for each design how long it took.
+///
+/// A quick one has few directions and is written aside.
+pub fn write(root: &Path, quick: bool, program: Option<&str>) -> Result<(), String> {
+    let program = match program {
+        Some(program) => PathBuf::from(program),
+        None => build(root)?,
+    };
+    let (folder, pulls) = if quick { (QUICK_FOLDER, QUICK_PULLS) } else { (FOLDER, PULLS) };
+    let scratch = root.join("maille-out/gallery-records");
+    let house = House { program, folder: root.join(folder), scratch, pulls };
+    fs::create_dir_all(&house.folder).map_err(|e| format!("{folder} cannot be made: {e}"))?;
+    let designs = house.json("designs --json")?;
+    let mut pages = Vec::new();
+    for design in designs["designs"].as_array().ok_or("`maille designs --json` lists no designs")? {
+        let begun = Instant::now();
+        let name = design["name"].as_str().ok_or("a design has no name")?;
+        let limits = house.show(name)?;
+        let inspected = house.json(&format!("inspect {name} --json"))?;
+        pages.push(Page::of(&inspected, &limits).ok_or_else(|| format!("{name}: the program's JSON lacks a key"))?);
+        println!("{name}  {:.1} s", begun.elapsed().as_secs_f64());
+    }
+    let text = document(&pages, pulls);
+    let readme = house.folder.join("README.md");
+    fs::write(&readme, text).map_err(|e| format!("{} cannot be written: {e}", readme.display()))?;
+    println!("{folder}/README.md");
+    Ok(())
+}
+
+/// Builds the program and says where it lies.
+fn build(root: &Path) -> Result<PathBuf, String> {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let arguments = ["build", "--release", "--package", "maille-cli", "--message-format", "json-render-diagnostics"];
+    let output = Command::new(cargo).args(arguments).current_dir(root).stderr(Stdio::inherit()).output();
+    let output = output.map_err(|e| format!("cargo did not start: {e}"))?;
+    let messages = String::from_utf8_lossy(&output.stdout);
+    let executables = messages.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
+    let executable = executables.filter_map(|message| message["executable"].as_str().map(PathBuf::from)).next_back();
+    executable.filter(|_| output.status.success()).ok_or_else(|| "the program was not built".to_string())
+}
+
+struct House {
+    program: PathBuf,
+    folder: PathBuf,
+    scratch: PathBuf,
+    pulls: &'static str,
+}
+
+impl House {
+    /// Solves, draws and plots one design; gives the summary of its limits.
+    fn show(&self, name: &str) -> Result<Value, String> {
+        let record = self.scratch.join(name).to_string_lossy().into_owned();
+        let file = |ending: &str| self.folder.join(format!("{name}{ending}")).to_string_lossy().into_owned();
+        let solve = format!("characterize {name} {} --overwrite --json", self.pulls);
+        let limits = parsed(&self.run(&solve, &["--out", &record])?, &solve)?;
+        self.run(&format!("render {name} {RENDER} --quiet"), &["--out", &file(".png")])?;
+        self.run(&format!("plot {PLOT}"), &[&record, "--output", &file("-polar.png")])?;
+        Ok(limits)
+    }
+
+    fn json(&self, line: &str) -> Result<Value, String> {
+        parsed(&self.run(line, &[])?, line)
+    }
+
+    /// Runs the program; `paths` are kept apart, for they may have blanks.
+    fn run(&self, line: &str, paths: &[&str]) -> Result<Vec<u8>, String> {
+        let mut command = Command::new(&self.program);
+        command.args(line.split_whitespace()).args(paths).stdin(Stdio::null());
+        let output = command.output().map_err(|e| format!("{} did not start: {e}", self.program.display()))?;
+        let missing = line.starts_with("characterize") && output.status.code() == Some(SOME_MISSING);
+        if output.status.success() || missing {
+            return Ok(output.stdout);
+        }
+        Err(format!("`maille {line}`: {}\n{}", output.status, String::from_utf8_lossy(&output.stderr)))
+    }
+}
+
+fn parsed(text: &[u8], line: &str) -> Result<Value, String> {
+    serde_json::from_slice(text).map_err(|e| format!("`maille {line}` printed no JSON: {e}"))
+}
+
+/// The numbers of one design.
+struct Page {
+    name: String,
+    title: String,
+    unit: String,
+    rings: u64,
+    links: u64,
+    gap: f64,
+    wire: f64,
+    wire_per_area: Option<f64>,
+    reference_radius: f64,
+    /// Least and largest l1 with the direction where it is, at l2 = 0; none where no limit was found.
+    limits: Option<[(f64, f64); 2]>,
+    attained: u64,
+    asked: u64,
+}
+
+impl Page {
+    /// None if a key is missing.
+    fn of(inspected: &Value, limits: &Value) -> Option<Page> {
+        let text = |key: &str| inspected[key].as_str().map(str::to_owned);
+        let extreme = |entry: &Value| Some((entry["l1"].as_f64()?, entry["direction_deg"].as_f64()?));
+        let of_l2 = limits["limits"].as_array()?;
+        let held = of_l2.iter().find(|entry| entry["l2"].as_f64() == Some(0.0))?;
+        Some(Page {
+            name: text("design")?,
+            title: text("title").unwrap_or_default(),
+            unit: text("unit").unwrap_or_default(),
+            rings: inspected["rings"].as_u64()?,
+            links: inspected["links"].as_u64()?,
+            gap: inspected["smallest_gap"]["gap"].as_f64()?,
+            wire: inspected["wire"]["length"].as_f64()?,
+            wire_per_area: inspected["wire"]["metres_per_square_metre"].as_f64(),
+            reference_radius: inspected["reference_radius"].as_f64()?,
+            limits: extreme(&held["least"]).zip(extreme(&held["largest"])).map(|(least, largest)| [least, largest]),
+            attained: limits["statuses"]["global"].as_u64().unwrap_or(0),
+            asked: of_l2.iter().map(|entry| entry["asked"].as_u64()).sum::<Option<u64>>()?,
+        })
+    }
+
+    fn limit(&self, which: usize) -> String {
+        self.limits
+            .map_or_else(|| "none found".into(), |limits| format!("{:.4} at {}°", limits[which].0, limits[which].1))
+    }
+}
+
+fn document(pages: &[Page], pulls: &str) -> String {
+    let mut out = String::new();
+    let _ = write!(
+        out,
+        "# Gallery\n\n\
+        Every built-in design: the sheet at its start, the largest stretch in each direction, and the numbers. Written by\n\
+        `cargo xtask gallery`, which runs for each\n\n    \
+        maille characterize NAME {pulls}\n    \
+        maille render NAME {RENDER}\n    \
+        maille plot NAME {PLOT}\n    \
+        maille inspect NAME --json\n\n\
+        Lengths are relative to R, the design's reference radius; a negative gap is an overlap that the file allows at\n\
+        the start. l1 is the largest stretch along the pull, less 1, with\n\
+        the width held (l2 = 0), and the direction where it is least and largest; of equal ones the first. *Attained* says\n\
+        how many limits attain their proven bound: none of these can be larger. All are of a single cell (`--cell 1x1`);\n\
+        in a larger one, those that do not attain their bound can be larger. See\n\
+        [reading plots](../guide/reading-plots.md) and [certificates](../guide/certificates.md).\n\n\
+        | design | rings | links | smallest gap / R | wire / R | least l1 | largest l1 | attained |\n\
+        | --- | --- | --- | --- | --- | --- | --- | --- |\n"
+    );
+    for page in pages {
+        let _ = writeln!(
+            out,
+            "| [{}](#{}) | {} | {} | {:.4} | {:.2} | {} | {} | {} of {} |",
+            page.name,
+            anchor(&format!("{} {}", page.name, page.title)),
+            page.rings,
+            page.links,
+            page.gap / page.reference_radius,
+            page.wire / page.reference_radius,
+            page.limit(0),
+            page.limit(1),
+            page.attained,
+            page.asked,
+        );
+    }
+    for page in pages {
+        let name = &page.name;
+        let wire = match page.wire_per_area {
+            Some(metres) => {
+                format!("wire {:.1} {} a cell, {metres:.0} m a square metre", page.wire, page.unit)
+            }
+            None => format!("wire {:.2} a cell", page.wire),
+        };
+        let gap = format!("{:.4} {}", page.gap, page.unit);
+        let _ = write!(
+            out,
+            "\n## {name} {}\n\n\
+            {} rings and {} links a cell; smallest gap {}; {wire}.\n\n\
+            | start | limits |\n| --- | --- |\n\
+            | ![{name}, a patch of the sheet]({name}.png) | ![{name}, largest stretch in each direction]({name}-polar.png) |\n",
+            page.title,
+            page.rings,
+            page.links,
+            gap.trim_end(),
+        );
+    }
+    out
+}
+
+/// The name that a heading has in a link, as GitHub makes it.
+fn anchor(heading: &str) -> String {
+    let kept = heading.chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c));
+    kept.flat_map(char::to_lowercase).map(|c| if c == ' ' { '-' } else { c }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_page_has_the_numbers_of_the_program() {
+        let inspected = serde_json::json!({
+            "design": "4.2", "title": "Flat rings, joined", "unit": "mm", "rings": 5, "links": 8, "reference_radius": 2.0,
+            "smallest_gap": { "gap": 0.5 }, "wire": { "length": 40.0, "metres_per_square_metre": 321.4 }
+        });
+        let entry = |l2: f64, least: Value| serde_json::json!({ "l2": l2, "least": least, "largest": { "l1": 0.77403, "direction_deg": 45.0 }, "asked": 37 });
+        let least = serde_json::json!({ "l1": 0.44, "direction_deg": 0.0 });
+        let limits = serde_json::json!({ "limits": [entry(-0.25, Value::Null), entry(0.0, least)], "statuses": { "global": 70 } });
+        let text = document(&[Page::of(&inspected, &limits).unwrap()], PULLS);
+        assert!(text.contains(
+            "| [4.2](#42-flat-rings-joined) | 5 | 8 | 0.2500 | 20.00 | 0.4400 at 0° | 0.7740 at 45° | 70 of 74 |"
+        ));
+        assert!(text.contains("smallest gap 0.5000 mm; wire 40.0 mm a cell, 321 m a square metre."), "{text}");
+        let without = serde_json::json!({ "limits": [entry(0.0, Value::Null)], "statuses": {} });
+        assert_eq!(Page::of(&inspected, &without).unwrap().limit(0), "none found");
+        assert!(Page::of(&inspected, &serde_json::json!({})).is_none());
+    }
+}
