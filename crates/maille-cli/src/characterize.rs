@@ -217,12 +217,7 @@ fn once(args: &Args) -> Result<ExitCode> {
             eprintln!("warning: no chain of links joins the cells of this design; every limit is unbounded");
         }
         if open.left() < open.total() {
-            eprintln!(
-                "{} of {} limits are in {} already",
-                open.total() - open.left(),
-                open.total(),
-                map.out.display()
-            );
+            eprintln!("{} of {} limits are in {} already", open.total() - open.left(), open.total(), map.out.display());
         }
     }
     let cancel = interrupt::flag()?;

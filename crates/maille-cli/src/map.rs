@@ -74,8 +74,7 @@ impl Map {
     /// Compiles the design and opens the record, with what an earlier run has left there.
     pub fn open<'a>(&'a self, input: &'a Input) -> Result<OpenMap<'a>> {
         let cells = self.cell.cells(&self.method, input.design.elements.len());
-        let models: Vec<Model> =
-            cells.iter().map(|cell| input.compile(&input.design, *cell)).collect::<Result<_>>()?;
+        let models: Vec<Model> = cells.iter().map(|cell| input.compile(&input.design, *cell)).collect::<Result<_>>()?;
         let parameters = json!({
             "method": self.method.name(),
             "cells": cells.iter().map(Cell::to_string).collect::<Vec<_>>(),
@@ -159,9 +158,7 @@ impl OpenMap<'_> {
         let wanted = |task: Task| open.contains(&task);
         let (directions, l2) = (&map.directions_deg, &map.l2);
         let minor_radius = input.design.minor_radius;
-        pool.install(|| {
-            characterize(&models, minor_radius, &map.method, directions, l2, &wanted, cancel, &receive)
-        });
+        pool.install(|| characterize(&models, minor_radius, &map.method, directions, l2, &wanted, cancel, &receive));
         let mut collected = collected.into_inner().unwrap_or_else(|e| e.into_inner());
         if let Some(report) = collected.failure {
             return Err(report.wrap_err("the record could not be written; the run has stopped"));

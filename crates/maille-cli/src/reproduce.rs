@@ -160,21 +160,22 @@ fn plan(chosen: &[&'static str], quick: bool, out: &Path) -> Result<Vec<Planned>
     let energy = || Method::Energy(EnergyOptions::default());
     let records = out.join("records");
     let mut plan: Vec<Planned> = Vec::new();
-    let mut add = |design: Design, divisor: u32, words: &str, method: Method, cell, directions_deg: Vec<f64>, l2: &[f64]| {
-        let name = format!("{}-R{divisor}-{words}", design.name);
-        let minor_radius = design.reference_radius / f64::from(divisor);
-        let input = Input::of(design.with_minor_radius(minor_radius));
-        let map = Map {
-            method,
-            cell: CellChoice::One(cell),
-            directions_deg,
-            l2: l2.to_vec(),
-            quantity: Quantity::Lambda1,
-            out: records.join(&name),
-            overwrite: false,
+    let mut add =
+        |design: Design, divisor: u32, words: &str, method: Method, cell, directions_deg: Vec<f64>, l2: &[f64]| {
+            let name = format!("{}-R{divisor}-{words}", design.name);
+            let minor_radius = design.reference_radius / f64::from(divisor);
+            let input = Input::of(design.with_minor_radius(minor_radius));
+            let map = Map {
+                method,
+                cell: CellChoice::One(cell),
+                directions_deg,
+                l2: l2.to_vec(),
+                quantity: Quantity::Lambda1,
+                out: records.join(&name),
+                overwrite: false,
+            };
+            plan.push(Planned { name, input, map });
         };
-        plan.push(Planned { name, input, map });
-    };
     let own = Cell::PRIMITIVE;
     for &name in chosen {
         let design = read(name)?;
@@ -205,7 +206,8 @@ fn plan(chosen: &[&'static str], quick: bool, out: &Path) -> Result<Vec<Planned>
         }
         if name == "3.1" || (name == "3.2" && !quick) {
             let corners = || {
-                let options = EnergyOptions { protocol: Protocol::Corners, tau: CORNERS_TAU, ..EnergyOptions::default() };
+                let options =
+                    EnergyOptions { protocol: Protocol::Corners, tau: CORNERS_TAU, ..EnergyOptions::default() };
                 Method::Energy(options)
             };
             // The peaks and 10° beside them tell whether one is wider.
@@ -252,7 +254,9 @@ const PICTURE: [u32; 2] = [480, 360];
 fn write(out: &Path, chosen: &[&str], quick: bool, records: &[NamedRecord]) -> Result<Vec<report::Finding>> {
     let maps: Vec<report::Map> = records
         .iter()
-        .map(|named| report::Map::of(named).map_err(|e| miette!("the design of {} cannot be compiled: {e:?}", named.name)))
+        .map(|named| {
+            report::Map::of(named).map_err(|e| miette!("the design of {} cannot be compiled: {e:?}", named.name))
+        })
         .collect::<Result<_>>()?;
     let findings = statements(&maps);
     let figures = figures(records, &maps);
@@ -264,7 +268,8 @@ fn write(out: &Path, chosen: &[&str], quick: bool, records: &[NamedRecord]) -> R
         let design = read(name)?;
         let png = sheet_png(&design, PICTURE).into_diagnostic().wrap_err_with(|| format!("cannot draw {name}"))?;
         output::write(&out.join("sheets").join(format!("{name}.png")), &png)?;
-        let model = Model::compile(&design, Cell::PRIMITIVE).map_err(|e| miette!("{name} cannot be compiled: {e:?}"))?;
+        let model =
+            Model::compile(&design, Cell::PRIMITIVE).map_err(|e| miette!("{name} cannot be compiled: {e:?}"))?;
         sheets.push(Sheet {
             name: design.name,
             title: design.title,
@@ -277,7 +282,7 @@ fn write(out: &Path, chosen: &[&str], quick: bool, records: &[NamedRecord]) -> R
     output::write(&out.join("statements.json"), format!("{text}\n").as_bytes())?;
     let command = if quick { "maille reproduce --quick" } else { "maille reproduce" };
     let words = format!(
-        "Made by `{command}`, version {}, from {} records with {} limits of {} designs. Limits are those of each design's \
+        "Made by {command}, version {}, from {} records with {} limits of {} designs. Limits are those of each design's \
          own cell, as in the thesis.",
         env!("CARGO_PKG_VERSION"),
         records.len(),

@@ -46,7 +46,9 @@ fn text(path: &Path) -> String {
 fn without_times(table: &Path) -> String {
     let mut reader = csv::Reader::from_path(table).unwrap();
     let at = reader.headers().unwrap().iter().position(|name| name == "wall_s").unwrap();
-    let row = |row: csv::StringRecord| row.iter().enumerate().filter(|(k, _)| *k != at).map(|(_, c)| format!("{c};")).collect();
+    let row = |row: csv::StringRecord| {
+        row.iter().enumerate().filter(|(k, _)| *k != at).map(|(_, c)| format!("{c};")).collect()
+    };
     reader.records().map(|r| row(r.unwrap())).collect::<Vec<String>>().join("\n")
 }
 
@@ -85,6 +87,8 @@ fn killed_runs_go_on_to_the_same_files() {
     for foreign in ["src=\"http", "href=\"http", "<script", "<link", "url(", "@import"] {
         assert!(!page.contains(foreign), "{foreign}");
     }
-    assert!(page.contains("Statement 9") && page.contains("data:image/png;base64,") && page.matches("<svg").count() > 5);
+    assert!(
+        page.contains("Statement 9") && page.contains("data:image/png;base64,") && page.matches("<svg").count() > 5
+    );
     assert!(fs::read_to_string(killed.join("statements.json")).unwrap().contains("\"holds\""));
 }

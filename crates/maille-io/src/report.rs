@@ -106,18 +106,35 @@ fn ratio_label(ratio: f64) -> String {
     if (whole * ratio - 1.0).abs() < 1e-9 { format!("r = R/{whole}") } else { format!("r = {ratio} R") }
 }
 
-/// Directions of the chains of links that can bind: those that no other chains make superfluous.
+/// Directions of the shortest chains of links: of those that can bind, the ones of fewest links.
 fn interlocking(model: &Model) -> Vec<f64> {
-    let mut degrees: Vec<f64> = ChainBound::new(model)
+    let bound = ChainBound::new(model);
+    let element = |(ring, shift): (usize, [i32; 2])| (model.rings[ring].element, shift);
+    // How far each chain reaches for its length, its direction and its links.
+    let mut chains: Vec<(f64, f64, usize)> = bound
         .chains()
         .map(|chain| {
             let v = model.start.translation(chain.vector);
-            half_turn(v.y.atan2(v.x).to_degrees())
+            let links = chain.rings.windows(2).filter(|w| element(w[0]) != element(w[1])).count();
+            (half_turn(v.y.atan2(v.x).to_degrees()), v.norm() / chain.length, links)
         })
         .collect();
-    degrees.sort_by(f64::total_cmp);
-    degrees.dedup_by(|a, b| apart(*a, *b) < 1e-6);
-    degrees
+    chains.sort_by(|a, b| a.0.total_cmp(&b.0));
+    chains.dedup_by(|a, b| apart(a.0, b.0) < 1e-6);
+    // One on the straight line between its neighbours follows from them.
+    let n = chains.len();
+    let point = |k: usize| {
+        let (degrees, reach, _) = chains[k % n];
+        let (sin, cos) = (degrees + 180.0 * (k / n) as f64).to_radians().sin_cos();
+        [reach * cos, reach * sin]
+    };
+    let is_corner = |k: usize| {
+        let [a, b, c] = [k + n - 1, k + n, k + n + 1].map(point);
+        n < 3 || ((b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0])).abs() > 1e-9
+    };
+    let corners: Vec<_> = (0..n).filter(|&k| is_corner(k)).map(|k| chains[k]).collect();
+    let fewest = corners.iter().map(|chain| chain.2).min();
+    corners.into_iter().filter(|chain| Some(chain.2) == fewest).map(|chain| chain.0).collect()
 }
 
 /// Half-way between neighbouring interlocking directions.

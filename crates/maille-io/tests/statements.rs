@@ -102,7 +102,13 @@ fn statements_1_to_5_and_8_as_measured() {
     let found = statements(&maps);
     let of = |number: u32| -> &Finding { found.iter().find(|finding| finding.number == number).unwrap() };
     for finding in &found {
-        eprintln!("{} {:?}\n  {}\n  {}", finding.number, finding.verdict, finding.evidence.join("\n  "), finding.exceptions.join("\n  "));
+        eprintln!(
+            "{} {:?}\n  {}\n  {}",
+            finding.number,
+            finding.verdict,
+            finding.evidence.join("\n  "),
+            finding.exceptions.join("\n  ")
+        );
     }
     assert_eq!(of(5).verdict, Verdict::Holds);
 }

@@ -2,7 +2,9 @@
 
 use super::{Map, extreme, ratio_label, statements::SCALED};
 use crate::{
-    plot::{PolarPlot, Quantity, Ray, RayKind, Spread, difference_svg, parameter_words, polar_svg, steps_svg, times_svg},
+    plot::{
+        PolarPlot, Quantity, Ray, RayKind, Spread, difference_svg, parameter_words, polar_svg, steps_svg, times_svg,
+    },
     record::NamedRecord,
     render::{Extent, RenderError, RenderOptions, Subject, View, render},
 };
@@ -31,7 +33,8 @@ const POLAR: [(&str, &[&str]); 5] = [
 ];
 
 /// Designs that are compared in one plot of differences; those with t have the closer spacing.
-const RADII: [&[&str]; 5] = [&["1.1", "1.2", "1.3"], &["3.1", "3.2", "3.3", "3.4"], &["4.1", "4.2", "4.3"], &["2"], &["5.1", "5.2"]];
+const RADII: [&[&str]; 5] =
+    [&["1.1", "1.2", "1.3"], &["3.1", "3.2", "3.3", "3.4"], &["4.1", "4.2", "4.3"], &["2"], &["5.1", "5.2"]];
 const MAJOR: [&[&str]; 4] = [&["1.1", "1.2"], &["1.1t", "1.2t"], &["3.1", "3.2"], &["3.1t", "3.2t"]];
 
 /// All figures but the pictures of the sheets; `maps` are those of `records`, in their order.
@@ -111,7 +114,9 @@ fn polar(number: &'static str, named: &NamedRecord, map: &Map, pairs: &[(&NamedR
     plot.curves.retain(|curve| curve.kind == crate::plot::CurveKind::Limits);
     let checks = |other: &&(&NamedRecord, &Map)| {
         let b = other.1;
-        (&b.design, b.ratio, b.rearranged) == (&map.design, map.ratio, map.rearranged) && b.method == "energy" && !b.corners
+        (&b.design, b.ratio, b.rearranged) == (&map.design, map.ratio, map.rearranged)
+            && b.method == "energy"
+            && !b.corners
     };
     if let Some((check, _)) = pairs.iter().find(checks) {
         plot = plot.checked_by(&check.record.rows, "energy method");
@@ -153,7 +158,9 @@ fn costs(pairs: &[(&NamedRecord, &Map)], out: &mut Vec<Figure>) {
         }
         chosen.retain(|named| !named.record.rows.is_empty());
         // Of many sheets the curves of all directions hide each other; the table has the means of all.
-        chosen.retain(|named| ["1.1", "1.1t", "2", "3.1", "3.1t", "5.2"].contains(&named.record.run.design.name.as_str()));
+        chosen.retain(|named| {
+            ["1.1", "1.1t", "2", "3.1", "3.1t", "5.2"].contains(&named.record.run.design.name.as_str())
+        });
         if chosen.is_empty() {
             continue;
         }

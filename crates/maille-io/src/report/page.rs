@@ -30,7 +30,7 @@ h1{font-size:1.7rem;line-height:1.2;margin:.6rem 0}h2{font-size:1.3rem;margin:2.
 nav a{margin-right:.9rem;white-space:nowrap}a{color:#15498c}
 .note{color:#555;max-width:70ch}
 .finding{border:1px solid #ddd;border-left:8px solid #999;border-radius:6px;padding:.6rem .9rem;margin:.8rem 0}
-.finding p{margin:.2rem 0}.finding ul{margin:.4rem 0;padding-left:1.2rem}
+.finding p{margin:.2rem 0}.finding ul{margin:.2rem 0;padding-left:1.2rem}
 .two{display:grid;grid-template-columns:minmax(0,1fr) minmax(0,1.3fr);gap:0 1.6rem}
 .badge{display:inline-block;border-radius:4px;padding:0 .5rem;color:#fff;background:#777;font-weight:600}
 .holds{border-left-color:#1b7f4b}.holds .badge{background:#1b7f4b}
@@ -59,9 +59,9 @@ pub fn page(words: &str, findings: &[Finding], sheets: &[Sheet], maps: &[Map], f
     out += STYLE;
     out += "</style>\n</head>\n<body>\n<h1>Chapter 6, computed anew</h1>\n";
     let _ = writeln!(out, "<p class=\"note\">{}</p>", escape(words));
-    out += "<nav><a href=\"#statements\">Statements</a><a href=\"#f6.1\">6.1 cost</a><a href=\"#designs\">6.2, 6.3 designs</a>\
-            <a href=\"#f6.4\">6.4–6.9 limits</a><a href=\"#f6.10\">6.10 minor radius</a><a href=\"#f6.11\">6.11 major radius</a>\
-            <a href=\"#f6.12\">6.12 arrangement</a><a href=\"#records\">Records</a></nav>\n";
+    out += "<nav><a href=\"#statements\">Statements</a> <a href=\"#f6.1\">6.1 cost</a> <a href=\"#designs\">6.2, 6.3 designs</a> \
+            <a href=\"#f6.4\">6.4–6.9 limits</a> <a href=\"#f6.10\">6.10 minor radius</a> <a href=\"#f6.11\">6.11 major radius</a> \
+            <a href=\"#f6.12\">6.12 arrangement</a> <a href=\"#records\">Records</a></nav>\n";
     out += "<h2 id=\"statements\">What the thesis says, and what was measured</h2>\n";
     for finding in findings {
         write_finding(&mut out, finding);
@@ -90,7 +90,12 @@ pub fn page(words: &str, findings: &[Finding], sheets: &[Sheet], maps: &[Map], f
     section(&mut out, "6.6", "Figures 6.6 and 6.9: designs 3.3, 3.4", polar);
     section(&mut out, "6.7", "Figures 6.7 and 6.9: designs 4.1, 4.2, 4.3", polar);
     section(&mut out, "6.8", "Figures 6.8 and 6.9: designs 2, 5.1, 5.2", polar);
-    section(&mut out, "6.10", "Figure 6.10: effect of the minor radius", "Largest less smallest λ₁ − 1 of all directions.");
+    section(
+        &mut out,
+        "6.10",
+        "Figure 6.10: effect of the minor radius",
+        "Largest less smallest λ₁ − 1 of all directions.",
+    );
     section(
         &mut out,
         "6.11",

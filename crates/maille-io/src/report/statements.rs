@@ -1,7 +1,8 @@
 //! What chapter 6 of the thesis says, and what records say to it: one function a statement.
 //!
 //! A statement is broken into cases, as "1.1 at r = R/10 with l2 = 0". It holds if no case contradicts it, holds with
-//! exceptions if at most a quarter do, and else fails. Parts are judged apart; the worst counts.
+//! exceptions if at most a quarter do, and else fails. Parts are judged apart; the worst counts. A part that only says
+//! that something is to be seen fails where no case shows it.
 
 use super::{Map, apart, extreme, midway, ratio_label, spread, step};
 use serde::Serialize;
@@ -70,6 +71,8 @@ const MOST_EXCEPTIONS: f64 = 0.25;
 struct Cases {
     count: usize,
     exceptions: Vec<String>,
+    /// It is enough that some cases show it.
+    some: bool,
 }
 
 impl Cases {
@@ -84,6 +87,7 @@ impl Cases {
         match self.exceptions.len() {
             _ if self.count == 0 => Verdict::NotMeasured,
             0 => Verdict::Holds,
+            n if self.some && n < self.count => Verdict::HoldsWithExceptions,
             n if n as f64 <= MOST_EXCEPTIONS * self.count as f64 => Verdict::HoldsWithExceptions,
             _ => Verdict::Fails,
         }
@@ -139,7 +143,8 @@ pub fn least_along_interlocking(maps: &[Map]) -> Finding {
             let Some(turn) = map.turn(l2) else { continue };
             // The nearest direction that was computed counts.
             let reach = 0.5 * step(&turn) + 1e-6;
-            let near = |found: &[f64], wanted: &[f64]| found.iter().any(|d| wanted.iter().any(|w| apart(*d, *w) <= reach));
+            let near =
+                |found: &[f64], wanted: &[f64]| found.iter().any(|d| wanted.iter().any(|w| apart(*d, *w) <= reach));
             let (min, max) = (extreme(&turn, 1.0, map.tie()), extreme(&turn, -1.0, map.tie()));
             least.add(near(&min, &map.interlocking_deg), || format!("{}: least at {}", at(map, l2), degrees(&min)));
             largest.add(near(&max, &midway(&map.interlocking_deg)), || {
@@ -209,7 +214,7 @@ const STACKED_DEG: f64 = 15.0;
 
 /// Statement 3.
 pub fn compression_raises(maps: &[Map]) -> Finding {
-    let (mut usual, mut named) = (Cases::default(), Cases::default());
+    let (mut usual, mut named) = (Cases::default(), Cases { some: true, ..Cases::default() });
     let mut evidence = Vec::new();
     for map in maps.iter().filter(|map| map.is_plain()) {
         let compressed: Vec<f64> = map.l2().into_iter().filter(|l2| *l2 < 0.0).collect();
@@ -244,7 +249,8 @@ pub fn compression_raises(maps: &[Map]) -> Finding {
             evidence.push(format!("{}: compression lowers the limit near 0° {seen}.", map.label()));
         }
     }
-    evidence.insert(0, format!("Compression leaves or raises the limit in {} outside the named exception.", usual.score()));
+    evidence
+        .insert(0, format!("Compression leaves or raises the limit in {} outside the named exception.", usual.score()));
     // The thesis says "usually": a few do not contradict it, and are shown all the same.
     let mut found = finding(
         3,
@@ -324,13 +330,18 @@ pub fn scale(maps: &[Map]) -> Finding {
     for scaled in maps {
         let Some(name) = scaled.design.strip_suffix(SCALED) else { continue };
         let same = |map: &&Map| {
-            map.design == name && map.is_plain() && map.method == scaled.method && (map.ratio - scaled.ratio).abs() < 1e-9
+            map.design == name
+                && map.is_plain()
+                && map.method == scaled.method
+                && (map.ratio - scaled.ratio).abs() < 1e-9
         };
         let Some(map) = maps.iter().find(same) else { continue };
         for row in &scaled.rows {
             let (Some(a), Some(b)) = (row.l1, map.l1(row.direction_deg, row.l2)) else { continue };
             most = most.max((a - b).abs());
-            cases.add((a - b).abs() <= ROUNDING, || format!("{}, {}°: {b}, scaled {a}", at(map, row.l2), row.direction_deg));
+            cases.add((a - b).abs() <= ROUNDING, || {
+                format!("{}, {}°: {b}, scaled {a}", at(map, row.l2), row.direction_deg)
+            });
         }
     }
     let evidence = vec![format!("{} agree to 1e-9; largest difference of l₁ {most:.1e}.", cases.score())];
@@ -347,7 +358,9 @@ pub fn arrangement(maps: &[Map]) -> Finding {
     for map in maps.iter().filter(|map| map.design.starts_with("3.")) {
         for l2 in map.l2() {
             let Some(width) = peak_30_against_others(map, l2) else { continue };
-            let word = |l1: f64| format!("{}: beside 30° the limit is {l1:+.4} of that beside 90° and 150°", at(map, l2));
+            let word = |l1: f64| {
+                format!("{}: beside the peak at 30°, l₁ less that beside 90° and 150° is {l1:+.4}", at(map, l2))
+            };
             if map.corners && !map.rearranged {
                 biased.add(width > WIDER, || word(width));
                 evidence.push(word(width) + ".");
@@ -382,9 +395,7 @@ pub fn arrangement(maps: &[Map]) -> Finding {
 /// How much larger the limit is beside 30° than beside 90° and 150°, on average.
 fn peak_30_against_others(map: &Map, l2: f64) -> Option<f64> {
     let beside = |peak: f64, off: f64| Some((map.l1(peak - off, l2)? + map.l1(peak + off, l2)?) / 2.0);
-    [10.0, 15.0].into_iter().find_map(|off| {
-        Some(beside(30.0, off)? - (beside(90.0, off)? + beside(150.0, off)?) / 2.0)
-    })
+    [10.0, 15.0].into_iter().find_map(|off| Some(beside(30.0, off)? - (beside(90.0, off)? + beside(150.0, off)?) / 2.0))
 }
 
 /// Statement 7.
@@ -406,15 +417,26 @@ pub fn steps(maps: &[Map]) -> Finding {
         let (Some(own), Some(median)) = (mean(map, &|_| true), rest.get(rest.len() / 2)) else { continue };
         let text = format!("{}: {own:.0} steps a limit, median of the other designs {median:.0}", map.label());
         evidence.push(text.clone() + ".");
-        dense.add(own > *median, || text);
+        if map.method == "energy" {
+            dense.add(own > *median, || text);
+        }
     }
+    let mut of_exact = Cases::default();
     for map in &plain {
         let (Some(below), Some(above)) = (mean(map, &|l2| l2 < 0.0), mean(map, &|l2| l2 >= 0.0)) else { continue };
-        compressed.add(below > above, || {
+        let cases = if map.method == "energy" { &mut compressed } else { &mut of_exact };
+        cases.add(below > above, || {
             format!("{}: {below:.0} steps a limit with l₂ < 0, {above:.0} with l₂ ≥ 0", map.label())
         });
     }
-    evidence.insert(0, format!("Compressed sheets take more steps than others in {} (a map).", compressed.score()));
+    evidence.insert(
+        0,
+        format!("Energy method, the thesis's: compression takes more steps in {} (a map).", compressed.score()),
+    );
+    evidence.push(format!(
+        "The exact method takes other steps, and is not judged: compression takes more in {}.",
+        of_exact.score()
+    ));
     finding(
         7,
         "Denser topologies (3.1, 5.2) and compression (l₂ < 0) take more steps.",
@@ -423,9 +445,13 @@ pub fn steps(maps: &[Map]) -> Finding {
     )
 }
 
+/// Openings that differ by less are the same.
+const SAME_OPENING_DEG: f64 = 0.05;
+
 /// Statement 8.
 pub fn sharpness(maps: &[Map]) -> Finding {
     let mut cases = Cases::default();
+    let mut unchanged = 0;
     let mut evidence = Vec::new();
     for (thick, thin) in by_radius(maps) {
         if !thick.is_plain() || !["1.2", "4.3"].contains(&thick.design.as_str()) {
@@ -437,19 +463,31 @@ pub fn sharpness(maps: &[Map]) -> Finding {
                     continue;
                 };
                 let text = format!(
-                    "{}, {direction}°: the curve's corner opens {before:.0}°, with {} {after:.0}°",
+                    "{}, {direction}°: the curve's corner opens {before:.1}°, with {} {after:.1}°",
                     at(thick, l2),
                     ratio_label(thin.ratio)
                 );
-                if l2 == 0.0 && thick.method == "exact" {
+                if direction == 0.0 && thick.method == "exact" {
                     evidence.push(text.clone() + ".");
                 }
-                cases.add(after > before, || text);
+                unchanged += usize::from((after - before).abs() <= SAME_OPENING_DEG);
+                cases.add(after > before - SAME_OPENING_DEG, || text);
             }
         }
     }
-    evidence.insert(0, format!("The minima at 0° and 90° are blunter with the thinner ring in {}.", cases.score()));
-    finding(8, "The minima at 0° and 90° become less sharp as the minor radius falls (1.2, 4.3).", evidence, vec![cases])
+    evidence.insert(
+        0,
+        format!(
+            "The minima at 0° and 90° are no sharper with the thinner ring in {}; {unchanged} of them do not change.",
+            cases.score()
+        ),
+    );
+    finding(
+        8,
+        "The minima at 0° and 90° become less sharp as the minor radius falls (1.2, 4.3).",
+        evidence,
+        vec![cases],
+    )
 }
 
 /// The angle, seen from outside, of the corner that the polar curve of λ1 − 1 has at a direction; 180° is no corner.
@@ -496,8 +534,13 @@ pub fn shown(maps: &[Map]) -> Finding {
         }
     }
     let evidence = vec![
-        format!("Every direction has a limit, or a proof that there is none, in {} (a design, r and l₂).", cases.score()),
-        format!("In {proved} of them no direction can be reached: this l₂ > 0 is too wide for the sheet as it is drawn here."),
+        format!(
+            "Every direction has a limit, or a proof that there is none, in {} (a design, r and l₂).",
+            cases.score()
+        ),
+        format!(
+            "In {proved} of them no direction can be reached: this l₂ > 0 is too wide for the sheet as it is drawn here."
+        ),
     ];
     finding(
         9,
@@ -535,7 +578,11 @@ mod tests {
             corners: false,
             rearranged: false,
             interlocking_deg: vec![0.0, 90.0],
-            rows: l2.iter().flat_map(|&l2| (0..12).map(move |k| (15.0 * f64::from(k), l2))).map(|(d, l2)| row(d, l2)).collect(),
+            rows: l2
+                .iter()
+                .flat_map(|&l2| (0..12).map(move |k| (15.0 * f64::from(k), l2)))
+                .map(|(d, l2)| row(d, l2))
+                .collect(),
         }
     }
 
@@ -571,7 +618,10 @@ mod tests {
         assert_eq!((found.verdict, found.exceptions.len()), (Verdict::HoldsWithExceptions, 1));
         assert!(found.exceptions[0].contains("least at 15°"), "{}", found.exceptions[0]);
         // A turn with a gap tells nothing of its extremes.
-        maps.iter_mut().flat_map(|map| &mut map.rows).filter(|row| row.direction_deg == 30.0).for_each(|row| row.l1 = None);
+        maps.iter_mut()
+            .flat_map(|map| &mut map.rows)
+            .filter(|row| row.direction_deg == 30.0)
+            .for_each(|row| row.l1 = None);
         assert_eq!(least_along_interlocking(&maps).verdict, Verdict::NotMeasured);
     }
 
@@ -596,6 +646,9 @@ mod tests {
         assert_eq!(compression_raises(&both("2")).verdict, Verdict::Fails);
         let stacked = |d: f64, l2: f64| grid(d, l2, 0.0) + if d == 0.0 { l2 } else { 0.0 };
         assert_eq!(compression_raises(&[map("2", 0.1, &L2, stacked)]).verdict, Verdict::Holds);
+        // Seen at one radius of two.
+        let one = [map("2", 0.1, &L2, stacked), both("2").remove(1)];
+        assert_eq!(compression_raises(&one).verdict, Verdict::HoldsWithExceptions);
     }
 
     #[test]
@@ -646,6 +699,7 @@ mod tests {
         let with = |design: &str, steps: u64, more: u64| {
             let mut map = map(design, 0.1, &L2, |d, l2| grid(d, l2, 0.0));
             map.rows.iter_mut().for_each(|row| row.iterations = steps + if row.l2 < 0.0 { more } else { 0 });
+            map.method = "energy".into();
             map
         };
         assert_eq!(self::steps(&[with("1.1", 10, 5), with("3.1", 20, 5)]).verdict, Verdict::Holds);
