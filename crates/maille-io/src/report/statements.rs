@@ -388,7 +388,8 @@ pub fn arrangement(maps: &[Map]) -> Finding {
         "Open question: in a sheared arrangement of the same topology (3.x) the peak at 30° is wider than those at 90° and \
          150°; in a rectangular one it is not.",
         evidence,
-        vec![biased, others],
+        // What nobody looked for was not found either.
+        if biased.count == 0 { vec![biased] } else { vec![biased, others] },
     )
 }
 
@@ -690,6 +691,7 @@ mod tests {
         let corners = Map { corners: true, ..map("3.1", 0.1, &[0.0], wide) };
         assert_eq!(arrangement(&[even.clone(), corners.clone()]).verdict, Verdict::Holds);
         assert_eq!(arrangement(&[even.clone(), Map { corners: true, ..even.clone() }]).verdict, Verdict::Fails);
+        assert_eq!(arrangement(std::slice::from_ref(&even)).verdict, Verdict::NotMeasured, "no corners, no finding");
         let material = map("3.1", 0.1, &[0.0], wide);
         assert_eq!(arrangement(&[material, corners]).verdict, Verdict::Fails, "then it is the material");
     }
