@@ -1,9 +1,10 @@
 //! `maille characterize`: limits over directions and lateral strains, written as a record.
 
 use crate::{
-    exit::{self, wrong},
+    exit,
     input::{Input, file_name},
     interrupt,
+    map::{CellChoice, Map, pool, unanswered},
     numbers::{Numbers, parse, parse_cell, parse_l2, positive},
     output,
     plot::Shown,
@@ -12,28 +13,13 @@ use crate::{
     watch::watch,
 };
 use maille::{
-    characterize::{Finished, Method, Task, characterize, tasks},
+    characterize::Method,
     energy::{HessianMethod, MinimaMethod, target::Protocol},
-    lattice::Cell,
     limit::{energy::EnergyOptions, exact::ExactOptions},
-    model::Model,
-    record::{LimitRow, StateRecord, Status},
+    record::Status,
 };
-use maille_io::{
-    plot::{PolarPlot, parameter_words, polar_svg, svg_to_png},
-    record::RecordFolder,
-};
-use miette::{IntoDiagnostic, Result, WrapErr};
-use serde_json::json;
-use std::{
-    path::PathBuf,
-    process::ExitCode,
-    sync::{
-        Mutex,
-        atomic::{AtomicBool, Ordering},
-    },
-    time::{Duration, Instant},
-};
+use miette::Result;
+use std::{path::PathBuf, process::ExitCode, time::Instant};
 
 /// How far a sheet stretches in each direction before it locks
 ///
@@ -135,36 +121,10 @@ struct EnergyArgs {
 }
 
 /// `auto`, or one cell.
-#[derive(Clone, Copy)]
-enum CellChoice {
-    Auto,
-    One(Cell),
-}
-
-/// Cells that `auto` may go on to, in this order.
-const LARGER: [&str; 4] = ["2x1", "1x2", "2x2", "3x3"];
-/// Elements in a cell that `auto` goes on to, at most.
-const MOST_ELEMENTS: usize = 40;
-
 fn cell_choice(text: &str) -> Result<CellChoice, String> {
     match text {
         "auto" => Ok(CellChoice::Auto),
         _ => parse_cell(text).map(CellChoice::One),
-    }
-}
-
-impl CellChoice {
-    /// The cells to compile: for the energy method `auto` is the design's own.
-    fn cells(self, method: MethodArg, elements: usize) -> Vec<Cell> {
-        match (self, method) {
-            (CellChoice::One(cell), _) => vec![cell],
-            (CellChoice::Auto, MethodArg::Energy) => vec![Cell::PRIMITIVE],
-            (CellChoice::Auto, MethodArg::Exact) => {
-                let larger = LARGER.iter().filter_map(|text| text.parse::<Cell>().ok());
-                let larger = larger.filter(|cell| cell.copies() * elements <= MOST_ELEMENTS);
-                std::iter::once(Cell::PRIMITIVE).chain(larger).collect()
-            }
-        }
     }
 }
 
@@ -228,30 +188,6 @@ impl EnergyArgs {
     }
 }
 
-/// The rows found so far, in the order of the tasks, and when they were last written.
-struct Collected {
-    folder: RecordFolder,
-    rows: Vec<Option<(LimitRow, StateRecord)>>,
-    written: Instant,
-    failure: Option<miette::Report>,
-}
-
-/// A record is written at most this often while limits come in.
-const WRITE_INTERVAL: Duration = Duration::from_secs(1);
-
-impl Collected {
-    fn finished(&self) -> (Vec<LimitRow>, Vec<StateRecord>) {
-        self.rows.iter().flatten().cloned().unzip()
-    }
-
-    fn write(&mut self) -> Result<()> {
-        let (rows, states) = self.finished();
-        self.folder.write(&rows, &states)?;
-        self.written = Instant::now();
-        Ok(())
-    }
-}
-
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
     match args.watch {
@@ -262,92 +198,39 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 
 fn once(args: &Args) -> Result<ExitCode> {
     let input = Input::read(&args.design, args.minor_radius)?;
-    let cells = args.cell.cells(args.method, input.design.elements.len());
-    let models: Vec<Model> = cells.iter().map(|cell| input.compile(&input.design, *cell)).collect::<Result<_>>()?;
-    let method = match args.method {
-        MethodArg::Exact => Method::Exact(ExactOptions { starts: args.starts.max(1), seed: args.seed }),
-        MethodArg::Energy => Method::Energy(args.energy.options(args.seed)),
-    };
-    let parameters = json!({
-        "method": method.name(),
-        "cells": cells.iter().map(Cell::to_string).collect::<Vec<_>>(),
-        "directions_deg": args.directions.0,
-        "l2": args.l2.0,
-        "options": match &method {
-            Method::Exact(options) => json!(options.parameters()),
-            Method::Energy(options) => json!(options.parameters(&models[0])),
+    let map = Map {
+        method: match args.method {
+            MethodArg::Exact => Method::Exact(ExactOptions { starts: args.starts.max(1), seed: args.seed }),
+            MethodArg::Energy => Method::Energy(args.energy.options(args.seed)),
         },
-    });
-    let out = args.out.clone().unwrap_or_else(|| PathBuf::from("maille-out").join(file_name(&input.design.name)));
-    if out.is_file() {
-        let help = "name another folder with --out";
-        return Err(wrong(exit::USAGE, format!("{} is a file; a record is a folder", out.display()), help));
-    }
-    let version = env!("CARGO_PKG_VERSION");
-    let (folder, old_rows, old_states) =
-        RecordFolder::open(&out, &input.design, &parameters, version, args.overwrite || args.watch)?;
-
-    let all = tasks(&args.directions.0, &args.l2.0);
-    let mut rows: Vec<Option<(LimitRow, StateRecord)>> = vec![None; all.len()];
-    for (row, state) in old_rows.into_iter().zip(old_states) {
-        if let Some(k) = all.iter().position(|t| (t.direction_deg, t.l2) == (row.direction_deg, row.l2)) {
-            rows[k] = Some((row, state));
-        }
-    }
-    let open: Vec<Task> = all.iter().zip(&rows).filter(|(_, row)| row.is_none()).map(|(task, _)| *task).collect();
+        cell: args.cell,
+        directions_deg: args.directions.0.clone(),
+        l2: args.l2.0.clone(),
+        quantity: args.quantity.into(),
+        out: args.out.clone().unwrap_or_else(|| PathBuf::from("maille-out").join(file_name(&input.design.name))),
+        overwrite: args.overwrite || args.watch,
+    };
+    let begun = Instant::now();
+    let open = map.open(&input)?;
     if !args.quiet {
-        if maille::topology::binding_vectors(&models[0]).is_empty() {
+        if open.is_unbounded() {
             eprintln!("warning: no chain of links joins the cells of this design; every limit is unbounded");
         }
-        if open.len() < all.len() {
-            eprintln!("{} of {} limits are in {} already", all.len() - open.len(), all.len(), out.display());
+        if open.left() < open.total() {
+            eprintln!("{} of {} limits are in {} already", open.total() - open.left(), open.total(), map.out.display());
         }
     }
-
     let cancel = interrupt::flag()?;
-    let cancel: &AtomicBool = &cancel;
-    let progress = Progress::new(open.len() as u64, args.quiet);
-    let collected = Mutex::new(Collected { folder, rows, written: Instant::now(), failure: None });
-    let receive = |found: Finished| {
-        let row = &found.row;
-        progress.step(format!("{}°, l2 = {}", row.direction_deg, row.l2));
-        let mut collected = collected.lock().unwrap_or_else(|e| e.into_inner());
-        if let Some(k) = all.iter().position(|t| (t.direction_deg, t.l2) == (row.direction_deg, row.l2)) {
-            collected.rows[k] = Some((found.row, found.state));
-        }
-        if collected.written.elapsed() >= WRITE_INTERVAL
-            && let Err(report) = collected.write()
-        {
-            collected.failure = Some(report);
-            cancel.store(true, Ordering::Relaxed);
-        }
-    };
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(args.threads.map_or(0, usize::from))
-        .build()
-        .into_diagnostic()
-        .wrap_err("cannot start the threads")?;
-    let begun = Instant::now();
-    let (directions, l2) = (&args.directions.0, &args.l2.0);
-    let wanted = |task: Task| open.contains(&task);
-    pool.install(|| {
-        characterize(&models, input.design.minor_radius, &method, directions, l2, &wanted, cancel, &receive)
-    });
+    let pool = pool(args.threads)?;
+    let (left, total) = (open.left(), open.total());
+    let progress = Progress::new(left as u64, args.quiet);
+    let rows = open.run(&pool, &cancel, &|row| progress.step(format!("{}°, l2 = {}", row.direction_deg, row.l2)));
     progress.finish();
-    let mut collected = collected.into_inner().unwrap_or_else(|e| e.into_inner());
-    if let Some(report) = collected.failure {
-        return Err(report.wrap_err("the record could not be written; the run has stopped"));
-    }
-    collected.write()?;
+    let rows = rows?;
 
-    let (rows, _) = collected.finished();
-    let words = parameter_words(&parameters);
-    let svg = polar_svg(&PolarPlot::from_rows(&input.design, &rows, args.quantity.into(), &words));
-    let png = svg_to_png(&svg, 2.0).into_diagnostic().wrap_err("cannot draw the plot")?;
-    collected.folder.write_polar(&svg, &png)?;
-    let interrupted = cancel.load(Ordering::Relaxed);
-    let solved = rows.iter().filter(|r| r.status != Status::Interrupted).count() - (all.len() - open.len());
-    let summary = Summary::new(&input.design.name, &rows, solved, begun.elapsed(), interrupted, &out);
+    let interrupted = cancel.load(std::sync::atomic::Ordering::Relaxed);
+    let solved = rows.iter().filter(|r| r.status != Status::Interrupted).count() - (total - left);
+    let summary = Summary::new(&input.design.name, &rows, solved, begun.elapsed(), interrupted, &map.out);
     if args.json {
         output::print_json(&summary)?;
     } else if !args.quiet {
@@ -356,15 +239,6 @@ fn once(args: &Args) -> Result<ExitCode> {
     if interrupted && !args.quiet {
         eprintln!("interrupted; the same command goes on from here");
     }
-    // A proof that there is no limit is an answer.
-    let unanswered = |r: &LimitRow| match r.status {
-        Status::Global | Status::Local | Status::ThresholdReached | Status::L2Unreachable | Status::Unbounded => false,
-        Status::Uncertified
-        | Status::L2NotReached
-        | Status::NotConverged
-        | Status::InfeasibleStart
-        | Status::Interrupted => true,
-    };
     Ok(ExitCode::from(match () {
         () if interrupted => exit::INTERRUPTED,
         () if rows.iter().any(unanswered) => exit::INCOMPLETE,

@@ -2,7 +2,7 @@
 
 use crate::exit::{self, wrong};
 use maille::{design::Design, error::InvalidInput, lattice::Cell, model::Model};
-use maille_io::{DesignError, DesignSource, builtin, builtin_designs, nearest_builtin};
+use maille_io::{DesignError, DesignSource, builtin, builtin_designs, nearest_builtin, write_design};
 use miette::{IntoDiagnostic, Report, Result, WrapErr};
 use serde_json::{Value, json};
 use std::{io::Read, path::Path};
@@ -47,6 +47,12 @@ impl Input {
             design = design.with_minor_radius(r);
         }
         Ok(Input { design, source, minor_radius })
+    }
+
+    /// A design that is no file.
+    pub fn of(design: Design) -> Input {
+        let source = DesignSource::new(format!("{} (made by the program)", design.name), write_design(&design));
+        Input { design, source, minor_radius: None }
     }
 
     /// Compiles the design for `cell`; what is wrong is shown at its place in the file, or, where it comes from

@@ -12,6 +12,7 @@ mod export;
 mod input;
 mod inspect;
 mod interrupt;
+mod map;
 mod new;
 mod numbers;
 mod output;
@@ -20,6 +21,7 @@ mod progress;
 mod records;
 mod render;
 mod replay;
+mod reproduce;
 mod schema;
 mod source;
 mod summary;
@@ -40,6 +42,7 @@ Examples:
   maille characterize 1.1                 its limits, as a table and a polar plot in maille-out/1.1/
   maille characterize my-weave.toml --directions 0:90:5 --l2 0
   maille replay maille-out/1.3            solve the rows without a limit again
+  maille reproduce --quick                chapter 6 of the thesis, computed anew
   maille new shirt --weave european-4-in-1 --wire 16swg --id 5/16in
   maille check my-weave.toml              is the file right, do rings overlap?
 
@@ -66,6 +69,7 @@ enum Command {
     New(new::Args),
     Designs(designs::Args),
     Replay(replay::Args),
+    Reproduce(reproduce::Args),
     Export(export::Args),
     Render(render::Args),
     Plot(plot::Args),
@@ -85,6 +89,7 @@ fn main() -> ExitCode {
         Command::Check(args) => check::run(&args),
         Command::New(args) => done(new::run(&args)),
         Command::Replay(args) => replay::run(&args),
+        Command::Reproduce(args) => reproduce::run(&args),
         Command::Designs(args) => done(designs::run(&args)),
         Command::Export(args) => done(export::run(&args)),
         Command::Render(args) => done(render::run(&args)),

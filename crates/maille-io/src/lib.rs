@@ -1,4 +1,4 @@
-//! Formats of maille: design files, records, tables, plots, meshes, pictures.
+//! Formats of maille: design files, records, tables, plots, meshes, pictures, the report on the thesis.
 //!
 //! Everything here works on text, bytes and readers; only doors open paths. The one exception is
 //! [`record::RecordFolder`], which owns a folder because its writes must be atomic.
@@ -11,6 +11,7 @@ mod palette;
 pub mod plot;
 pub mod record;
 pub mod render;
+pub mod report;
 pub mod table;
 pub mod weave;
 

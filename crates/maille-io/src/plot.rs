@@ -19,6 +19,6 @@ pub use compare::parameter_words;
 pub use curve::{Curve, CurveKind};
 pub use difference::{Spread, difference_svg};
 pub use png::{PlotError, svg_to_png};
-pub use polar::{PolarPlot, Quantity, polar_svg};
+pub use polar::{PolarPlot, Quantity, Ray, RayKind, polar_svg};
 pub use steps::steps_svg;
 pub use times::times_svg;

@@ -158,7 +158,9 @@ fn report(
         min_multiplier: certificate.map(|c| c.min_multiplier).filter(|m| m.is_finite()),
         min_curvature: certificate.and_then(|c| c.min_curvature).filter(|m| m.is_finite()),
         zero_modes: certificate.map(|c| c.zero_modes as u64),
-        links_ok: exact.and_then(|e| e.links_ok),
+        links_ok: exact
+            .and_then(|e| e.links_ok)
+            .or_else(|| earned.then(|| topology::links_kept(model, &outcome.state))),
         n_starts: exact.map(|e| e.n_starts),
         n_distinct: exact.map(|e| e.n_distinct),
         own_image_force: exact.and_then(|e| e.own_image_force),

@@ -7,6 +7,8 @@ pub enum CurveKind {
     Limits,
     /// A bound: dashed, without markers.
     Bound,
+    /// Limits of another record of the same sheet: markers without a line.
+    Check,
 }
 
 /// One value a direction, of one record and one l2: these give line, colour and marker.

@@ -77,8 +77,53 @@ pub struct PolarPlot {
     pub records: (String, Vec<String>),
     /// Curves, in the order of the legend.
     pub curves: Vec<Curve>,
+    /// Directions that are marked.
+    pub rays: Vec<Ray>,
+    /// Of the curves of kind [`CurveKind::Check`]: what they are; otherwise empty.
+    pub check: String,
     /// Paragraphs below the plot.
     pub caption: Vec<String>,
+}
+
+/// A direction that a plot marks, with its opposite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// Degrees counter-clockwise from x.
+    pub degrees: f64,
+    /// What it is.
+    pub kind: RayKind,
+}
+
+/// What a marked direction is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RayKind {
+    /// Neighbours interlock along it.
+    Interlocking,
+    /// The limit is largest.
+    Largest,
+    /// The limit is least.
+    Least,
+}
+
+impl RayKind {
+    const ALL: [RayKind; 3] = [RayKind::Interlocking, RayKind::Largest, RayKind::Least];
+
+    fn look(self) -> Look {
+        let (color, width, dash) = match self {
+            RayKind::Interlocking => ("#c1121f", 1.6, ""),
+            RayKind::Largest => ("#111111", 1.3, "6 4"),
+            RayKind::Least => ("#111111", 4.0, ""),
+        };
+        Look { color: color.into(), width, dash, ..look::hollow() }
+    }
+
+    fn label(self) -> &'static str {
+        match self {
+            RayKind::Interlocking => "interlocking direction",
+            RayKind::Largest => "largest limit",
+            RayKind::Least => "least limit (at the rim)",
+        }
+    }
 }
 
 impl PolarPlot {
@@ -100,7 +145,15 @@ impl PolarPlot {
         caption.extend(missing(rows, |row| quantity.of(row)));
         let curves = l2.iter().map(|&l2| limits(0, rows, l2, quantity));
         let curves = curves.chain(l2.iter().filter(open).map(bound)).collect();
-        Self { title: heading(design), quantity, records: Default::default(), curves, caption }
+        Self {
+            title: heading(design),
+            quantity,
+            records: Default::default(),
+            curves,
+            rays: Vec::new(),
+            check: String::new(),
+            caption,
+        }
     }
 
     /// The plot of several records: one curve for each record and l2, without bounds.
@@ -113,7 +166,30 @@ impl PolarPlot {
         let mut caption = captions(records, &labels.1);
         caption.push(symmetry(quantity));
         let curves = records.iter().enumerate().flat_map(curve).collect();
-        Self { title: title(records), quantity, records: labels, curves, caption }
+        Self {
+            title: title(records),
+            quantity,
+            records: labels,
+            curves,
+            rays: Vec::new(),
+            check: String::new(),
+            caption,
+        }
+    }
+
+    /// The same plot with the limits of another record of this sheet as markers, which `what` names in the legend. Only
+    /// these have markers then, and bounds are left out.
+    pub fn checked_by(mut self, rows: &[LimitRow], what: &str) -> Self {
+        self.curves.retain(|curve| curve.kind == CurveKind::Limits);
+        let quantity = self.quantity;
+        let check = |l2: f64| {
+            let mut curve = limits(0, rows, l2, quantity);
+            curve.kind = CurveKind::Check;
+            curve
+        };
+        self.curves.extend(l2_values(rows.iter()).into_iter().map(check));
+        self.check = what.into();
+        self
     }
 
     fn l2(&self) -> Vec<f64> {
@@ -130,7 +206,7 @@ impl PolarPlot {
         let look = |curve: &Curve| {
             let l2_look = &of_l2[l2.iter().position(|x| *x == curve.l2).unwrap_or(0)];
             match (of_record.get(curve.record), curve.kind) {
-                (None, CurveKind::Limits) => l2_look.clone(),
+                (None, CurveKind::Limits | CurveKind::Check) => l2_look.clone(),
                 (None, CurveKind::Bound) => Look { width: 1.4, dash: "5 4", ..l2_look.clone() },
                 (Some(look), _) if l2.len() > 1 => look.with_l2(l2_look),
                 (Some(look), _) => look.clone(),
@@ -180,11 +256,13 @@ pub fn polar_svg(input: &PolarPlot) -> String {
     back_to_front.sort_by(|a, b| (a.0.record.cmp(&b.0.record)).then(b.0.l2.abs().total_cmp(&a.0.l2.abs())));
     frame.svg(CENTER[1] + RADIUS + 22.0, |canvas| {
         draw_grid(canvas, &scale, input.quantity.base());
-        for (curve, look) in &back_to_front {
+        draw_rays(canvas, &input.rays);
+        for (curve, look) in back_to_front.iter().filter(|(curve, _)| curve.kind != CurveKind::Check) {
             draw_line(canvas, curve, look, &scale);
         }
         draw_ticks(canvas, &scale, input);
-        for (curve, look) in &back_to_front {
+        let marked = if input.check.is_empty() { CurveKind::Limits } else { CurveKind::Check };
+        for (curve, look) in back_to_front.iter().filter(|(curve, _)| curve.kind == marked) {
             draw_markers(canvas, curve, look, &scale, input.records.1.len());
         }
     })
@@ -224,6 +302,17 @@ fn draw_grid(canvas: &mut Canvas, scale: &Scale, base: f64) {
             Stroke::solid(GRID, 1.0)
         };
         canvas.circle(CENTER, radius, "none", stroke);
+    }
+}
+
+/// Along each direction and its opposite.
+fn draw_rays(canvas: &mut Canvas, rays: &[Ray]) {
+    for ray in rays {
+        let look = ray.kind.look();
+        let from = if ray.kind == RayKind::Least { 0.95 * RADIUS } else { 0.0 };
+        for degrees in [ray.degrees, ray.degrees + 180.0] {
+            canvas.line(polar(degrees, from), polar(degrees, RADIUS), look.stroke());
+        }
     }
 }
 
@@ -275,9 +364,6 @@ fn line_points(curve: &Curve, scale: &Scale) -> Vec<[f64; 2]> {
 
 /// Of several records each has its markers at other directions, so that they do not hide each other.
 fn draw_markers(canvas: &mut Canvas, curve: &Curve, look: &Look, scale: &Scale, records: usize) {
-    if curve.kind == CurveKind::Bound {
-        return;
-    }
     let turn = curve.turn();
     let every = turn.len().div_ceil(if records > 1 { 24 } else { 72 }).max(1);
     let first = (curve.record * every / records.max(1)) % every;
@@ -316,9 +402,12 @@ fn legend(input: &PolarPlot, looks: &[Look], scale: &Scale) -> Vec<Entry> {
         out.extend(of_limits.map(|(curve, look)| Entry::Sample {
             look: look.clone(),
             line: true,
-            marker: true,
+            marker: input.check.is_empty(),
             label: label(curve.l2),
         }));
+        if !input.check.is_empty() {
+            out.push(Entry::Sample { look: look::hollow(), line: false, marker: true, label: input.check.clone() });
+        }
     } else if l2.len() > 1 {
         let samples = l2.iter().zip(look::of_l2(&l2));
         out.extend(samples.map(|(l2, look)| {
@@ -330,6 +419,12 @@ fn legend(input: &PolarPlot, looks: &[Look], scale: &Scale) -> Vec<Entry> {
         let look = Look { color: SOFT.into(), ..look.clone() };
         out.push(Entry::Sample { look, line: true, marker: false, label: "proven bound".into() });
     }
+    let kinds = RayKind::ALL.into_iter().filter(|kind| input.rays.iter().any(|ray| ray.kind == *kind));
+    out.extend(kinds.enumerate().flat_map(|(i, kind)| {
+        let heading = (i == 0).then(|| Entry::Heading("Directions".into()));
+        let sample = Entry::Sample { look: kind.look(), line: true, marker: false, label: kind.label().into() };
+        heading.into_iter().chain([sample])
+    }));
     out.push(Entry::Heading(format!("Radius: {}", input.quantity.symbol())));
     let base = input.quantity.base();
     let place = if scale.low < base { "dotted circle" } else { "centre" };

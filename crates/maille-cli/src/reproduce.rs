@@ -1,0 +1,294 @@
+//! `maille reproduce`: which maps chapter 6 of the thesis needs, and the files that are made of their records.
+
+use crate::{
+    exit::{self, wrong},
+    input::Input,
+    interrupt,
+    map::{CellChoice, Map, OpenMap, pool, unanswered},
+    output::{self, say},
+    progress::Progress,
+    records,
+};
+use maille::{
+    characterize::Method,
+    design::{Design, Source},
+    energy::target::Protocol,
+    lattice::Cell,
+    limit::{energy::EnergyOptions, exact::ExactOptions},
+    model::Model,
+};
+use maille_io::{
+    DesignSource, builtin,
+    plot::Quantity,
+    record::NamedRecord,
+    report::{self, SCALED, Sheet, Verdict, figures, page, sheet_png, statements},
+};
+use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use serde_json::json;
+use std::{
+    path::{Path, PathBuf},
+    process::ExitCode,
+    sync::atomic::Ordering,
+};
+
+/// Chapter 6 of the thesis computed anew: its statements, figures and tables on one page
+///
+/// Writes a folder with index.html (each statement beside what was measured), figures/, sheets/ (pictures of the designs),
+/// statements.json, and records/ with one record for each design, radius and method, as `maille characterize` writes
+/// them. A run that was stopped goes on where it was with the same command.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  maille reproduce --quick                      coarse: directions every 15\u{b0}, little of the energy method
+  maille reproduce                              directions every 5\u{b0}, both methods
+  maille reproduce --designs 1.1,1.2 --out mine --threads 4
+  maille plot reproduction/records/3.1-R10-exact --quantity lambda1 -o 3.1.svg
+
+Limits are those of each design's own cell, as in the thesis, and of the rectangular cell for 3.x.
+
+Exit codes: 0 every limit was found or proved not to be there, 5 the page is written but some were not found, \
+130 interrupted.")]
+pub struct Args {
+    /// Folder of all that is made [default: reproduction, or reproduction-quick]
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// Coarse, in minutes
+    #[arg(long)]
+    quick: bool,
+    /// Threads [default: all cores]; results do not depend on it
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+    /// Only these designs, as 1.1,3.1, with their closer variants [default: the thirteen of the thesis]
+    #[arg(long, value_delimiter = ',', value_name = "NAMES")]
+    designs: Vec<String>,
+    /// No progress and no summary
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+/// Designs of the thesis, in its order.
+const DESIGNS: [&str; 13] = ["1.1", "1.2", "1.3", "2", "3.1", "3.2", "3.3", "3.4", "4.1", "4.2", "4.3", "5.1", "5.2"];
+/// Designs of which there is a variant with a closer spacing, `1.1t`.
+const CLOSER: [&str; 4] = ["1.1", "1.2", "3.1", "3.2"];
+/// Divisors of R: the minor radii of the thesis.
+const DIVISORS: [u32; 2] = [10, 20];
+/// The rectangular cell of a triangular lattice.
+const RECTANGULAR: &str = "1,0;-1,2";
+/// Two cells of 3.x and the thesis's corner distances, with a threshold as large as a plot can show.
+const CORNERS_TAU: f64 = 0.1;
+/// Statement 5: 1.1 in another size. No power of two, so that rounding differs.
+const SCALE: (&str, f64) = ("1.1", 7.3);
+
+const L2: [f64; 6] = [-0.375, -0.25, -0.125, 0.0, 0.125, 0.25];
+
+/// A map with its design.
+struct Planned {
+    name: String,
+    input: Input,
+    map: Map,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<ExitCode> {
+    let chosen = chosen(&args.designs)?;
+    let usual = if args.quick { "reproduction-quick" } else { "reproduction" };
+    let out = args.out.clone().unwrap_or_else(|| usual.into());
+    if out.is_file() {
+        let help = "name another folder with --out";
+        return Err(wrong(exit::USAGE, format!("{} is a file; a folder is written", out.display()), help));
+    }
+    let plan = plan(&chosen, args.quick, &out)?;
+    let open: Vec<OpenMap<'_>> = plan.iter().map(|p| p.map.open(&p.input)).collect::<Result<_>>()?;
+    let (left, total) = (open.iter().map(OpenMap::left).sum::<usize>(), open.iter().map(OpenMap::total).sum::<usize>());
+    if !args.quiet && left < total {
+        eprintln!("{} of {total} limits are in {} already", total - left, out.display());
+    }
+    let cancel = interrupt::flag()?;
+    let pool = pool(args.threads)?;
+    let progress = Progress::new(left as u64, args.quiet);
+    let mut without = 0;
+    for (planned, open) in plan.iter().zip(open) {
+        let name = &planned.name;
+        let found = |row: &maille::record::LimitRow| {
+            progress.step(format!("{name}: {}°, l2 = {}", row.direction_deg, row.l2));
+        };
+        let rows = open.run(&pool, &cancel, &found)?;
+        without += rows.iter().filter(|row| unanswered(row)).count();
+        if cancel.load(Ordering::Relaxed) {
+            progress.finish();
+            if !args.quiet {
+                eprintln!("interrupted; the same command goes on from here");
+            }
+            return Ok(ExitCode::from(exit::INTERRUPTED));
+        }
+    }
+    progress.finish();
+    let records = records::read(&plan.iter().map(|p| p.map.out.clone()).collect::<Vec<_>>())?;
+    let findings = pool.install(|| write(&out, &chosen, args.quick, &records))?;
+    if !args.quiet {
+        for finding in &findings {
+            say!("statement {}: {}", finding.number, finding.verdict.words());
+        }
+        let unmeasured = findings.iter().filter(|f| f.verdict == Verdict::NotMeasured).count();
+        if unmeasured > 0 {
+            say!("{unmeasured} need other designs than these");
+        }
+        say!("{total} limits in {} records; {without} were not found", plan.len());
+        say!("look at {}", out.join("index.html").display());
+    }
+    Ok(ExitCode::from(if without > 0 { exit::INCOMPLETE } else { exit::DONE }))
+}
+
+/// The designs that are asked for, in the order of the thesis.
+fn chosen(names: &[String]) -> Result<Vec<&'static str>> {
+    if let Some(unknown) = names.iter().find(|name| !DESIGNS.contains(&name.as_str())) {
+        return Err(wrong(
+            exit::USAGE,
+            format!("\"{unknown}\" is no design of chapter 6"),
+            format!("there are {}; their closer variants come with them", DESIGNS.join(", ")),
+        ));
+    }
+    Ok(DESIGNS.into_iter().filter(|d| names.is_empty() || names.iter().any(|name| name == d)).collect())
+}
+
+/// Every map of the run.
+fn plan(chosen: &[&'static str], quick: bool, out: &Path) -> Result<Vec<Planned>> {
+    let step = if quick { 15.0 } else { 5.0 };
+    let turn = |step: f64| -> Vec<f64> { (0..(180.0 / step) as u32).map(|k| step * f64::from(k)).collect() };
+    let rectangular: Cell = RECTANGULAR.parse().map_err(|e| miette!("{e:?}"))?;
+    let exact = || Method::Exact(ExactOptions::default());
+    let energy = || Method::Energy(EnergyOptions::default());
+    let records = out.join("records");
+    let mut plan: Vec<Planned> = Vec::new();
+    let mut add =
+        |design: Design, divisor: u32, words: &str, method: Method, cell, directions_deg: Vec<f64>, l2: &[f64]| {
+            let name = format!("{}-R{divisor}-{words}", design.name);
+            let minor_radius = design.reference_radius / f64::from(divisor);
+            let input = Input::of(design.with_minor_radius(minor_radius));
+            let map = Map {
+                method,
+                cell: CellChoice::One(cell),
+                directions_deg,
+                l2: l2.to_vec(),
+                quantity: Quantity::Lambda1,
+                out: records.join(&name),
+                overwrite: false,
+            };
+            plan.push(Planned { name, input, map });
+        };
+    let own = Cell::PRIMITIVE;
+    for &name in chosen {
+        let design = read(name)?;
+        let l2 = if ["1.1", "1.2"].contains(&name) { &L2[..] } else { &L2[1..] };
+        let by_text = design.source == Source::ThesisText;
+        for divisor in DIVISORS {
+            add(design.clone(), divisor, "exact", exact(), own, turn(step), l2);
+            let sheared = name.starts_with("3.");
+            if sheared && !(quick && name == "3.4") {
+                add(design.clone(), divisor, "exact-rectangular", exact(), rectangular, turn(step), l2);
+            }
+            if by_text && !quick {
+                add(design.clone(), divisor, "energy", energy(), own, turn(step), l2);
+            }
+            if by_text && sheared && !quick {
+                add(design.clone(), divisor, "energy-rectangular", energy(), rectangular, turn(step), l2);
+            }
+            if CLOSER.contains(&name) {
+                let closer = read(&format!("{name}t"))?;
+                add(closer.clone(), divisor, "exact", exact(), own, turn(step), &[0.125, 0.25]);
+                if !quick {
+                    add(closer, divisor, "energy", energy(), own, turn(step), &[0.125, 0.25]);
+                }
+            }
+        }
+        if quick && ["1.1", "3.1"].contains(&name) {
+            add(design.clone(), 10, "energy", energy(), own, turn(30.0), &[-0.25, 0.0]);
+        }
+        if name == "3.1" || (name == "3.2" && !quick) {
+            let corners = || {
+                let options =
+                    EnergyOptions { protocol: Protocol::Corners, tau: CORNERS_TAU, ..EnergyOptions::default() };
+                Method::Energy(options)
+            };
+            // The peaks and 10° beside them tell whether one is wider.
+            let peaks = [30.0, 90.0, 150.0].map(|peak| [peak - 10.0, peak, peak + 10.0]).concat();
+            let directions = if quick { peaks } else { turn(step) };
+            add(design.clone(), 10, "corners", corners(), own, directions.clone(), &[0.0]);
+            add(design.clone(), 10, "corners-rectangular", corners(), rectangular, directions, &[0.0]);
+        }
+        if name == SCALE.0 {
+            add(scaled(&design, SCALE.1), 10, "exact", exact(), own, turn(15.0), &[-0.25, 0.0]);
+        }
+    }
+    Ok(plan)
+}
+
+fn read(name: &str) -> Result<Design> {
+    let text = builtin(name).ok_or_else(|| miette!("design {name} is not built in"))?;
+    Ok(DesignSource::new(format!("{name} (built in)"), text).read()?)
+}
+
+/// The design with every length times `factor`, under a name of its own.
+fn scaled(design: &Design, factor: f64) -> Design {
+    let mut out = design.clone();
+    out.name += SCALED;
+    out.reference_radius *= factor;
+    let grow = |v: &mut [f64; 3]| v.iter_mut().for_each(|x| *x *= factor);
+    grow(&mut out.lattice.a1);
+    grow(&mut out.lattice.a2);
+    for element in &mut out.elements {
+        grow(&mut element.center);
+        for ring in &mut element.rings {
+            ring.major_radius *= factor;
+            ring.minor_radius = ring.minor_radius.map(|r| r * factor);
+            grow(&mut ring.offset);
+        }
+    }
+    out
+}
+
+/// Pixels of a sheet's picture.
+const PICTURE: [u32; 2] = [480, 360];
+
+/// Writes page, figures, pictures and verdicts.
+fn write(out: &Path, chosen: &[&str], quick: bool, records: &[NamedRecord]) -> Result<Vec<report::Finding>> {
+    let maps: Vec<report::Map> = records
+        .iter()
+        .map(|named| {
+            report::Map::of(named).map_err(|e| miette!("the design of {} cannot be compiled: {e:?}", named.name))
+        })
+        .collect::<Result<_>>()?;
+    let findings = statements(&maps);
+    let figures = figures(records, &maps);
+    for figure in &figures {
+        output::write(&out.join("figures").join(format!("{}.svg", figure.file)), figure.svg.as_bytes())?;
+    }
+    let mut sheets = Vec::new();
+    for name in chosen {
+        let design = read(name)?;
+        let png = sheet_png(&design, PICTURE).into_diagnostic().wrap_err_with(|| format!("cannot draw {name}"))?;
+        output::write(&out.join("sheets").join(format!("{name}.png")), &png)?;
+        let model =
+            Model::compile(&design, Cell::PRIMITIVE).map_err(|e| miette!("{name} cannot be compiled: {e:?}"))?;
+        sheets.push(Sheet {
+            name: design.name,
+            title: design.title,
+            source: design.source,
+            counts: [model.elements.len(), model.links.len()],
+            png,
+        });
+    }
+    let text = serde_json::to_string_pretty(&json!({ "statements": findings })).into_diagnostic()?;
+    output::write(&out.join("statements.json"), format!("{text}\n").as_bytes())?;
+    let command = if quick { "maille reproduce --quick" } else { "maille reproduce" };
+    let words = format!(
+        "Made by {command}, version {}, from {} records with {} limits of {} designs. Limits are those of each design's \
+         own cell, as in the thesis.",
+        env!("CARGO_PKG_VERSION"),
+        records.len(),
+        maps.iter().map(|map| map.rows.len()).sum::<usize>(),
+        chosen.len(),
+    );
+    output::write(&out.join("index.html"), page(&words, &findings, &sheets, &maps, &figures).as_bytes())?;
+    Ok(findings)
+}

@@ -1,0 +1,244 @@
+//! The page: one HTML file with everything in it.
+
+use super::{Figure, Finding, Map, Verdict, ratio_label};
+use base64::{Engine, prelude::BASE64_STANDARD};
+use maille::{
+    design::Source,
+    record::{LimitRow, Status},
+};
+use std::fmt::Write;
+
+/// A design in the table of designs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sheet {
+    /// Name of the design.
+    pub name: String,
+    /// What it is.
+    pub title: String,
+    /// Where it comes from.
+    pub source: Source,
+    /// Elements and links of a cell.
+    pub counts: [usize; 2],
+    /// Its picture.
+    pub png: Vec<u8>,
+}
+
+const STYLE: &str = "\
+:root{color-scheme:light}*{box-sizing:border-box}
+body{margin:0 auto;max-width:1180px;padding:1rem 1rem 4rem;font:16px/1.5 system-ui,sans-serif;color:#222;background:#fff}
+h1{font-size:1.7rem;line-height:1.2;margin:.6rem 0}h2{font-size:1.3rem;margin:2.6rem 0 .6rem;border-top:1px solid #ddd;padding-top:1rem}
+nav a{margin-right:.9rem;white-space:nowrap}a{color:#15498c}
+.note{color:#555;max-width:70ch}
+.finding{border:1px solid #ddd;border-left:8px solid #999;border-radius:6px;padding:.6rem .9rem;margin:.8rem 0}
+.finding p{margin:.2rem 0}.finding ul{margin:.2rem 0;padding-left:1.2rem}
+.two{display:grid;grid-template-columns:minmax(0,1fr) minmax(0,1.3fr);gap:0 1.6rem}
+.badge{display:inline-block;border-radius:4px;padding:0 .5rem;color:#fff;background:#777;font-weight:600}
+.holds{border-left-color:#1b7f4b}.holds .badge{background:#1b7f4b}
+.holds-with-exceptions{border-left-color:#a86300}.holds-with-exceptions .badge{background:#a86300}
+.fails{border-left-color:#b3261e}.fails .badge{background:#b3261e}
+.figures{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,520px),1fr));gap:1rem}
+figure{margin:0;border:1px solid #e3e3e3;border-radius:6px;padding:.5rem;min-width:0}
+figcaption{font-weight:600;padding:.1rem .3rem .4rem}
+.scroll{overflow-x:auto}.scroll svg{display:block;width:100%;height:auto;min-width:500px}
+.sheets{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,250px),1fr));gap:1rem}
+.sheets img{width:100%;height:auto;display:block}.sheets p{margin:.2rem .3rem;font-size:.92rem}
+table{border-collapse:collapse;font-size:.92rem}th,td{padding:.25rem .6rem;text-align:right;border-bottom:1px solid #e6e6e6;white-space:nowrap}
+th:first-child,td:first-child{text-align:left;position:sticky;left:0;background:#fff}
+details summary{cursor:pointer;color:#15498c}
+@media (max-width:700px){.two{grid-template-columns:1fr}body{padding:.6rem .7rem 3rem}}
+";
+
+/// Most exceptions that a statement lists on the page; `statements.json` has all.
+const LISTED: usize = 40;
+
+/// The page, without anything that it would have to fetch. `words` says how the records were made.
+pub fn page(words: &str, findings: &[Finding], sheets: &[Sheet], maps: &[Map], figures: &[Figure]) -> String {
+    let mut out = String::from("<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
+    out += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
+    out += "<title>Chapter 6, computed anew</title>\n<style>\n";
+    out += STYLE;
+    out += "</style>\n</head>\n<body>\n<h1>Chapter 6, computed anew</h1>\n";
+    let _ = writeln!(out, "<p class=\"note\">{}</p>", escape(words));
+    out += "<nav><a href=\"#statements\">Statements</a> <a href=\"#f6.1\">6.1 cost</a> <a href=\"#designs\">6.2, 6.3 designs</a> \
+            <a href=\"#f6.4\">6.4–6.9 limits</a> <a href=\"#f6.10\">6.10 minor radius</a> <a href=\"#f6.11\">6.11 major radius</a> \
+            <a href=\"#f6.12\">6.12 arrangement</a> <a href=\"#records\">Records</a></nav>\n";
+    out += "<h2 id=\"statements\">What the thesis says, and what was measured</h2>\n";
+    for finding in findings {
+        write_finding(&mut out, finding);
+    }
+    let section = |out: &mut String, number: &str, title: &str, note: &str| {
+        let _ = writeln!(out, "<h2 id=\"f{number}\">{title}</h2>\n<p class=\"note\">{note}</p>");
+        write_figures(out, figures.iter().filter(|figure| figure.number == number));
+    };
+    section(
+        &mut out,
+        "6.1",
+        "Figure 6.1: steps and time",
+        "Means over all directions of a record at l₂ = −0.25 and 0.25, where the sheet can be held there. A step is a \
+         quadratic program (exact) or a Newton iteration (energy); a run is one maximisation or minimisation. Times are wall \
+         times of one limit and depend on what else the machine did.",
+    );
+    write_costs(&mut out, maps);
+    out += "<h2 id=\"designs\">Figures 6.2 and 6.3: the designs</h2>\n<p class=\"note\">Starting states at r = R/10. \
+            \u{201c}Text\u{201d}: the thesis's text fixes topology and proportions. \u{201c}Reconstruction\u{201d}: only the number or the \
+            directions are known, the rest is ours. Names with t: the same with a closer spacing, and starts that overlap.</p>\n";
+    write_sheets(&mut out, sheets);
+    let polar = "λ₁ − 1 at the limit, against the direction of the pull. Red: interlocking directions, found from the links \
+                 (Figure 6.9). Lines are exact limits; markers, where there are some, are limits of the energy method.";
+    section(&mut out, "6.4", "Figures 6.4 and 6.9: designs 1.1, 1.2, 1.3", polar);
+    section(&mut out, "6.5", "Figures 6.5 and 6.9: designs 3.1, 3.2", polar);
+    section(&mut out, "6.6", "Figures 6.6 and 6.9: designs 3.3, 3.4", polar);
+    section(&mut out, "6.7", "Figures 6.7 and 6.9: designs 4.1, 4.2, 4.3", polar);
+    section(&mut out, "6.8", "Figures 6.8 and 6.9: designs 2, 5.1, 5.2", polar);
+    section(
+        &mut out,
+        "6.10",
+        "Figure 6.10: effect of the minor radius",
+        "Largest less smallest λ₁ − 1 of all directions.",
+    );
+    section(
+        &mut out,
+        "6.11",
+        "Figure 6.11: effect of the major radius",
+        "The same, of designs whose standing rings differ in their major radius.",
+    );
+    section(
+        &mut out,
+        "6.12",
+        "Figure 6.12: sheared and rectangular arrangement",
+        "The same sheet in two cells. Exact limits agree; the energy method with the thesis's corner distances favours the \
+         peak at 30° in the sheared cell.",
+    );
+    write_records(&mut out, maps);
+    out += "</body>\n</html>\n";
+    out
+}
+
+fn write_finding(out: &mut String, finding: &Finding) {
+    let class = match finding.verdict {
+        Verdict::NotMeasured => "not-measured",
+        Verdict::Holds => "holds",
+        Verdict::HoldsWithExceptions => "holds-with-exceptions",
+        Verdict::Fails => "fails",
+    };
+    let _ = writeln!(
+        out,
+        "<div class=\"finding {class}\"><p><b>Statement {}</b> <span class=\"badge\">{}</span></p>\n<div class=\"two\"><p>{}</p><div>",
+        finding.number,
+        finding.verdict.words(),
+        escape(finding.statement)
+    );
+    list(out, &finding.evidence);
+    if !finding.exceptions.is_empty() {
+        let more = finding.exceptions.len().saturating_sub(LISTED);
+        let mut shown: Vec<String> = finding.exceptions.iter().take(LISTED).cloned().collect();
+        shown.extend((more > 0).then(|| format!("… and {more} more, in statements.json")));
+        let open = if finding.exceptions.len() <= 6 { " open" } else { "" };
+        let _ = writeln!(out, "<details{open}><summary>Exceptions: {}</summary>", finding.exceptions.len());
+        list(out, &shown);
+        *out += "</details>\n";
+    }
+    *out += "</div></div></div>\n";
+}
+
+fn list(out: &mut String, items: &[String]) {
+    *out += "<ul>";
+    for item in items {
+        let _ = write!(out, "<li>{}</li>", escape(item));
+    }
+    *out += "</ul>\n";
+}
+
+fn write_figures<'a>(out: &mut String, figures: impl Iterator<Item = &'a Figure>) {
+    *out += "<div class=\"figures\">\n";
+    for figure in figures {
+        let (title, svg) = (escape(&figure.title), figure.svg.trim());
+        let _ = writeln!(out, "<figure><figcaption>{title}</figcaption><div class=\"scroll\">{svg}</div></figure>");
+    }
+    *out += "</div>\n";
+}
+
+fn write_sheets(out: &mut String, sheets: &[Sheet]) {
+    *out += "<div class=\"sheets\">\n";
+    for sheet in sheets {
+        let [elements, links] = sheet.counts;
+        let source = match sheet.source {
+            Source::ThesisText => "text",
+            Source::Reconstruction => "reconstruction",
+            Source::Literature => "literature",
+            Source::Own => "own",
+        };
+        let (name, title) = (escape(&sheet.name), escape(&sheet.title));
+        let _ = writeln!(
+            out,
+            "<figure><figcaption>Design {name}</figcaption><img alt=\"Sheet of design {name}\" src=\"data:image/png;base64,{}\">\
+             <p>{title}. {elements} elements and {links} links a cell; {source}.</p></figure>",
+            BASE64_STANDARD.encode(&sheet.png)
+        );
+    }
+    *out += "</div>\n";
+}
+
+fn write_costs(out: &mut String, maps: &[Map]) {
+    *out += "<div class=\"scroll\"><table><thead><tr><th>record</th>";
+    for l2 in ["−0.25", "0.25"] {
+        let _ = write!(out, "<th>l₂ = {l2}: ms a limit</th><th>steps</th><th>runs</th><th>steps a run</th>");
+    }
+    *out += "</tr></thead><tbody>\n";
+    for map in maps {
+        let cells: Vec<Option<String>> = [-0.25, 0.25].map(|l2| cost(map, l2)).into();
+        if cells.iter().all(Option::is_none) {
+            continue;
+        }
+        let _ = write!(out, "<tr><td>{}</td>", escape(&map.label()));
+        for cell in cells {
+            *out += &cell.unwrap_or_else(|| "<td>–</td>".repeat(4));
+        }
+        *out += "</tr>\n";
+    }
+    *out += "</tbody></table></div>\n";
+}
+
+fn cost(map: &Map, l2: f64) -> Option<String> {
+    let rows: Vec<&LimitRow> = map.rows.iter().filter(|row| row.l2 == l2 && row.l1.is_some()).collect();
+    let n = Some(rows.len()).filter(|n| *n > 0)? as f64;
+    let mean = |of: &dyn Fn(&LimitRow) -> f64| rows.iter().map(|row| of(row)).sum::<f64>() / n;
+    let (steps, runs) = (mean(&|row| row.iterations as f64), mean(&|row| row.runs as f64));
+    let ms = 1000.0 * mean(&|row| row.wall_s);
+    Some(format!("<td>{ms:.1}</td><td>{steps:.1}</td><td>{runs:.1}</td><td>{:.1}</td>", steps / runs.max(1.0)))
+}
+
+fn write_records(out: &mut String, maps: &[Map]) {
+    *out += "<h2 id=\"records\">Records</h2>\n<p class=\"note\">Every limit was checked for overlap, and for the links that the \
+             design starts with. Global: a proven bound is attained. Local: certified, bound not attained. No limit: proved \
+             that this l₂ is out of reach.</p>\n<div class=\"scroll\"><table><thead><tr><th>record</th><th>limits</th>\
+             <th>worst overlap / R</th><th>links unchanged</th><th>global</th><th>local</th><th>threshold reached</th>\
+             <th>no limit (proved)</th><th>not found</th></tr></thead><tbody>\n";
+    for map in maps {
+        let found: Vec<&LimitRow> = map.rows.iter().filter(|row| row.l1.is_some()).collect();
+        let count = |status: Status| map.rows.iter().filter(|row| row.status == status).count();
+        let overlap = found.iter().filter_map(|row| Some(row.max_overlap? / (row.minor_radius? / map.ratio)));
+        let worst = overlap.fold(0.0, f64::max);
+        let links = found.iter().filter(|row| row.links_ok == Some(true)).count();
+        let proved = count(Status::L2Unreachable) + count(Status::Unbounded);
+        let _ = writeln!(
+            out,
+            "<tr><td>{}</td><td>{}</td><td>{worst:.1e}</td><td>{links} of {}</td><td>{}</td><td>{}</td><td>{}</td><td>{proved}</td><td>{}</td></tr>",
+            escape(&map.label()),
+            map.rows.len(),
+            found.len(),
+            count(Status::Global),
+            count(Status::Local),
+            count(Status::ThresholdReached),
+            map.rows.len() - found.len() - proved,
+        );
+    }
+    let mut radii: Vec<String> = maps.iter().map(|map| ratio_label(map.ratio)).collect();
+    radii.sort();
+    radii.dedup();
+    let _ = writeln!(out, "</tbody></table></div>\n<p class=\"note\">Minor radii: {}.</p>", escape(&radii.join(", ")));
+}
+
+fn escape(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
