@@ -164,14 +164,14 @@ fn costs(pairs: &[(&NamedRecord, &Map)], out: &mut Vec<Figure>) {
         if chosen.is_empty() {
             continue;
         }
-        let kinds: [(&str, &str, fn(&[NamedRecord]) -> String); 2] =
-            [("steps", "Steps of each limit", steps_svg), ("times", "Time of each limit", times_svg)];
-        for (kind, title, draw) in kinds {
+        let kinds =
+            [("steps", "Steps of each limit", steps_svg(&chosen)), ("times", "Time of each limit", times_svg(&chosen))];
+        for (kind, title, svg) in kinds {
             out.push(Figure {
                 number: "6.1",
                 file: format!("6.1-{kind}-{method}"),
                 title: format!("{title}, {method} method, r = R/10"),
-                svg: draw(&chosen),
+                svg,
             });
         }
     }

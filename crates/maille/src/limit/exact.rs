@@ -60,7 +60,8 @@ pub struct ExactParameters {
     rounds: usize,
     shakes: [f64; 6],
     more_starts: usize,
-    cell_shakes: [f64; 3],
+    cell_shakes: [f64; 1],
+    cell_starts: usize,
     own_image_force: f64,
 }
 
@@ -79,6 +80,7 @@ impl ExactOptions {
             shakes: SHAKES,
             more_starts: MORE_STARTS,
             cell_shakes: CELL_SHAKES,
+            cell_starts: CELL_STARTS,
             own_image_force: OWN_IMAGE_FORCE,
         }
     }
@@ -106,8 +108,10 @@ const ROUNDS: usize = 6;
 const OWN_IMAGE_FORCE: f64 = 1e-6;
 /// Further starts where none reached the wanted l2.
 const MORE_STARTS: usize = 6;
-/// Shakes of the smaller cell's state that start a larger cell's solve.
-const CELL_SHAKES: [f64; 3] = [0.02, 0.1, 0.3];
+/// Shake of the smaller cell's state that starts a larger cell's solve.
+const CELL_SHAKES: [f64; 1] = [0.1];
+/// Starts of a larger cell of its own, at most: its solves are costly.
+const CELL_STARTS: usize = 3;
 
 /// Finds limits of one sheet by the exact method.
 pub struct ExactMethod<'a> {
@@ -274,7 +278,7 @@ impl<'a> ExactMethod<'a> {
                 Strained { state: shaken_from(&self.models[larger], &state, size, &mut rng), ..from.clone() }
             });
             // Then those of this cell solved alone: the smaller cell's answer can hide what they find.
-            let starts = shaken.chain(self.fresh(larger, 0..self.options.starts)).collect();
+            let starts = shaken.chain(self.fresh(larger, 0..self.options.starts.min(CELL_STARTS))).collect();
             let found = self.search(larger, direction_deg, l2, starts, most, cancel);
             trend.push((larger, found.l1()));
             let better = match (&found.best, &tally.best) {
