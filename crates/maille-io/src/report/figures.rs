@@ -145,6 +145,9 @@ fn polar(number: &'static str, named: &NamedRecord, map: &Map, pairs: &[(&NamedR
     }
 }
 
+/// Draws a figure of several records.
+type Draw = fn(&[NamedRecord]) -> String;
+
 /// Figure 6.1: steps and times of the thesis's own method where there is one, l₂ = ±0.25.
 fn costs(pairs: &[(&NamedRecord, &Map)], out: &mut Vec<Figure>) {
     for method in ["exact", "energy"] {
@@ -164,7 +167,7 @@ fn costs(pairs: &[(&NamedRecord, &Map)], out: &mut Vec<Figure>) {
         if chosen.is_empty() {
             continue;
         }
-        let kinds: [(&str, &str, fn(&[NamedRecord]) -> String); 2] =
+        let kinds: [(&str, &str, Draw); 2] =
             [("steps", "Steps of each limit", steps_svg), ("times", "Time of each limit", times_svg)];
         for (kind, title, draw) in kinds {
             out.push(Figure {
