@@ -145,6 +145,9 @@ fn polar(number: &'static str, named: &NamedRecord, map: &Map, pairs: &[(&NamedR
     }
 }
 
+/// Draws a figure of several records.
+type Draw = fn(&[NamedRecord]) -> String;
+
 /// Figure 6.1: steps and times of the thesis's own method where there is one, l₂ = ±0.25.
 fn costs(pairs: &[(&NamedRecord, &Map)], out: &mut Vec<Figure>) {
     for method in ["exact", "energy"] {
@@ -164,14 +167,14 @@ fn costs(pairs: &[(&NamedRecord, &Map)], out: &mut Vec<Figure>) {
         if chosen.is_empty() {
             continue;
         }
-        let kinds =
-            [("steps", "Steps of each limit", steps_svg(&chosen)), ("times", "Time of each limit", times_svg(&chosen))];
-        for (kind, title, svg) in kinds {
+        let kinds: [(&str, &str, Draw); 2] =
+            [("steps", "Steps of each limit", steps_svg), ("times", "Time of each limit", times_svg)];
+        for (kind, title, draw) in kinds {
             out.push(Figure {
                 number: "6.1",
                 file: format!("6.1-{kind}-{method}"),
                 title: format!("{title}, {method} method, r = R/10"),
-                svg,
+                svg: draw(&chosen),
             });
         }
     }

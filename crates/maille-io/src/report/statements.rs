@@ -491,7 +491,7 @@ pub fn sharpness(maps: &[Map]) -> Finding {
     )
 }
 
-/// The angle, seen from outside, of the corner that the polar curve of λ1 − 1 has at a direction; 180° is no corner.
+/// The angle, seen from outside, of the corner that the polar curve of λ1 − 1 has at a direction; from 180° on there is no notch.
 fn opening(map: &Map, l2: f64, direction_deg: f64) -> Option<f64> {
     let turn = map.turn(l2)?;
     let step = step(&turn);
@@ -654,15 +654,15 @@ mod tests {
 
     #[test]
     fn major_radii_are_compared() {
-        // Binding chains: (1 + l1)² is a constant, and (1 + l1)² of the peak another less (1 + l2)².
-        let chain = |base: f64, length: f64| {
-            move |d: f64, l2: f64| match (2.0 * d).to_radians().sin().abs() {
-                s if s < 1e-9 => base,
-                s => (length * s - (1.0 + l2).powi(2) * s + (1.0 + base).powi(2) * (1.0 - s)).sqrt() - 1.0,
+        // Binding chains: the difference of (1 + l1)² falls by what (1 + l2)² grows.
+        let chain = |base: f64, length_sq: f64| {
+            move |d: f64, l2: f64| {
+                let rise = length_sq - (1.0 + l2).powi(2);
+                (base + rise * (2.0 * d).to_radians().sin().powi(2)).sqrt() - 1.0
             }
         };
-        let big = map("1.1", 0.1, &L2, chain(0.44, 4.0));
-        let small = map("1.2", 0.1, &L2, chain(0.04, 2.3));
+        let big = map("1.1", 0.1, &L2, chain(2.0, 3.0));
+        let small = map("1.2", 0.1, &L2, chain(1.2, 2.0));
         assert_eq!(major_radius(&[big.clone(), small.clone()]).verdict, Verdict::Holds);
         let mut swapped = [big.clone(), small];
         swapped.reverse();
@@ -711,13 +711,15 @@ mod tests {
 
     #[test]
     fn corners_open_or_close() {
-        assert_eq!(sharpness(&both("1.2")).verdict, Verdict::Holds);
-        let mut turned = both("1.2");
+        let blunt = |thin: f64| move |d: f64, _: f64| 0.1 + thin + 0.3 * (2.0 * d).to_radians().sin().powi(2);
+        let maps = [map("1.2", 0.1, &[0.0], blunt(0.0)), map("1.2", 0.05, &[0.0], blunt(0.3))];
+        assert_eq!(sharpness(&maps).verdict, Verdict::Holds);
+        let mut turned = maps;
         (turned[0].ratio, turned[1].ratio) = (0.05, 0.1);
         assert_eq!(sharpness(&turned).verdict, Verdict::Fails);
-        // A circle around the origin has nearly no corner: 180° less the step.
+        // A circle around the origin has no corner: 180° and the step.
         let circle = map("1.2", 0.1, &[0.0], |_, _| 0.3);
-        assert!((opening(&circle, 0.0, 90.0).unwrap() - 165.0).abs() < 1e-9);
+        assert!((opening(&circle, 0.0, 90.0).unwrap() - 195.0).abs() < 1e-9);
     }
 
     #[test]
