@@ -3,6 +3,7 @@
 use crate::{
     input::{Input, file_name},
     numbers::{Numbers, parse, parse_l2, positive},
+    plot::Shown,
     progress::Progress,
 };
 use maille::{
@@ -14,7 +15,7 @@ use maille::{
     record::{LimitRow, StateRecord, Status},
 };
 use maille_io::{
-    plot::{PolarPlot, Quantity, polar_svg, svg_to_png},
+    plot::{PolarPlot, parameter_words, polar_svg, svg_to_png},
     record::RecordFolder,
 };
 use miette::{IntoDiagnostic, Result, WrapErr};
@@ -170,16 +171,6 @@ enum MethodArg {
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
-enum Shown {
-    /// 1 + l1
-    Stretch,
-    /// l1
-    L1,
-    /// lambda1 - 1, as in the thesis
-    Lambda1,
-}
-
-#[derive(Clone, Copy, clap::ValueEnum)]
 enum ProtocolArg {
     Strain,
     Corners,
@@ -325,13 +316,8 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     collected.write()?;
 
     let (rows, _) = collected.finished();
-    let words = caption(&method);
-    let quantity = match args.quantity {
-        Shown::Stretch => Quantity::Stretch,
-        Shown::L1 => Quantity::L1,
-        Shown::Lambda1 => Quantity::Lambda1,
-    };
-    let svg = polar_svg(&PolarPlot::from_rows(&input.design, &rows, quantity, &words));
+    let words = parameter_words(&parameters);
+    let svg = polar_svg(&PolarPlot::from_rows(&input.design, &rows, args.quantity.into(), &words));
     let png = svg_to_png(&svg, 2.0).into_diagnostic().wrap_err("cannot draw the plot")?;
     collected.folder.write_polar(&svg, &png)?;
     let interrupted = cancel.load(Ordering::Relaxed);
@@ -356,21 +342,6 @@ fn stop_on_interrupt(cancel: &Arc<AtomicBool>) -> Result<()> {
     })
     .into_diagnostic()
     .wrap_err("cannot listen for Ctrl-C")
-}
-
-fn caption(method: &Method) -> Vec<String> {
-    match method {
-        Method::Exact(_) => Vec::new(),
-        Method::Energy(options) => vec![
-            match options.protocol {
-                Protocol::Strain => "strain protocol".into(),
-                Protocol::Corners => "corner protocol".into(),
-            },
-            format!("α/β = {:.0e}", options.alpha),
-            format!("τ = {}", options.tau),
-            format!("l₁ to {}", options.l1_resolution),
-        ],
-    }
 }
 
 /// Least and largest limit of each l2, what has no limit, and where the files are.

@@ -4,12 +4,16 @@ mod at;
 mod characterize;
 mod designs;
 mod export;
+mod files;
 mod input;
 mod inspect;
 mod numbers;
+mod plot;
 mod progress;
+mod records;
 mod render;
 mod replay;
+mod table;
 
 use clap::{Parser, Subcommand};
 use miette::Result;
@@ -39,6 +43,8 @@ enum Command {
     Replay(replay::Args),
     Export(export::Args),
     Render(render::Args),
+    Plot(plot::Args),
+    Table(table::Args),
 }
 
 fn main() -> ExitCode {
@@ -52,6 +58,8 @@ fn main() -> ExitCode {
         Command::Designs(args) => designs::run(&args).map(|()| ExitCode::SUCCESS),
         Command::Export(args) => export::run(&args).map(|()| ExitCode::SUCCESS),
         Command::Render(args) => render::run(&args).map(|()| ExitCode::SUCCESS),
+        Command::Plot(args) => plot::run(&args).map(|()| ExitCode::SUCCESS),
+        Command::Table(args) => table::run(&args).map(|()| ExitCode::SUCCESS),
     };
     done.unwrap_or_else(|report| {
         eprintln!("{report:?}");

@@ -1,6 +1,9 @@
 //! `maille replay`: solves rows of a record again, from the inputs that the record holds.
 
-use crate::at::{At, parse_at};
+use crate::{
+    at::{At, parse_at},
+    records,
+};
 use maille::{
     characterize::{Finished, Method, Task, characterize},
     lattice::Cell,
@@ -11,7 +14,7 @@ use maille_io::record::Record;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use serde_json::Value;
 use std::{
-    path::{Path, PathBuf},
+    path::PathBuf,
     process::ExitCode,
     sync::{Mutex, atomic::AtomicBool},
 };
@@ -27,7 +30,7 @@ Examples:
 
 Exit codes: 0 all rows came out as recorded, 1 some did not, or the record cannot be read.")]
 pub struct Args {
-    /// A record's folder, or the run.json in it
+    /// A record's folder, or the run.json in it; NAME stands for maille-out/NAME
     record: PathBuf,
     /// The rows to solve, as direction=30,l2=-0.125; what is not named stays open
     #[arg(long, value_parser = parse_at, allow_hyphen_values = true)]
@@ -36,11 +39,7 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    let folder = match args.record.file_name() {
-        Some(name) if name == "run.json" => args.record.parent().unwrap_or(Path::new(".")),
-        _ => &args.record,
-    };
-    let record = Record::read(folder)?;
+    let record = Record::read(&records::folder(&args.record))?;
     let parameters = &record.run.parameters;
     let cells: Vec<Cell> = numbers(parameters, "cells")?;
     let design = &record.run.design;

@@ -2,6 +2,9 @@
 //!
 //! The limits are the chain bound of a square grid, with two directions left out.
 
+#[path = "../tests/common/rows.rs"]
+mod rows;
+
 use maille::record::{LimitRow, Status};
 use maille_io::plot::{Curve, CurveKind, PolarPlot, Quantity, polar_svg, svg_to_png};
 use std::error::Error;
@@ -9,7 +12,7 @@ use std::path::Path;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let folder = std::env::args().nth(1).ok_or("give a folder")?;
-    let mut design = maille_io::read_design("1.1", maille_io::builtin("1.1").ok_or("no 1.1")?)?;
+    let mut design = rows::design();
     let few = [-0.25, -0.125, 0.0];
     let many = [-0.375, -0.25, -0.125, 0.0, 0.125, 0.25];
     let parameters = ["protocol strain".to_owned(), "τ = 0.005".to_owned(), "step 0.02".to_owned()];
@@ -20,7 +23,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         ("negative", &[0.0, 0.4, 0.5, 0.55][..], Quantity::L1, 7.5),
         ("quarter", &few[..], Quantity::Stretch, 10.0),
     ] {
-        let mut rows = rows(l2, step);
+        let mut rows = limits(l2, step);
         if name == "default" {
             for row in rows
                 .iter_mut()
@@ -37,7 +40,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let mut plot = PolarPlot::from_rows(&design, &rows, quantity, &parameters);
         if name == "one" {
             let dense: Vec<_> = (0..180).map(|d| (f64::from(d), bound(f64::from(d), 0.0).map(|b| b + 0.03))).collect();
-            plot.curves.push(Curve::new("bound", 0.0, CurveKind::Bound, &dense));
+            plot.curves.push(Curve::new(0, 0.0, CurveKind::Bound, &dense));
         }
         let svg = polar_svg(&plot);
         std::fs::write(Path::new(&folder).join(format!("{name}.svg")), &svg)?;
@@ -47,34 +50,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn rows(l2: &[f64], step: f64) -> Vec<LimitRow> {
+fn limits(l2: &[f64], step: f64) -> Vec<LimitRow> {
     let directions = (0..).map(|i| step * f64::from(i)).take_while(|d| *d <= 180.0);
     let all = directions.flat_map(|d| l2.iter().map(move |&l2| (d, l2)));
-    all.map(|(direction_deg, l2)| row(direction_deg, l2)).collect()
-}
-
-fn row(direction_deg: f64, l2: f64) -> LimitRow {
-    let l1 = bound(direction_deg, l2);
-    LimitRow {
-        design: "1.1".into(),
-        minor_radius: Some(0.1),
-        direction_deg,
-        l2,
-        method: "energy".into(),
-        cell: "1x1".into(),
-        status: if l1.is_some() { Status::ThresholdReached } else { Status::L2Unreachable },
-        l1,
-        lambda1: l1.map(|l1| (1.0 + l1).powi(2)),
-        lambda2: None,
-        stretch1: None,
-        stretch2: None,
-        max_overlap: None,
-        min_gap: None,
-        iterations: 0,
-        runs: 0,
-        wall_s: 0.0,
-        ..LimitRow::default()
-    }
+    all.map(|(direction_deg, l2)| rows::row(direction_deg, l2, bound(direction_deg, l2))).collect()
 }
 
 /// No chain of links from a ring to its image at `v` can be longer than `length`.

@@ -1,4 +1,4 @@
-//! Formats of maille: design files, records, plots.
+//! Formats of maille: design files, records, tables, plots, meshes, pictures.
 //!
 //! Everything here works on text, bytes and readers; only doors open paths. The one exception is
 //! [`record::RecordFolder`], which owns a folder because its writes must be atomic.
@@ -6,9 +6,11 @@
 pub mod builtin;
 pub mod design_toml;
 pub mod mesh;
+mod nearest;
 pub mod plot;
 pub mod record;
 pub mod render;
+pub mod table;
 
 pub use builtin::{Builtin, builtin, builtin_designs};
 pub use design_toml::{DesignError, DesignProblem, DesignSource, read_design, write_design};

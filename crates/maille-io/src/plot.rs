@@ -1,12 +1,24 @@
-//! Plots of records, as SVG and PNG.
+//! Plots of records, as SVG and PNG. Each kind is a file.
 
 mod canvas;
+mod chart;
+mod compare;
 mod curve;
+mod difference;
+mod effort;
+mod frame;
+mod look;
 mod palette;
 mod png;
 mod polar;
 mod scale;
+mod steps;
+mod times;
 
+pub use compare::parameter_words;
 pub use curve::{Curve, CurveKind};
+pub use difference::{Spread, difference_svg};
 pub use png::{PlotError, svg_to_png};
 pub use polar::{PolarPlot, Quantity, polar_svg};
+pub use steps::steps_svg;
+pub use times::times_svg;

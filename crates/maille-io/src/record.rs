@@ -9,14 +9,17 @@
 //!
 //! Numbers are written with the fewest digits that read back bit for bit.
 
+mod columns;
 mod error;
 mod folder;
 mod limits;
 mod run;
 mod states;
 
+pub use columns::{Cell, Column, LIMIT_COLUMNS, Unit, Values};
 pub use error::RecordError;
-pub use folder::{Record, RecordFolder};
-pub use limits::{LIMIT_COLUMNS, read_limits, write_limits};
+pub use folder::{NamedRecord, Record, RecordFolder};
+pub(crate) use limits::csv_cell;
+pub use limits::{read_limits, write_limits};
 pub use run::{Counters, RunRecord, input_hash, read_run, write_run};
 pub use states::{read_states, write_states};

@@ -1,59 +1,46 @@
 //! Plots: what stands in them, and that they can be drawn.
 
-use maille::design::Design;
+#[path = "common/rows.rs"]
+mod rows;
+
 use maille::record::{LimitRow, Status};
-use maille_io::plot::{Curve, CurveKind, PolarPlot, Quantity, polar_svg, svg_to_png};
+use maille_io::plot::{
+    Curve, CurveKind, PolarPlot, Quantity, Spread, difference_svg, polar_svg, steps_svg, svg_to_png, times_svg,
+};
+use maille_io::record::NamedRecord;
+use rows::{design, record};
 
-fn design() -> Design {
-    maille_io::read_design("1.1", maille_io::builtin("1.1").unwrap()).unwrap()
-}
-
-fn row(direction_deg: f64, l2: f64, l1: Option<f64>) -> LimitRow {
-    LimitRow {
-        design: "1.1".into(),
-        minor_radius: Some(0.1),
-        direction_deg,
-        l2,
-        method: "energy".into(),
-        cell: "1x1".into(),
-        status: if l1.is_some() { Status::ThresholdReached } else { Status::L2NotReached },
-        l1,
-        lambda1: l1.map(|l1| (1.0 + l1).powi(2)),
-        lambda2: None,
-        stretch1: None,
-        stretch2: None,
-        max_overlap: None,
-        min_gap: None,
-        iterations: 0,
-        runs: 0,
-        wall_s: 0.0,
-        ..LimitRow::default()
-    }
-}
-
-fn turn(l2: f64, missing: f64) -> impl Iterator<Item = LimitRow> {
-    let l1 = move |d: f64| (d != missing).then_some(0.44 - 0.2 * l2);
-    (0..=12).map(|i| 15.0 * f64::from(i)).map(move |d| row(d, l2, l1(d)))
+/// Rows of one l2, one of them without a limit.
+fn turn(l2: f64, missing: f64) -> Vec<LimitRow> {
+    rows::turn(l2, |d| (d != missing).then_some(0.44 - 0.2 * l2))
 }
 
 #[test]
 fn the_plot_says_what_it_shows() {
-    let rows: Vec<_> = turn(0.125, 30.0).chain(turn(-0.125, 1.0)).chain(turn(0.0, 1.0)).collect();
+    let rows: Vec<_> = [turn(0.125, 30.0), turn(-0.125, 1.0), turn(0.0, 1.0)].concat();
     let plot = PolarPlot::from_rows(&design(), &rows, Quantity::Stretch, &["τ = 0.01".into()]);
-    let labels: Vec<_> = plot.curves.iter().map(|c| c.label.as_str()).collect();
-    assert_eq!(labels, ["−0.125", "0", "0.125"]);
+    assert_eq!(plot.curves.iter().map(|c| c.l2).collect::<Vec<_>>(), [-0.125, 0.0, 0.125]);
     assert_eq!(plot.caption[0], "r = 0.1 (r/R = 0.1)  ·  energy method  ·  cell 1 × 1  ·  τ = 0.01");
     assert!(plot.caption[1].starts_with("13 directions computed, 0° to 180°."));
     assert_eq!(plot.caption[2], "Gaps: 1 of 39 searches gave no limit (1 l2-not-reached).");
     let svg = polar_svg(&plot);
-    for text in ["1.1 · Cartesian grid of rings", ">330°<", ">1.4<", "Radius: 1 + l₁", "centre 1.0: undeformed"] {
+    for text in [
+        "1.1 · Cartesian grid of rings",
+        ">330°<",
+        ">1.4<",
+        "Radius: 1 + l₁",
+        "centre 1.0: undeformed",
+        ">−0.125<",
+        ">0<",
+        ">0.125<",
+    ] {
         assert!(svg.contains(text), "{text}");
     }
 }
 
 #[test]
 fn each_quantity_has_its_centre() {
-    let rows: Vec<_> = turn(0.0, 1.0).collect();
+    let rows = turn(0.0, 1.0);
     let values = |quantity| PolarPlot::from_rows(&design(), &rows, quantity, &[]).curves[0].values().next().unwrap();
     assert_eq!(values(Quantity::Stretch), 1.44);
     assert_eq!(values(Quantity::L1), 0.44);
@@ -69,17 +56,17 @@ fn a_missing_limit_opens_the_curve() {
             .map(str::to_owned)
             .collect::<Vec<_>>()
     };
-    let closed = paths(turn(0.0, 1.0).collect());
+    let closed = paths(turn(0.0, 1.0));
     assert_eq!(closed.len(), 1);
     assert!(closed[0].contains("Z\""));
-    let open = paths(turn(0.0, 30.0).collect());
+    let open = paths(turn(0.0, 30.0));
     assert_eq!(open.len(), 2);
     assert!(open.iter().all(|path| !path.contains("Z\"")));
 }
 
 #[test]
 fn below_zero_the_axis_moves_its_origin() {
-    let mut rows: Vec<_> = turn(0.0, 1.0).collect();
+    let mut rows = turn(0.0, 1.0);
     rows[3].l1 = Some(-0.15);
     let svg = polar_svg(&PolarPlot::from_rows(&design(), &rows, Quantity::L1, &[]));
     assert!(svg.contains("dotted circle 0.0: undeformed") && svg.contains("centre −0.2"));
@@ -89,7 +76,8 @@ fn below_zero_the_axis_moves_its_origin() {
 fn plots_without_limits_and_with_odd_texts_are_drawn() {
     let mut design = design();
     design.title = "R&D <sheet>\u{1}".into();
-    let none: Vec<_> = turn(0.0, 1.0).map(|row| LimitRow { l1: None, status: Status::Unbounded, ..row }).collect();
+    let none: Vec<_> =
+        turn(0.0, 1.0).into_iter().map(|row| LimitRow { l1: None, status: Status::Unbounded, ..row }).collect();
     for rows in [&[][..], &none] {
         let svg = polar_svg(&PolarPlot::from_rows(&design, rows, Quantity::Stretch, &[]));
         assert!(svg.contains("R&amp;D &lt;sheet&gt;"));
@@ -101,14 +89,14 @@ fn plots_without_limits_and_with_odd_texts_are_drawn() {
 fn a_bound_is_dashed_and_has_no_markers() {
     let mut plot = PolarPlot::from_rows(&design(), &[], Quantity::L1, &[]);
     let points: Vec<_> = (0..180).map(|d| (f64::from(d), Some(0.5))).collect();
-    plot.curves.push(Curve::new("bound", 0.0, CurveKind::Bound, &points));
+    plot.curves.push(Curve::new(0, 0.0, CurveKind::Bound, &points));
     let svg = polar_svg(&plot);
     assert!(svg.contains("stroke-dasharray=\"5 4\"") && !svg.contains("fill=\"#222222\" stroke=\"#222222\""));
 }
 
 #[test]
 fn the_picture_has_the_size_asked_for_and_is_not_blank() {
-    let svg = polar_svg(&PolarPlot::from_rows(&design(), &turn(0.0, 1.0).collect::<Vec<_>>(), Quantity::Stretch, &[]));
+    let svg = polar_svg(&PolarPlot::from_rows(&design(), &turn(0.0, 1.0), Quantity::Stretch, &[]));
     let size = |png: &[u8]| {
         let pixmap = resvg::tiny_skia::Pixmap::decode_png(png).unwrap();
         let dark = pixmap.pixels().iter().filter(|p| p.red() < 128).count();
@@ -131,8 +119,126 @@ fn every_letter_of_the_plot_is_in_the_font() {
         svg_to_png(&svg, 1.0).unwrap()
     };
     let (nothing, unknown) = (draw(""), draw("\u{4e2d}"));
-    for letter in "λτθ₁₂−·×°ᵀéßλ≤≥".chars() {
+    for letter in "λτθ₁₂−·×°ᵀéßλ≤≥αβ²,:".chars() {
         let drawn = draw(&letter.to_string());
         assert!(drawn != nothing && drawn != unknown, "{letter}");
+    }
+}
+
+/// The same limits by two methods, and those of a smaller radius.
+fn three() -> Vec<NamedRecord> {
+    let by = |method: &str, r: f64, iterations: u64| {
+        let mut rows = [turn(-0.125, 30.0), turn(0.0, 1.0)].concat();
+        for row in &mut rows {
+            (row.method, row.minor_radius) = (method.into(), Some(r));
+            (row.iterations, row.wall_s) = (iterations, 0.001 * iterations as f64);
+            row.l1 = row.l1.map(|l1| l1 + row.l2 * row.direction_deg / 180.0);
+        }
+        let mut named = record(&format!("out/{method}-{r}"), design(), rows);
+        named.record.run.parameters["method"] = method.into();
+        named
+    };
+    vec![by("exact", 0.1, 7), by("energy", 0.1, 1000), by("exact", 0.05, 9)]
+}
+
+/// Lines of curves: paths without a fill.
+fn lines(svg: &str) -> Vec<&str> {
+    svg.lines().filter(|line| line.starts_with("<path") && line.contains("fill=\"none\"")).collect()
+}
+
+fn attribute<'a>(line: &'a str, name: &str) -> &'a str {
+    line.split(&format!(" {name}=\"")).nth(1).and_then(|rest| rest.split('"').next()).unwrap_or_default()
+}
+
+#[test]
+fn several_records_differ_in_colour_and_in_line() {
+    let records = three();
+    let plot = PolarPlot::from_records(&records, Quantity::Stretch);
+    let (apart, labels) = &plot.records;
+    assert_eq!(apart, "r, method");
+    assert_eq!(labels, &["r = 0.1, exact", "r = 0.1, energy", "r = 0.05, exact"]);
+    assert_eq!(plot.curves.len(), 6);
+    let svg = polar_svg(&plot);
+    // One curve of each record has two gaps, at 30° and 210°.
+    assert_eq!(lines(&svg).len(), 9);
+    let mut styles: Vec<_> =
+        lines(&svg).iter().map(|line| (attribute(line, "stroke"), attribute(line, "stroke-dasharray"))).collect();
+    styles.sort();
+    styles.dedup();
+    assert_eq!(styles.len(), 3);
+    assert!(styles.windows(2).all(|w| w[0].0 != w[1].0 && w[0].1 != w[1].1), "{styles:?}");
+    for text in labels.iter().map(String::as_str).chain(["−0.125", "0"]) {
+        assert_eq!(svg.matches(&format!(">{text}<")).count(), 1, "{text}");
+    }
+    assert!(svg.contains("Gaps: 1 of 26 searches gave no limit (1 l2-not-reached)."));
+    svg_to_png(&svg, 1.0).unwrap();
+}
+
+#[test]
+fn legends_name_what_differs_and_folders_at_last() {
+    let heading = |records: &[NamedRecord]| PolarPlot::from_records(records, Quantity::L1).records;
+    let two = |change: fn(&mut NamedRecord)| {
+        let first = record("out/a", design(), turn(0.0, 1.0));
+        let mut second = NamedRecord { name: "out/b".into(), ..first.clone() };
+        change(&mut second);
+        heading(&[first, second])
+    };
+    let labels = |a: &str, b: &str| vec![a.to_owned(), b.to_owned()];
+    assert_eq!(two(|_| {}), ("Record".into(), labels("out/a", "out/b")));
+    assert_eq!(two(|b| b.record.run.design.name = "3.1".into()), ("Design".into(), labels("1.1", "3.1")));
+    assert_eq!(
+        two(|b| b.record.run.parameters["options"]["tau"] = 0.02.into()),
+        ("Parameters".into(), labels("τ = 0.01", "τ = 0.02"))
+    );
+    let cell = |b: &mut NamedRecord| b.record.rows.iter_mut().for_each(|row| row.cell = "2x1".into());
+    assert_eq!(two(cell), ("Cell".into(), labels("cell 1 × 1", "cell 2 × 1")));
+}
+
+#[test]
+fn differences_are_largest_less_smallest_limit() {
+    let records = &three()[..1];
+    // l1 runs from 0.465 − 0 down to 0.465 − 0.125 at l2 = −0.125, and is 0.44 everywhere at 0.
+    let places = |spread: Spread| {
+        let svg = difference_svg(records, spread);
+        let d = attribute(lines(&svg)[0], "d").to_owned();
+        let y = d[1..].split('L').map(|p| p.split(' ').nth(1).unwrap().parse::<f64>().unwrap()).collect::<Vec<_>>();
+        (522.0 - y[0], 522.0 - y[1], svg)
+    };
+    // Axes from 0 to 0.15 and to 0.4, over 400 units.
+    let (high, low, svg) = places(Spread::L1);
+    assert!((high / 400.0 * 0.15 - 0.125).abs() < 1e-4 && low == 0.0, "{high} {low}");
+    assert!(svg.contains("Largest less smallest l₁ of all directions (no unit)"));
+    assert!(svg.contains(">some directions have no limit<"));
+    let (high, low, svg) = places(Spread::Lambda1);
+    let wanted = 1.465f64.powi(2) - 1.34f64.powi(2);
+    assert!((high / 400.0 * 0.4 - wanted).abs() < 1e-3 && low == 0.0, "{high} {low} {wanted}");
+    assert!(svg.contains("λ₁ − 1") && svg.contains("(1 + l₁)²"));
+}
+
+#[test]
+fn steps_and_times_have_a_curve_for_each_record_and_l2() {
+    let records = three();
+    for (svg, unit) in
+        [(steps_svg(&records), "Iterations, logarithmic"), (times_svg(&records), "in seconds, logarithmic")]
+    {
+        assert_eq!(lines(&svg).len(), 6);
+        assert!(svg.contains(unit) && svg.contains(">180°<") && svg.contains(">r = 0.05, exact<"));
+        svg_to_png(&svg, 1.0).unwrap();
+    }
+    assert!(times_svg(&records).contains("r = 0.1, energy 26.000 s"));
+    let one = steps_svg(&records[..1]);
+    assert_eq!(lines(&one).len(), 2);
+    assert!(one.contains(">Iterations<") && one.contains("quadratic programs") && !one.contains("Newton"));
+}
+
+#[test]
+fn every_kind_is_drawn_without_rows() {
+    let empty = [record("a", design(), Vec::new()), record("b", design(), Vec::new())];
+    for records in [&empty[..1], &empty[..]] {
+        let polar = polar_svg(&PolarPlot::from_records(records, Quantity::L1));
+        for svg in [polar, difference_svg(records, Spread::L1), steps_svg(records), times_svg(records)] {
+            assert!(!svg.contains("NaN") && !svg.contains("inf"));
+            svg_to_png(&svg, 1.0).unwrap();
+        }
     }
 }

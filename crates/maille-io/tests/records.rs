@@ -77,8 +77,7 @@ fn message(result: Result<impl Sized, RecordError>) -> String {
 #[test]
 fn the_columns_are_the_fields_of_a_row_in_order() {
     let json = serde_json::to_string(&row(0.0, Status::Global)).unwrap();
-    let places: Vec<_> =
-        LIMIT_COLUMNS.iter().map(|column| json.find(&format!("\"{column}\":")).expect(column)).collect();
+    let places: Vec<_> = LIMIT_COLUMNS.iter().map(|c| json.find(&format!("\"{}\":", c.name)).expect(c.name)).collect();
     assert!(places.is_sorted());
     let Value::Object(fields) = serde_json::from_str(&json).unwrap() else { panic!() };
     assert_eq!(fields.len(), LIMIT_COLUMNS.len());

@@ -1,5 +1,7 @@
 //! The keys of each table, and what to say about a key that is not there.
 
+use crate::nearest::nearest;
+
 /// Keys of the top of the file.
 pub(super) const TOP: &[&str] = &[
     "schema",
@@ -36,15 +38,4 @@ pub(super) fn unknown_key_help(key: &str, known: &[&str]) -> String {
         return format!("`{key}` stands {place}");
     }
     format!("known here: {}", known.join(", "))
-}
-
-/// The word that `word` was probably meant to be.
-pub(super) fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
-    let word = word.to_lowercase();
-    let distance = |k: &str| {
-        let contained = word.len() >= 4 && (k.contains(&word) || word.contains(k));
-        if contained { 1 } else { strsim::damerau_levenshtein(&word, k) }
-    };
-    let best = known.iter().copied().min_by_key(|k| distance(k))?;
-    (distance(best) <= 1 + word.chars().count() / 4).then_some(best)
 }

@@ -3,6 +3,7 @@
 use super::fields::{self, ELEMENT, LATTICE, RING, TOP};
 use super::index::Index;
 use super::problem::DesignProblem;
+use crate::nearest::nearest;
 use maille::design::{DESIGN_SCHEMA, Design, ElementSpec, LatticeSpec, RingSpec, Source};
 use std::ops::Range;
 use toml::Spanned;
@@ -57,7 +58,7 @@ impl<'a, 't> At<'a, 't> {
     }
 
     fn meant(&self, key: &str) -> Option<&'static str> {
-        fields::nearest(key, self.known)
+        nearest(key, self.known)
     }
 }
 
@@ -266,7 +267,7 @@ impl Reader<'_> {
         if found.is_none() {
             let known = SOURCES.map(|(known, _)| known);
             let mut help = format!("known: {}", known.join(", "));
-            if let Some(near) = fields::nearest(&name, &known) {
+            if let Some(near) = nearest(&name, &known) {
                 help = format!("did you mean \"{near}\"? {help}");
             }
             let problem = format!("\"{name}\" is no source");

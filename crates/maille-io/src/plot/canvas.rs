@@ -7,6 +7,7 @@ use std::fmt::Write;
 pub(super) enum Anchor {
     Start,
     Middle,
+    End,
 }
 
 /// How a text looks.
@@ -67,6 +68,7 @@ impl Canvas {
         let anchor = match anchor {
             Anchor::Start => "",
             Anchor::Middle => " text-anchor=\"middle\"",
+            Anchor::End => " text-anchor=\"end\"",
         };
         let bold = if bold { " font-weight=\"bold\"" } else { "" };
         let halo = if halo {
@@ -123,20 +125,32 @@ fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
+/// Width of a text in pixels, by the widths of the font's letters, a little too large rather than too small.
+pub(super) fn text_width(text: &str, size: f64) -> f64 {
+    let em = |c: char| match c {
+        'i' | 'j' | 'l' | '\'' | '|' | 'I' => 0.31,
+        ' ' | '.' | ',' | ':' | ';' | '·' | 'f' | 't' | 'r' | '(' | ')' | '/' | '₁' | '₂' => 0.42,
+        'm' | 'M' | 'w' | 'W' | '−' | '+' | '=' | '×' | '%' | '@' | '<' | '>' => 0.9,
+        c if c.is_uppercase() => 0.72,
+        _ => 0.64,
+    };
+    text.chars().map(em).sum::<f64>() * size
+}
+
 /// Lines of at most `width` pixels, by the average width of a character.
 pub(super) fn wrap(text: &str, size: f64, width: f64) -> Vec<String> {
     let most = (width / (0.56 * size)) as usize;
-    let mut lines = vec![String::new()];
+    let mut lines = Vec::new();
+    let mut line = String::new();
     for word in text.split_whitespace() {
-        let last = lines.last_mut().expect("there is always a line");
-        if !last.is_empty() && last.chars().count() + 1 + word.chars().count() > most {
-            lines.push(word.to_owned());
-        } else {
-            if !last.is_empty() {
-                last.push(' ');
-            }
-            last.push_str(word);
+        if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > most {
+            lines.push(std::mem::take(&mut line));
         }
+        if !line.is_empty() {
+            line.push(' ');
+        }
+        line.push_str(word);
     }
+    lines.push(line);
     lines
 }

@@ -9,11 +9,11 @@ pub enum CurveKind {
     Bound,
 }
 
-/// One value a direction; `l2` gives colour and marker.
+/// One value a direction, of one record and one l2: these give line, colour and marker.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// Text in the legend.
-    pub label: String,
+    /// Which of the plot's records.
+    pub record: usize,
     /// Stretch − 1 held across the pull.
     pub l2: f64,
     /// How it is drawn.
@@ -24,11 +24,11 @@ pub struct Curve {
 impl Curve {
     /// Directions in degrees, any order; `None` where no value was earned. A direction and its opposite are the same pull:
     /// of two values for one, the first that is there counts.
-    pub fn new(label: impl Into<String>, l2: f64, kind: CurveKind, points: &[(f64, Option<f64>)]) -> Self {
+    pub fn new(record: usize, l2: f64, kind: CurveKind, points: &[(f64, Option<f64>)]) -> Self {
         let mut half: Vec<_> = points.iter().map(|&(degrees, value)| (half_turn(degrees), value)).collect();
         half.sort_by(|a, b| a.0.total_cmp(&b.0).then(b.1.is_some().cmp(&a.1.is_some())));
         half.dedup_by(|later, kept| later.0 == kept.0);
-        Self { label: label.into(), l2, kind, points: half }
+        Self { record, l2, kind, points: half }
     }
 
     /// The values that are there.
@@ -61,18 +61,16 @@ impl Curve {
             let closed = turn.into_iter().filter_map(|(degrees, value)| Some((degrees, value?))).collect();
             return (vec![closed], true);
         };
-        let mut runs = vec![Vec::new()];
+        let mut runs = Vec::new();
+        let mut run = Vec::new();
         for k in 1..=n {
             let i = (end + k) % n;
             let degrees = turn[i].0 + if end + k >= n { 360.0 } else { 0.0 };
-            if let Some(value) = turn[i].1 {
-                runs.last_mut().expect("never empty").push((degrees, value));
-            }
-            if !joined(i) {
-                runs.push(Vec::new());
+            run.extend(turn[i].1.map(|value| (degrees, value)));
+            if !joined(i) && !run.is_empty() {
+                runs.push(std::mem::take(&mut run));
             }
         }
-        runs.retain(|run| !run.is_empty());
         (runs, false)
     }
 }
@@ -87,7 +85,7 @@ mod tests {
     use super::*;
 
     fn lengths(points: &[(f64, Option<f64>)]) -> (Vec<usize>, bool) {
-        let (runs, closed) = Curve::new("", 0.0, CurveKind::Limits, points).runs();
+        let (runs, closed) = Curve::new(0, 0.0, CurveKind::Limits, points).runs();
         (runs.iter().map(Vec::len).collect(), closed)
     }
 
@@ -119,7 +117,7 @@ mod tests {
 
     #[test]
     fn opposite_directions_are_one_pull() {
-        let curve = Curve::new("", 0.0, CurveKind::Limits, &[(0.0, None), (180.0, Some(2.0)), (-90.0, Some(3.0))]);
+        let curve = Curve::new(0, 0.0, CurveKind::Limits, &[(0.0, None), (180.0, Some(2.0)), (-90.0, Some(3.0))]);
         assert_eq!(curve.turn(), [(0.0, Some(2.0)), (90.0, Some(3.0)), (180.0, Some(2.0)), (270.0, Some(3.0))]);
     }
 }

@@ -13,6 +13,18 @@ pub(super) fn positive(count: usize) -> Vec<String> {
 /// Colour of the curve at zero.
 pub(super) const NEUTRAL: &str = "#222222";
 
+/// Colours of records: those of Okabe and Ito that are dark enough on white, neighbours far apart in grey.
+pub(super) fn record(i: usize) -> &'static str {
+    const COLORS: [&str; 7] = ["#0072b2", "#e69f00", "#222222", "#cc79a7", "#009e73", "#d55e00", "#56b4e9"];
+    COLORS[i % COLORS.len()]
+}
+
+/// Broken lines of records: with the colours, 35 pairs before one comes again.
+pub(super) fn dash(i: usize) -> &'static str {
+    const DASHES: [&str; 5] = ["", "7 4", "1.5 4", "9 3.5 1.5 3.5", "14 4"];
+    DASHES[i % DASHES.len()]
+}
+
 fn shades(count: usize, ramp: &[[u8; 3]; 4]) -> Vec<String> {
     // Few curves keep away from the ends, many fill the ramp.
     let margin = 0.3 * 4usize.saturating_sub(count) as f64;
@@ -25,6 +37,30 @@ fn color(ramp: &[[u8; 3]; 4], t: f64) -> String {
     let mix = |a: u8, b: u8| (f64::from(a) + (f64::from(b) - f64::from(a)) * (t - i as f64)).round() as u8;
     let [r, g, b] = [0, 1, 2].map(|k| mix(ramp[i][k], ramp[i + 1][k]));
     format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+/// Shapes of the markers of records, as those of [`marker`].
+pub(super) fn record_marker(i: usize) -> &'static [[f64; 2]] {
+    const PLUS: &[[f64; 2]] = &[
+        [-0.4, -1.2],
+        [0.4, -1.2],
+        [0.4, -0.4],
+        [1.2, -0.4],
+        [1.2, 0.4],
+        [0.4, 0.4],
+        [0.4, 1.2],
+        [-0.4, 1.2],
+        [-0.4, 0.4],
+        [-1.2, 0.4],
+        [-1.2, -0.4],
+        [-0.4, -0.4],
+    ];
+    const HOURGLASS: &[[f64; 2]] = &[[-1.0, -1.1], [1.0, -1.1], [-1.0, 1.1], [1.0, 1.1]];
+    match i % 7 {
+        5 => PLUS,
+        6 => HOURGLASS,
+        i => marker(i as i32),
+    }
 }
 
 /// Shape of a marker, as a polygon around the origin; a circle if empty.

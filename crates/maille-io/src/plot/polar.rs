@@ -1,9 +1,12 @@
 //! Polar plots of limits against the direction of the pull: 0° right, counter-clockwise.
 
-use super::canvas::{Anchor, Canvas, Stroke, TextStyle, wrap};
+use super::canvas::{Anchor, Canvas, Stroke, TextStyle};
+use super::compare::{captions, differences, directions, heading, inputs, l2_label, l2_values, missing, title};
 use super::curve::{Curve, CurveKind};
-use super::palette;
-use super::scale::{Scale, signed};
+use super::frame::{Entry, Frame, GRID, INK, MARGIN, RIM, SOFT, TOP, style};
+use super::look::{self, Look, MARKER};
+use super::scale::Scale;
+use crate::record::NamedRecord;
 use maille::design::Design;
 use maille::record::{LimitRow, Status};
 
@@ -70,6 +73,8 @@ pub struct PolarPlot {
     pub title: String,
     /// What the radius shows.
     pub quantity: Quantity,
+    /// Of several records: what tells them apart, and the label of each; otherwise empty.
+    pub records: (String, Vec<String>),
     /// Curves, in the order of the legend.
     pub curves: Vec<Curve>,
     /// Paragraphs below the plot.
@@ -81,68 +86,70 @@ impl PolarPlot {
     ///
     /// `parameters` are further words for the caption, as `τ = 0.01`.
     pub fn from_rows(design: &Design, rows: &[LimitRow], quantity: Quantity, parameters: &[String]) -> Self {
-        let mut l2: Vec<f64> = rows.iter().map(|row| row.l2 + 0.0).collect(); // + 0.0 makes −0 equal to 0
-        l2.sort_by(f64::total_cmp);
-        l2.dedup();
-        let curve = |&l2: &f64| {
-            let of_l2 = rows.iter().filter(|row| row.l2 == l2);
-            let points: Vec<_> = of_l2.map(|row| (row.direction_deg, quantity.of(row))).collect();
-            Curve::new(signed(&format!("{l2}")), l2, CurveKind::Limits, &points)
-        };
+        let l2 = l2_values(rows.iter());
         // Where every limit attains its bound the two curves are one.
         let open = |l2: &&f64| rows.iter().any(|row| row.l2 == **l2 && row.bound_gap.is_some_and(|gap| gap > 1e-6));
         let bound = |&l2: &f64| {
             let of_l2 = rows.iter().filter(|row| row.l2 == l2 && row.l1.is_some());
             let points: Vec<_> = of_l2.map(|row| (row.direction_deg, quantity.of_bound(row))).collect();
-            Curve::new(String::new(), l2, CurveKind::Bound, &points)
+            Curve::new(0, l2, CurveKind::Bound, &points)
         };
         let mut caption = vec![inputs(design, rows, parameters)];
-        caption.extend(symmetry(rows, quantity));
+        caption.extend(directions(rows).map(|directions| format!("{directions}. {}", symmetry(quantity))));
         caption.extend(proven(rows));
-        caption.extend(missing(rows, quantity));
-        let curves = l2.iter().map(curve).chain(l2.iter().filter(open).map(bound)).collect();
-        Self { title: heading(design), quantity, curves, caption }
+        caption.extend(missing(rows, |row| quantity.of(row)));
+        let curves = l2.iter().map(|&l2| limits(0, rows, l2, quantity));
+        let curves = curves.chain(l2.iter().filter(open).map(bound)).collect();
+        Self { title: heading(design), quantity, records: Default::default(), curves, caption }
+    }
+
+    /// The plot of several records: one curve for each record and l2, without bounds.
+    pub fn from_records(records: &[NamedRecord], quantity: Quantity) -> Self {
+        let labels = differences(records);
+        let curve = |(i, named): (usize, &NamedRecord)| {
+            let rows = named.record.rows.clone();
+            l2_values(rows.iter()).into_iter().map(move |l2| limits(i, &rows, l2, quantity)).collect::<Vec<_>>()
+        };
+        let mut caption = captions(records, &labels.1);
+        caption.push(symmetry(quantity));
+        let curves = records.iter().enumerate().flat_map(curve).collect();
+        Self { title: title(records), quantity, records: labels, curves, caption }
+    }
+
+    fn l2(&self) -> Vec<f64> {
+        let mut l2: Vec<f64> = self.curves.iter().map(|curve| curve.l2).collect();
+        l2.sort_by(f64::total_cmp);
+        l2.dedup();
+        l2
+    }
+
+    /// How each curve looks: by its l2 alone, or, with several records, line and colour by its record and marker by its l2.
+    fn looks(&self) -> Vec<Look> {
+        let l2 = self.l2();
+        let (of_l2, of_record) = (look::of_l2(&l2), look::of_records(self.records.1.len()));
+        let look = |curve: &Curve| {
+            let l2_look = &of_l2[l2.iter().position(|x| *x == curve.l2).unwrap_or(0)];
+            match (of_record.get(curve.record), curve.kind) {
+                (None, CurveKind::Limits) => l2_look.clone(),
+                (None, CurveKind::Bound) => Look { width: 1.4, dash: "5 4", ..l2_look.clone() },
+                (Some(look), _) if l2.len() > 1 => look.with_l2(l2_look),
+                (Some(look), _) => look.clone(),
+            }
+        };
+        self.curves.iter().map(look).collect()
     }
 }
 
-fn heading(design: &Design) -> String {
-    if design.title.is_empty() { design.name.clone() } else { format!("{} · {}", design.name, design.title) }
+fn limits(record: usize, rows: &[LimitRow], l2: f64, quantity: Quantity) -> Curve {
+    let of_l2 = rows.iter().filter(|row| row.l2 == l2);
+    let points: Vec<_> = of_l2.map(|row| (row.direction_deg, quantity.of(row))).collect();
+    Curve::new(record, l2, CurveKind::Limits, &points)
 }
 
-/// Radius, method, cell and parameters of the rows.
-fn inputs(design: &Design, rows: &[LimitRow], parameters: &[String]) -> String {
-    let mut words = Vec::new();
-    let mut radii: Vec<f64> = rows.iter().filter_map(|row| row.minor_radius).collect();
-    radii.sort_by(f64::total_cmp);
-    radii.dedup();
-    let unit = design.unit.as_ref().map(|unit| format!(" {unit}")).unwrap_or_default();
-    for r in radii {
-        words.push(format!("r = {r}{unit} (r/R = {})", significant(r / design.reference_radius)));
-    }
-    let distinct = |of: fn(&LimitRow) -> &String| {
-        let mut all: Vec<_> = rows.iter().map(of).collect();
-        all.sort();
-        all.dedup();
-        all
-    };
-    words.extend(distinct(|row| &row.method).iter().map(|method| format!("{method} method")));
-    words.extend(distinct(|row| &row.cell).iter().map(|cell| format!("cell {}", cell.replace('x', " × "))));
-    words.extend(parameters.iter().cloned());
-    words.join("  ·  ")
-}
-
-/// Which directions were computed, and why the plot goes all the way round.
-fn symmetry(rows: &[LimitRow], quantity: Quantity) -> Option<String> {
-    let mut directions: Vec<f64> = rows.iter().map(|row| row.direction_deg).collect();
-    directions.sort_by(f64::total_cmp);
-    directions.dedup();
-    let (first, last) = (directions.first()?, directions.last()?);
-    let computed = match directions.len() {
-        1 => format!("1 direction computed, {first}°"),
-        n => format!("{n} directions computed, {first}° to {last}°"),
-    };
+/// Why the plot goes all the way round.
+fn symmetry(quantity: Quantity) -> String {
     let symbol = if quantity == Quantity::Lambda1 { "λ₁" } else { "l₁" };
-    Some(format!("{computed}. A pull along D is the same pull along −D: {symbol} repeats after 180°."))
+    format!("A pull along D is the same pull along −D: {symbol} repeats after 180°.")
 }
 
 /// How many limits attain a proven bound, where a record has bounds.
@@ -155,70 +162,32 @@ fn proven(rows: &[LimitRow]) -> Option<String> {
     })
 }
 
-fn significant(x: f64) -> String {
-    let rounded: f64 = format!("{x:.3e}").parse().unwrap_or(x);
-    format!("{rounded}")
-}
-
-/// How many rows have no value, and why: `3 directions without limit: 2 l2-unreachable, 1 not-converged.`
-fn missing(rows: &[LimitRow], quantity: Quantity) -> Option<String> {
-    let without: Vec<_> = rows.iter().filter(|row| quantity.of(row).is_none()).collect();
-    if without.is_empty() {
-        return None;
-    }
-    let count = |status: Status| without.iter().filter(|row| row.status == status).count();
-    let by_status = Status::ALL.into_iter().map(|s| (count(s), s.name())).filter(|(n, _)| *n > 0);
-    let parts: Vec<_> = by_status.map(|(n, name)| format!("{n} {name}")).collect();
-    let (n, total) = (without.len(), rows.len());
-    Some(format!("Gaps: {n} of {total} searches gave no limit ({}).", parts.join(", ")))
-}
-
-const WIDTH: f64 = 860.0;
-const MARGIN: f64 = 36.0;
 const RADIUS: f64 = 250.0;
-const CENTER: [f64; 2] = [MARGIN + 40.0 + RADIUS, 122.0 + RADIUS];
-const LEGEND: [f64; 2] = [CENTER[0] + RADIUS + 68.0, 122.0];
-const CAPTION: f64 = CENTER[1] + RADIUS + 62.0;
-
-const INK: &str = "#222222";
-const SOFT: &str = "#5a5a5a";
-const GRID: &str = "#dcdcdc";
-const RIM: &str = "#9a9a9a";
-const MARKER: f64 = 3.6;
-
-fn style(size: f64, color: &'static str, anchor: Anchor) -> TextStyle {
-    TextStyle { size, color, bold: false, anchor, halo: false }
-}
+const CENTER: [f64; 2] = [MARGIN + 40.0 + RADIUS, TOP + RADIUS];
 
 /// The plot as SVG.
 pub fn polar_svg(input: &PolarPlot) -> String {
-    let caption: Vec<Vec<String>> = input.caption.iter().map(|text| wrap(text, 12.0, WIDTH - 2.0 * MARGIN)).collect();
-    let lines: usize = caption.iter().map(Vec::len).sum();
-    let legend_end = LEGEND[1] + 24.0 * (input.curves.len() as f64 + 4.0);
-    let caption_top = CAPTION.max(legend_end + 30.0);
-    let height = caption_top + 18.0 * lines as f64 + 4.0 * caption.len() as f64 + 14.0;
-    let mut canvas = Canvas::new(WIDTH, height, &input.title);
-
-    let size = (WIDTH - 2.0 * MARGIN) / (0.66 * input.title.chars().count().max(1) as f64);
-    let title = TextStyle { bold: true, ..style(size.clamp(12.0, 22.0), INK, Anchor::Start) };
-    canvas.text([MARGIN, 46.0], title, &input.title);
-    canvas.text([MARGIN, 70.0], style(14.0, SOFT, Anchor::Start), input.quantity.subtitle());
-
     let scale = Scale::new(input.quantity.base(), input.curves.iter().flat_map(Curve::values), 6);
-    let looks = looks(&input.curves);
-    draw_grid(&mut canvas, &scale, input.quantity.base());
+    let looks = input.looks();
+    let frame = Frame {
+        title: input.title.clone(),
+        subtitle: input.quantity.subtitle().to_owned(),
+        legend: legend(input, &looks, &scale),
+        caption: input.caption.clone(),
+    };
+    // The widest line is furthest behind, of one width the largest l2.
     let mut back_to_front: Vec<_> = input.curves.iter().zip(&looks).collect();
-    back_to_front.sort_by(|a, b| (b.0.l2.abs()).total_cmp(&a.0.l2.abs()));
-    for (curve, look) in &back_to_front {
-        draw_line(&mut canvas, curve, look, &scale);
-    }
-    draw_ticks(&mut canvas, &scale, input);
-    for (curve, look) in &back_to_front {
-        draw_markers(&mut canvas, curve, look, &scale);
-    }
-    draw_legend(&mut canvas, input, &looks, &scale);
-    draw_caption(&mut canvas, &caption, caption_top);
-    canvas.finish()
+    back_to_front.sort_by(|a, b| (a.0.record.cmp(&b.0.record)).then(b.0.l2.abs().total_cmp(&a.0.l2.abs())));
+    frame.svg(CENTER[1] + RADIUS + 22.0, |canvas| {
+        draw_grid(canvas, &scale, input.quantity.base());
+        for (curve, look) in &back_to_front {
+            draw_line(canvas, curve, look, &scale);
+        }
+        draw_ticks(canvas, &scale, input);
+        for (curve, look) in &back_to_front {
+            draw_markers(canvas, curve, look, &scale, input.records.1.len());
+        }
+    })
 }
 
 /// Point of the canvas at a distance in pixels from the centre.
@@ -280,65 +249,12 @@ fn draw_ticks(canvas: &mut Canvas, scale: &Scale, input: &PolarPlot) {
     }
 }
 
-/// Colour, width and marker of a curve.
-struct Look {
-    color: String,
-    width: f64,
-    rank: i32,
-}
-
-fn looks(curves: &[Curve]) -> Vec<Look> {
-    let side = |sign: f64| {
-        let mut l2: Vec<f64> = curves.iter().map(|c| c.l2 * sign).filter(|l2| *l2 > 0.0).collect();
-        l2.sort_by(f64::total_cmp);
-        l2.dedup();
-        l2
-    };
-    let (below, above) = (side(-1.0), side(1.0));
-    let (blues, oranges) = (palette::negative(below.len()), palette::positive(above.len()));
-    let rank = |side: &[f64], l2: f64| side.iter().position(|x| *x == l2).unwrap_or(0);
-    let look = |curve: &Curve| {
-        if curve.l2 < 0.0 {
-            let i = rank(&below, -curve.l2);
-            Look { color: blues[i].clone(), width: 1.9, rank: -(i as i32) - 1 }
-        } else if curve.l2 > 0.0 {
-            let i = rank(&above, curve.l2);
-            Look { color: oranges[i].clone(), width: 1.9, rank: i as i32 + 1 }
-        } else {
-            Look { color: palette::NEUTRAL.into(), width: 2.6, rank: 0 }
-        }
-    };
-    curves.iter().map(look).collect()
-}
-
-impl Look {
-    fn stroke(&self, kind: CurveKind) -> Stroke<'_> {
-        match kind {
-            CurveKind::Limits => Stroke::solid(&self.color, self.width),
-            CurveKind::Bound => Stroke { color: &self.color, width: 1.4, dash: "5 4" },
-        }
-    }
-
-    /// Filled where the sheet is held compressed or as it is, hollow where it is held stretched.
-    fn draw_marker(&self, canvas: &mut Canvas, at: [f64; 2], size: f64) {
-        let fill = if self.rank > 0 { "#ffffff" } else { &self.color };
-        let stroke = Stroke::solid(&self.color, 1.4);
-        let shape = palette::marker(self.rank);
-        if shape.is_empty() {
-            canvas.circle(at, size, fill, stroke);
-        } else {
-            let points: Vec<_> = shape.iter().map(|p| [at[0] + size * p[0], at[1] + size * p[1]]).collect();
-            canvas.path(&points, true, fill, stroke);
-        }
-    }
-}
-
 /// Straight between neighbouring directions.
 fn draw_line(canvas: &mut Canvas, curve: &Curve, look: &Look, scale: &Scale) {
     let (runs, closed) = curve.runs();
     for run in runs.iter().filter(|run| run.len() > 1) {
         let points: Vec<_> = run.iter().map(|&(degrees, value)| at(scale, degrees, value)).collect();
-        canvas.path(&points, closed, "none", look.stroke(curve.kind));
+        canvas.path(&points, closed, "none", look.stroke());
     }
 }
 
@@ -357,61 +273,69 @@ fn line_points(curve: &Curve, scale: &Scale) -> Vec<[f64; 2]> {
     ends.flat_map(|(a, b)| (0..12).map(move |k| mix(a, b, f64::from(k) / 12.0))).collect()
 }
 
-fn draw_markers(canvas: &mut Canvas, curve: &Curve, look: &Look, scale: &Scale) {
+/// Of several records each has its markers at other directions, so that they do not hide each other.
+fn draw_markers(canvas: &mut Canvas, curve: &Curve, look: &Look, scale: &Scale, records: usize) {
     if curve.kind == CurveKind::Bound {
         return;
     }
     let turn = curve.turn();
-    let every = turn.len().div_ceil(72).max(1);
+    let every = turn.len().div_ceil(if records > 1 { 24 } else { 72 }).max(1);
+    let first = (curve.record * every / records.max(1)) % every;
     let size = MARKER * (24.0 / (turn.len() / every) as f64).sqrt().clamp(0.6, 1.0);
-    for &(degrees, value) in turn.iter().step_by(every) {
+    for &(degrees, value) in turn.iter().skip(first).step_by(every) {
         if let Some(value) = value {
             look.draw_marker(canvas, at(scale, degrees, value), size);
         }
     }
 }
 
-fn draw_legend(canvas: &mut Canvas, input: &PolarPlot, looks: &[Look], scale: &Scale) {
-    let [x, mut y] = LEGEND;
-    canvas.text([x, y], TextStyle { bold: true, ..style(13.0, INK, Anchor::Start) }, "l₂ across the pull");
-    for (curve, look) in input.curves.iter().zip(looks).filter(|(curve, _)| curve.kind == CurveKind::Limits) {
-        y += 24.0;
-        canvas.line([x, y - 4.5], [x + 36.0, y - 4.5], look.stroke(curve.kind));
-        look.draw_marker(canvas, [x + 18.0, y - 4.5], MARKER);
-        canvas.text([x + 48.0, y], style(13.0, INK, Anchor::Start), &curve.label);
-        if curve.values().next().is_none() {
-            canvas.text([x + 100.0, y], style(12.0, SOFT, Anchor::Start), "no limit");
-        }
+fn legend(input: &PolarPlot, looks: &[Look], scale: &Scale) -> Vec<Entry> {
+    let (apart, labels) = &input.records;
+    let mut out = Vec::new();
+    let l2 = input.l2();
+    if !labels.is_empty() {
+        out.push(Entry::Heading(apart.clone()));
+        let samples = labels.iter().zip(look::of_records(labels.len()));
+        out.extend(samples.map(|(label, look)| Entry::Sample {
+            look,
+            line: true,
+            marker: l2.len() == 1,
+            label: label.clone(),
+        }));
     }
-    if let Some((curve, _)) = input.curves.iter().zip(looks).find(|(curve, _)| curve.kind == CurveKind::Bound) {
-        y += 24.0;
-        let dashed = Stroke { color: SOFT, ..looks[0].stroke(curve.kind) };
-        canvas.line([x, y - 4.5], [x + 36.0, y - 4.5], dashed);
-        canvas.text([x + 48.0, y], style(13.0, INK, Anchor::Start), "proven bound");
+    let empty =
+        |l2: f64| input.curves.iter().filter(|curve| curve.l2 == l2).all(|curve| curve.values().next().is_none());
+    let label = |l2: f64| format!("{}{}", l2_label(l2), if empty(l2) { ", no limit" } else { "" });
+    if let ([only], false) = (&l2[..], labels.is_empty()) {
+        out.push(Entry::Heading(format!("l₂ = {}", label(*only))));
+    } else {
+        out.push(Entry::Heading("l₂ across the pull".into()));
     }
-    y += 40.0;
-    canvas.text(
-        [x, y],
-        TextStyle { bold: true, ..style(13.0, INK, Anchor::Start) },
-        &format!("Radius: {}", input.quantity.symbol()),
-    );
+    if labels.is_empty() {
+        let of_limits = input.curves.iter().zip(looks).filter(|(curve, _)| curve.kind == CurveKind::Limits);
+        out.extend(of_limits.map(|(curve, look)| Entry::Sample {
+            look: look.clone(),
+            line: true,
+            marker: true,
+            label: label(curve.l2),
+        }));
+    } else if l2.len() > 1 {
+        let samples = l2.iter().zip(look::of_l2(&l2));
+        out.extend(samples.map(|(l2, look)| {
+            let look = Look { color: INK.into(), ..look };
+            Entry::Sample { look, line: false, marker: true, label: label(*l2) }
+        }));
+    }
+    if let Some((_, look)) = input.curves.iter().zip(looks).find(|(curve, _)| curve.kind == CurveKind::Bound) {
+        let look = Look { color: SOFT.into(), ..look.clone() };
+        out.push(Entry::Sample { look, line: true, marker: false, label: "proven bound".into() });
+    }
+    out.push(Entry::Heading(format!("Radius: {}", input.quantity.symbol())));
     let base = input.quantity.base();
     let place = if scale.low < base { "dotted circle" } else { "centre" };
-    let note = format!("{place} {}: undeformed", scale.label(base));
-    canvas.text([x, y + 20.0], style(12.0, SOFT, Anchor::Start), &note);
+    out.push(Entry::Note(format!("{place} {}: undeformed", scale.label(base))));
     if scale.low < base {
-        canvas.text([x, y + 37.0], style(12.0, SOFT, Anchor::Start), &format!("centre {}", scale.label(scale.low)));
+        out.push(Entry::Note(format!("centre {}", scale.label(scale.low))));
     }
-}
-
-fn draw_caption(canvas: &mut Canvas, caption: &[Vec<String>], top: f64) {
-    let mut y = top;
-    canvas.line([MARGIN, y - 22.0], [WIDTH - MARGIN, y - 22.0], Stroke::solid(GRID, 1.0));
-    for paragraph in caption {
-        for line in paragraph {
-            canvas.text([MARGIN, y], style(12.0, SOFT, Anchor::Start), line);
-            y += 18.0;
-        }
-        y += 4.0;
-    }
+    out
 }

@@ -34,6 +34,87 @@ impl Scale {
     }
 }
 
+/// An axis of a chart, with its ticks and their labels.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Axis {
+    low: f64,
+    high: f64,
+    logarithmic: bool,
+    pub(super) ticks: Vec<(f64, String)>,
+}
+
+/// Numbers that differ by this factor do not fit on a linear axis.
+const WIDE: f64 = 30.0;
+
+impl Axis {
+    /// From 0, or from below it where a value is negative.
+    pub(super) fn linear(values: impl Iterator<Item = f64>) -> Self {
+        let scale = Scale::new(0.0, values, 6);
+        let ticks = scale.ticks.iter().map(|&tick| (tick, scale.label(tick))).collect();
+        Self { low: scale.low, high: scale.high, logarithmic: false, ticks }
+    }
+
+    /// Logarithmic where positive values differ by a large factor, else linear.
+    pub(super) fn of_effort(values: &[f64]) -> Self {
+        let positive = || values.iter().copied().filter(|x| *x > 0.0);
+        let (min, max) = positive().fold((f64::INFINITY, 0.0), |(lo, hi): (f64, f64), x| (lo.min(x), hi.max(x)));
+        if max < WIDE * min {
+            return Self::linear(values.iter().copied());
+        }
+        let (low, high) = (min.log10().floor() as i32, max.log10().ceil() as i32);
+        let label = |k: i32| {
+            if k < 0 {
+                format!("0.{}1", "0".repeat(k.unsigned_abs() as usize - 1))
+            } else {
+                format!("1{}", "0".repeat(k as usize))
+            }
+        };
+        let ticks = (low..=high).map(|k| (10f64.powi(k), label(k))).collect();
+        Self { low: 10f64.powi(low), high: 10f64.powi(high), logarithmic: true, ticks }
+    }
+
+    /// Ticks at the values themselves where these are few and apart, with room at both ends.
+    pub(super) fn of_l2(values: &[f64]) -> Self {
+        let (Some(first), Some(last)) = (values.first(), values.last()) else {
+            return Self::linear(std::iter::empty());
+        };
+        let span = last - first;
+        let apart = values.windows(2).all(|w| w[1] - w[0] >= 0.09 * span);
+        if !apart || values.len() > 9 {
+            return Self::linear(values.iter().copied());
+        }
+        let room = if span > 0.0 { 0.06 * span } else { 0.1 };
+        let ticks = values.iter().map(|&x| (x, signed(&format!("{x}")))).collect();
+        Self { low: first - room, high: last + room, logarithmic: false, ticks }
+    }
+
+    /// Directions in degrees.
+    pub(super) fn of_directions(values: &[f64]) -> Self {
+        let (min, max) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), x| (lo.min(*x), hi.max(*x)));
+        if min > max {
+            return Self::of_directions(&[0.0, 180.0]);
+        }
+        let steps = [1.0, 5.0, 10.0, 15.0, 30.0, 45.0, 90.0];
+        let step = steps.into_iter().find(|step| (max - min) / step <= 6.0 + 1e-9).unwrap_or(180.0);
+        let (low, high) = ((min / step).floor() as i64, (max / step).ceil() as i64);
+        let high = high.max(low + 1);
+        let ticks = (low..=high).map(|k| (step * k as f64, format!("{}°", signed(&format!("{}", step * k as f64)))));
+        Self { low: step * low as f64, high: step * high as f64, logarithmic: false, ticks: ticks.collect() }
+    }
+
+    pub(super) fn is_logarithmic(&self) -> bool {
+        self.logarithmic
+    }
+
+    /// 0 at the low end, 1 at the high end.
+    pub(super) fn fraction(&self, x: f64) -> f64 {
+        match self.logarithmic {
+            true => (x / self.low).ln() / (self.high / self.low).ln(),
+            false => (x - self.low) / (self.high - self.low),
+        }
+    }
+}
+
 /// 1, 2 or 5 times a power of ten, at least `x`.
 fn round_step(x: f64) -> f64 {
     let power = 10f64.powf(x.log10().floor());
@@ -68,6 +149,31 @@ mod tests {
     fn values_below_the_base_extend_the_axis() {
         assert_eq!(labels(0.0, &[-0.12, 0.3]), ["−0.2", "−0.1", "0.0", "0.1", "0.2", "0.3"]);
         assert_eq!(labels(1.0, &[0.93, 0.97]), ["0.92", "0.94", "0.96", "0.98", "1.00", "1.02"]);
+    }
+
+    fn ticks(axis: &Axis) -> Vec<&str> {
+        axis.ticks.iter().map(|(_, label)| label.as_str()).collect()
+    }
+
+    #[test]
+    fn axes_of_charts_fit_their_values() {
+        assert_eq!(ticks(&Axis::of_effort(&[3.0, 0.0, 1500.0])), ["1", "10", "100", "1000", "10000"]);
+        assert_eq!(ticks(&Axis::of_effort(&[0.004, 0.9])), ["0.001", "0.01", "0.1", "1"]);
+        assert_eq!(ticks(&Axis::of_effort(&[3.0, 7.0])), ["0", "2", "4", "6", "8"]);
+        assert_eq!(ticks(&Axis::of_l2(&[-0.25, -0.125, 0.0])), ["−0.25", "−0.125", "0"]);
+        assert_eq!(ticks(&Axis::of_l2(&[0.0])), ["0"]);
+        assert_eq!(ticks(&Axis::of_l2(&[-0.25, -0.24, 0.25])), ["−0.3", "−0.2", "−0.1", "0.0", "0.1", "0.2", "0.3"]);
+        assert_eq!(
+            ticks(&Axis::of_directions(&[0.0, 180.0, 45.0])),
+            ["0°", "30°", "60°", "90°", "120°", "150°", "180°"]
+        );
+        assert_eq!(ticks(&Axis::of_directions(&[30.0])), ["30°", "31°"]);
+        let axis = Axis::of_effort(&[1.0, 100.0]);
+        assert!(axis.is_logarithmic());
+        assert!((axis.fraction(10.0) - 0.5).abs() < 1e-12);
+        for empty in [Axis::of_effort(&[]), Axis::of_l2(&[]), Axis::of_directions(&[])] {
+            assert!(empty.fraction(0.0).is_finite() && empty.ticks.len() > 1);
+        }
     }
 
     #[test]

@@ -72,6 +72,15 @@ impl Record {
     }
 }
 
+/// A record with the name to show for it where there are several.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedRecord {
+    /// The name, as `maille-out/1.1`.
+    pub name: String,
+    /// The record.
+    pub record: Record,
+}
+
 /// A folder that a run writes its record to.
 #[derive(Debug)]
 pub struct RecordFolder {

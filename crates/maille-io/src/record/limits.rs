@@ -1,100 +1,45 @@
 //! `limits.csv`.
 
+use super::columns::{Cell, Column, LIMIT_COLUMNS};
 use super::error::{RecordError, complete};
 use csv::{ReaderBuilder, StringRecord};
 use maille::record::{LimitRow, Status};
 use std::fmt::Display;
 use std::str::FromStr;
 
-/// The columns, in order. A later version may add columns at the end; it renames and moves none.
-pub const LIMIT_COLUMNS: [&str; 30] = [
-    "design",
-    "minor_radius",
-    "direction_deg",
-    "l2",
-    "method",
-    "cell",
-    "status",
-    "l1",
-    "lambda1",
-    "lambda2",
-    "stretch1",
-    "stretch2",
-    "max_overlap",
-    "min_gap",
-    "iterations",
-    "runs",
-    "wall_s",
-    "bound_l1",
-    "bound_kind",
-    "bound_gap",
-    "dual_residual",
-    "complementarity",
-    "min_multiplier",
-    "min_curvature",
-    "zero_modes",
-    "links_ok",
-    "n_starts",
-    "n_distinct",
-    "own_image_force",
-    "l1_uncertified",
-];
-
 /// The table as text. `design` and `cell` are always quoted: `"1.10"` is a name, not a number.
 ///
 /// Fails with [`RecordError::NotFinite`] on a number that is there but infinite or NaN.
 pub fn write_limits(rows: &[LimitRow]) -> Result<String, RecordError> {
-    let mut out = LIMIT_COLUMNS.join(",") + "\n";
+    let mut out = LIMIT_COLUMNS.map(|column| column.name).join(",") + "\n";
     for row in rows {
-        let number = |field: &'static str, x: Option<f64>| match x {
-            None => Ok(String::new()),
-            Some(x) if x.is_finite() => Ok(format!("{x:?}")),
-            Some(value) => Err(RecordError::NotFinite { direction_deg: row.direction_deg, l2: row.l2, field, value }),
-        };
-        let cells = [
-            quoted(&row.design),
-            number("minor_radius", row.minor_radius)?,
-            number("direction_deg", Some(row.direction_deg))?,
-            number("l2", Some(row.l2))?,
-            row.method.clone(),
-            quoted(&row.cell),
-            row.status.name().to_owned(),
-            number("l1", row.l1)?,
-            number("lambda1", row.lambda1)?,
-            number("lambda2", row.lambda2)?,
-            number("stretch1", row.stretch1)?,
-            number("stretch2", row.stretch2)?,
-            number("max_overlap", row.max_overlap)?,
-            number("min_gap", row.min_gap)?,
-            row.iterations.to_string(),
-            row.runs.to_string(),
-            number("wall_s", Some(row.wall_s))?,
-            number("bound_l1", row.bound_l1)?,
-            row.bound_kind.clone().unwrap_or_default(),
-            number("bound_gap", row.bound_gap)?,
-            number("dual_residual", row.dual_residual)?,
-            number("complementarity", row.complementarity)?,
-            number("min_multiplier", row.min_multiplier)?,
-            number("min_curvature", row.min_curvature)?,
-            shown(row.zero_modes),
-            shown(row.links_ok),
-            shown(row.n_starts),
-            shown(row.n_distinct),
-            number("own_image_force", row.own_image_force)?,
-            number("l1_uncertified", row.l1_uncertified)?,
-        ];
-        out.push_str(&cells.join(","));
+        for (i, column) in LIMIT_COLUMNS.iter().enumerate() {
+            let cell = column.values.of(row);
+            if let Cell::Number(value) = cell
+                && !value.is_finite()
+            {
+                let (direction_deg, l2, field) = (row.direction_deg, row.l2, column.name);
+                return Err(RecordError::NotFinite { direction_deg, l2, field, value });
+            }
+            out.push_str(if i == 0 { "" } else { "," });
+            out.push_str(&csv_cell(column.name, cell));
+        }
         out.push('\n');
     }
     Ok(out)
 }
 
-fn shown<T: Display>(x: Option<T>) -> String {
-    x.map_or(String::new(), |x| x.to_string())
-}
-
-fn quoted(text: &str) -> String {
-    format!("\"{}\"", text.replace('"', "\"\""))
+/// A value as it stands in a table of commas; numbers with the fewest digits that read back bit for bit.
+pub(crate) fn csv_cell(column: &str, cell: Cell<'_>) -> String {
+    let quote = |text: &str| matches!(column, "design" | "cell") || text.contains([',', '"', '\n', '\r']);
+    match cell {
+        Cell::Empty => String::new(),
+        Cell::Text(text) if quote(text) => format!("\"{}\"", text.replace('"', "\"\"")),
+        Cell::Text(text) => text.to_owned(),
+        Cell::Number(x) => format!("{x:?}"),
+        Cell::Count(n) => n.to_string(),
+        Cell::Flag(flag) => flag.to_string(),
+    }
 }
 
 /// Reads the table; `file` is the name to show in errors. Columns after [`LIMIT_COLUMNS`] are ignored.
@@ -106,7 +51,7 @@ pub fn read_limits(file: &str, text: &str) -> Result<Vec<LimitRow>, RecordError>
         None => return Err(RecordError::malformed(file, 1, "the header is missing")),
         Some(header) => header.map_err(|e| RecordError::malformed(file, 1, e.to_string()))?,
     };
-    for (i, expected) in LIMIT_COLUMNS.iter().enumerate() {
+    for (i, Column { name: expected, .. }) in LIMIT_COLUMNS.iter().enumerate() {
         let found = header.get(i).unwrap_or_default();
         if found != *expected {
             let problem = format!("column {} is \"{found}\", expected \"{expected}\"", i + 1);
@@ -127,8 +72,9 @@ pub fn read_limits(file: &str, text: &str) -> Result<Vec<LimitRow>, RecordError>
 }
 
 fn row(record: &StringRecord) -> Result<LimitRow, String> {
-    let mut cells = LIMIT_COLUMNS.iter().copied().zip(record);
-    let mut next = || cells.next().expect("as many cells as columns");
+    let mut cells = LIMIT_COLUMNS.iter().map(|column| column.name).zip(record);
+    // The caller has counted them; a cell that is not there reads as an empty one.
+    let mut next = || cells.next().unwrap_or_default();
     Ok(LimitRow {
         design: next().1.to_owned(),
         minor_radius: optional(next())?,
@@ -163,26 +109,27 @@ fn row(record: &StringRecord) -> Result<LimitRow, String> {
     })
 }
 
-type Cell<'a> = (&'static str, &'a str);
+/// Column and text.
+type Found<'a> = (&'static str, &'a str);
 
-fn parse<T: FromStr<Err: Display>>((column, text): Cell<'_>, expected: &str) -> Result<T, String> {
+fn parse<T: FromStr<Err: Display>>((column, text): Found<'_>, expected: &str) -> Result<T, String> {
     text.parse().map_err(|_| format!("column {column}: \"{text}\" is not {expected}"))
 }
 
-fn number(cell: Cell<'_>) -> Result<f64, String> {
+fn number(cell: Found<'_>) -> Result<f64, String> {
     let x: f64 = parse(cell, "a number")?;
     if x.is_finite() { Ok(x) } else { Err(format!("column {}: \"{}\" is not finite", cell.0, cell.1)) }
 }
 
-fn optional(cell: Cell<'_>) -> Result<Option<f64>, String> {
+fn optional(cell: Found<'_>) -> Result<Option<f64>, String> {
     if cell.1.is_empty() { Ok(None) } else { number(cell).map(Some) }
 }
 
-fn some<T: FromStr<Err: Display>>(cell: Cell<'_>, expected: &str) -> Result<Option<T>, String> {
+fn some<T: FromStr<Err: Display>>(cell: Found<'_>, expected: &str) -> Result<Option<T>, String> {
     if cell.1.is_empty() { Ok(None) } else { parse(cell, expected).map(Some) }
 }
 
-fn status((column, text): Cell<'_>) -> Result<Status, String> {
+fn status((column, text): Found<'_>) -> Result<Status, String> {
     let found = Status::ALL.into_iter().find(|s| s.name() == text);
     found.ok_or_else(|| format!("column {column}: \"{text}\" is no status"))
 }

@@ -1,0 +1,190 @@
+//! `maille plot`: records compared in a figure.
+
+use crate::{files, input::file_name, records, table};
+use maille_io::{
+    plot::{PolarPlot, Quantity, Spread, difference_svg, parameter_words, polar_svg, steps_svg, svg_to_png, times_svg},
+    record::NamedRecord,
+};
+use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use std::path::{Path, PathBuf};
+
+/// Records in one figure: limits against direction, their spread, or what they cost
+///
+/// Reads records and solves nothing. With several records colour and line tell them apart, as the legend says; markers
+/// tell their l2.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  maille plot 1.1                                      maille-out/polar-1.1.svg and .png
+  maille plot 1.1 1.2 --where l2=0                     two records of maille-out in one
+  maille plot exact-3.1 energy-3.1 --kind steps -o steps.png
+  maille plot r-0.05 r-0.1 r-0.2 --kind difference --quantity l1 -o spread.svg -o spread.png
+  maille plot maille-out/1.1 --kind times --where 'direction<=90'
+
+Kinds: polar shows limits against the direction of the pull, 0\u{b0} right, counter-clockwise; difference the largest \
+less the smallest limit of all directions, against l2; steps and times the solver's iterations and the wall time of \
+each limit. --where takes the conditions of `maille table`.")]
+pub struct Args {
+    /// Folders of records; NAME stands for maille-out/NAME
+    #[arg(required = true, value_name = "RECORD")]
+    records: Vec<PathBuf>,
+    /// What is shown
+    #[arg(long, value_enum, default_value_t = Kind::Polar)]
+    kind: Kind,
+    /// Of a limit: 1 + l1, l1, or lambda1 - 1 [default: stretch; lambda1 for differences, as in the thesis]
+    #[arg(long, value_enum)]
+    quantity: Option<Shown>,
+    /// Only rows that meet these conditions, as l2=0; may be given several times
+    #[arg(long = "where", value_name = "CONDITIONS", value_parser = table::conditions, allow_hyphen_values = true)]
+    conditions: Vec<table::Conditions>,
+    /// The file, .svg or .png; may be given several times [default: maille-out/KIND-DESIGNS.svg and .png]
+    #[arg(long, short, value_name = "FILE")]
+    output: Vec<PathBuf>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Kind {
+    /// Limits against the direction of the pull
+    Polar,
+    /// Largest less smallest limit of all directions, against l2
+    Difference,
+    /// Iterations of the solver
+    Steps,
+    /// Wall time
+    Times,
+}
+
+/// What a plot shows of a limit.
+#[derive(Clone, Copy, clap::ValueEnum)]
+pub enum Shown {
+    /// 1 + l1
+    Stretch,
+    /// l1
+    L1,
+    /// lambda1 - 1, as in the thesis
+    Lambda1,
+}
+
+impl From<Shown> for Quantity {
+    fn from(shown: Shown) -> Self {
+        match shown {
+            Shown::Stretch => Quantity::Stretch,
+            Shown::L1 => Quantity::L1,
+            Shown::Lambda1 => Quantity::Lambda1,
+        }
+    }
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Format {
+    Svg,
+    Png,
+}
+
+/// More curves than this are hard to tell apart.
+const MANY: usize = 12;
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<()> {
+    if args.quantity.is_some() && matches!(args.kind, Kind::Steps | Kind::Times) {
+        return Err(miette!(
+            help = "leave --quantity out, or choose --kind polar or difference",
+            "steps and times have no --quantity"
+        ));
+    }
+    let outputs: Vec<(&Path, Format)> =
+        args.output.iter().map(|file| Ok((file.as_path(), format(file)?))).collect::<Result<_>>()?;
+    let mut records = records::read(&args.records)?;
+    for named in &mut records {
+        for table::Conditions(conditions) in &args.conditions {
+            named.keep(conditions);
+        }
+    }
+    if records.iter().all(|named| named.record.rows.is_empty()) {
+        return Err(miette!(help = "`maille table` shows what there is", "no row is left to plot"));
+    }
+    records.retain(|named| {
+        let some = !named.record.rows.is_empty();
+        if !some {
+            eprintln!("note: {} has no such row and is left out", named.name);
+        }
+        some
+    });
+    let svg = svg(args, &records);
+    let default: Vec<PathBuf> = match outputs.is_empty() {
+        true => ["svg", "png"].map(|ending| usual(args.kind, &records, ending)).into(),
+        false => Vec::new(),
+    };
+    let default = default.iter().map(|file| Ok((file.as_path(), format(file)?))).collect::<Result<Vec<_>>>()?;
+    for (file, format) in outputs.into_iter().chain(default) {
+        match format {
+            Format::Svg => files::write(file, svg.as_bytes())?,
+            Format::Png => {
+                let png = svg_to_png(&svg, 2.0).into_diagnostic().wrap_err("cannot draw the plot")?;
+                files::write(file, &png)?;
+            }
+        }
+        println!("{}", file.display());
+    }
+    Ok(())
+}
+
+fn svg(args: &Args, records: &[NamedRecord]) -> String {
+    let l2 = |named: &NamedRecord| {
+        let mut l2: Vec<u64> = named.record.rows.iter().map(|row| row.l2.to_bits()).collect();
+        l2.sort_unstable();
+        l2.dedup();
+        l2.len()
+    };
+    let curves: usize = records.iter().map(l2).sum();
+    if args.kind != Kind::Difference && records.len() > 1 && curves > MANY {
+        eprintln!("note: {curves} curves are many for one figure; --where l2=0 shows those of one l2");
+    }
+    match (args.kind, records) {
+        (Kind::Polar, [one]) => {
+            let (run, rows) = (&one.record.run, &one.record.rows);
+            let quantity = args.quantity.map_or_else(Quantity::default, Into::into);
+            polar_svg(&PolarPlot::from_rows(&run.design, rows, quantity, &parameter_words(&run.parameters)))
+        }
+        (Kind::Polar, several) => {
+            polar_svg(&PolarPlot::from_records(several, args.quantity.map_or_else(Quantity::default, Into::into)))
+        }
+        (Kind::Difference, records) => difference_svg(
+            records,
+            match args.quantity {
+                // Of 1 + l1 and of l1 the difference is the same.
+                Some(Shown::Stretch | Shown::L1) => Spread::L1,
+                Some(Shown::Lambda1) | None => Spread::Lambda1,
+            },
+        ),
+        (Kind::Steps, records) => steps_svg(records),
+        (Kind::Times, records) => times_svg(records),
+    }
+}
+
+fn format(file: &Path) -> Result<Format> {
+    let ending = file.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+    match ending.as_str() {
+        "svg" => Ok(Format::Svg),
+        "png" => Ok(Format::Png),
+        _ => Err(miette!(help = "call it .svg or .png", "the ending of {} names no format of a plot", file.display())),
+    }
+}
+
+/// `maille-out/polar-1.1-3.1.svg`.
+fn usual(kind: Kind, records: &[NamedRecord], ending: &str) -> PathBuf {
+    let kind = match kind {
+        Kind::Polar => "polar",
+        Kind::Difference => "difference",
+        Kind::Steps => "steps",
+        Kind::Times => "times",
+    };
+    let mut names: Vec<String> = Vec::new();
+    for named in records {
+        let name = file_name(&named.record.run.design.name);
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    Path::new("maille-out").join(format!("{kind}-{}.{ending}", names.join("-")))
+}

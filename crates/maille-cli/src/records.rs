@@ -1,0 +1,31 @@
+//! Records named on the command line.
+
+use maille_io::record::{NamedRecord, Record};
+use miette::{Result, miette};
+use std::path::{Path, PathBuf};
+
+/// The folder that is meant: itself, the one of a file in it, or `maille-out/NAME`.
+pub fn folder(named: &Path) -> PathBuf {
+    let usual = Path::new("maille-out").join(named);
+    if named.is_file() {
+        named.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_owned()
+    } else if !named.exists() && usual.is_dir() {
+        usual
+    } else {
+        named.to_owned()
+    }
+}
+
+/// Reads records, each with its folder as a name.
+pub fn read(named: &[PathBuf]) -> Result<Vec<NamedRecord>> {
+    let mut out: Vec<NamedRecord> = Vec::new();
+    for path in named {
+        let folder: PathBuf = folder(path).components().collect(); // without a slash at the end
+        let name = folder.display().to_string();
+        if out.iter().any(|known| known.name == name) {
+            return Err(miette!(help = "name each record once", "the record {name} is given twice"));
+        }
+        out.push(NamedRecord { record: Record::read(&folder)?, name });
+    }
+    Ok(out)
+}

@@ -1,0 +1,156 @@
+//! `maille table`: rows of records.
+
+use crate::{files, records};
+use maille_io::{
+    record::NamedRecord,
+    table::{Condition, Extent, Field, SortKey, Table, TableError},
+};
+use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use std::{
+    io::IsTerminal,
+    path::{Path, PathBuf},
+};
+
+/// Rows of records, chosen and sorted: in the terminal, or as CSV, JSON or Parquet
+///
+/// In the terminal numbers are rounded and columns that do not fit are named below; the other formats have all columns
+/// and digits. Parquet and JSON hold the units of the columns and the inputs of each record.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  maille table 1.1                                        maille-out/1.1, in the terminal
+  maille table 1.1 --where 'direction=30,l2=-0.125'
+  maille table 1.1 3.1 --where 'l2<0,status=local' --sort=-l1 --rows 10
+  maille table 1.1 --columns direction,l2,l1,bound_gap --where 'bound_gap>1e-6'
+  maille table maille-out/* -o limits.parquet             for polars, pandas, DuckDB
+  maille table 1.1 --where l1=none --format csv
+
+Conditions: = != < <= > >=, divided by commas, all must hold. a|b is either, none is an empty value, and what has a \
+comma stands in double quotes: 'cell=\"1,0;-1,2\"'. Numbers are equal if nine digits are. direction is short for \
+direction_deg, r for minor_radius; record is the folder that a row comes from.")]
+pub struct Args {
+    /// Folders of records; NAME stands for maille-out/NAME
+    #[arg(required = true, value_name = "RECORD")]
+    records: Vec<PathBuf>,
+    /// Only rows that meet these conditions; may be given several times
+    #[arg(long = "where", value_name = "CONDITIONS", value_parser = conditions, allow_hyphen_values = true)]
+    conditions: Vec<Conditions>,
+    /// Order by these columns, -COLUMN with the largest first; empty values come last
+    #[arg(long, value_name = "COLUMNS", value_parser = keys, allow_hyphen_values = true)]
+    sort: Option<Keys>,
+    /// These columns, in this order, or all [default: in text those of a first look, else all]
+    #[arg(long, value_parser = columns)]
+    columns: Option<Columns>,
+    /// Rows at most
+    #[arg(long, value_name = "N")]
+    rows: Option<usize>,
+    /// How the table is written [default: as the file is called, else text]
+    #[arg(long, value_enum)]
+    format: Option<Format>,
+    /// The file, or - for standard output
+    #[arg(long, short, value_name = "FILE")]
+    output: Option<PathBuf>,
+}
+
+/// Conditions of one `--where`; also of `maille plot`.
+#[derive(Clone)]
+pub struct Conditions(pub Vec<Condition>);
+
+#[derive(Clone)]
+struct Keys(Vec<SortKey>);
+
+#[derive(Clone)]
+enum Columns {
+    All,
+    These(Vec<Field>),
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Format {
+    Text,
+    Csv,
+    Json,
+    Parquet,
+}
+
+/// Reads a `--where`.
+pub fn conditions(text: &str) -> Result<Conditions, TableError> {
+    Condition::parse_list(text).map(Conditions)
+}
+
+fn keys(text: &str) -> Result<Keys, TableError> {
+    SortKey::parse_list(text).map(Keys)
+}
+
+fn columns(text: &str) -> Result<Columns, TableError> {
+    if text == "all" { Ok(Columns::All) } else { Field::parse_list(text).map(Columns::These) }
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<()> {
+    let file = args.output.as_deref().filter(|path| *path != Path::new("-"));
+    let format = match (args.format, file) {
+        (Some(format), _) => format,
+        (None, Some(file)) => format_of(file)?,
+        (None, None) => Format::Text,
+    };
+    if format == Format::Parquet && file.is_none() && std::io::stdout().is_terminal() {
+        return Err(miette!(help = "name a file, as -o limits.parquet", "Parquet is not for the terminal"));
+    }
+    let records = records::read(&args.records)?;
+    let bytes = written(args, &records, format)?;
+    match file {
+        Some(file) => {
+            files::write(file, &bytes)?;
+            eprintln!("{}", file.display());
+            Ok(())
+        }
+        None => files::print(&bytes),
+    }
+}
+
+fn written(args: &Args, records: &[NamedRecord], format: Format) -> Result<Vec<u8>> {
+    let several = records.len() > 1;
+    let fields = match (&args.columns, format) {
+        (Some(Columns::These(fields)), _) => fields.clone(),
+        (None, Format::Text) => Field::first_look(several),
+        _ => Field::all(several),
+    };
+    let mut table = Table::new(records, fields);
+    table.keep(&args.conditions.iter().flat_map(|c| c.0.clone()).collect::<Vec<_>>());
+    if let Some(Keys(keys)) = &args.sort {
+        table.sort(keys);
+    }
+    if format != Format::Text {
+        table.truncate(args.rows.unwrap_or(usize::MAX));
+    }
+    Ok(match format {
+        Format::Text => {
+            let on_terminal = args.output.is_none() && std::io::stdout().is_terminal();
+            let width = terminal_size::terminal_size().filter(|_| on_terminal).map(|(width, _)| usize::from(width.0));
+            table.text(Extent { width, rows: args.rows }).into_bytes()
+        }
+        Format::Csv => table.csv().into_bytes(),
+        Format::Json => table.json().into_bytes(),
+        Format::Parquet => {
+            let mut bytes = Vec::new();
+            table.parquet(&mut bytes).into_diagnostic().wrap_err("cannot write the table")?;
+            bytes
+        }
+    })
+}
+
+fn format_of(file: &Path) -> Result<Format> {
+    let ending = file.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+    match ending.as_str() {
+        "txt" => Ok(Format::Text),
+        "csv" => Ok(Format::Csv),
+        "json" => Ok(Format::Json),
+        "parquet" => Ok(Format::Parquet),
+        _ => Err(miette!(
+            help = "call it .txt, .csv, .json or .parquet, or give --format",
+            "the ending of {} names no format of a table",
+            file.display()
+        )),
+    }
+}

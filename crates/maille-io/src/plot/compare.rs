@@ -1,0 +1,199 @@
+//! Several records in one plot: what they have in common, and what tells them apart.
+
+use super::scale::signed;
+use crate::record::NamedRecord;
+use maille::design::Design;
+use maille::record::{LimitRow, Status};
+use serde_json::Value;
+
+/// What a record's `parameters` say about it in a caption: `τ = 0.01`.
+pub fn parameter_words(parameters: &Value) -> Vec<String> {
+    let options = &parameters["options"];
+    let number = |name: &str| options[name].as_f64();
+    let protocol = match options["protocol"].as_str() {
+        Some("corners") => Some("corner protocol".to_owned()),
+        Some(other) => Some(format!("{other} protocol")),
+        None => None,
+    };
+    [
+        protocol,
+        number("alpha").map(|x| format!("α/β = {x:.0e}")),
+        number("tau").map(|x| format!("τ = {x}")),
+        number("l1_resolution").map(|x| format!("l₁ to {x}")),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+/// Name and title of a design.
+pub(super) fn heading(design: &Design) -> String {
+    if design.title.is_empty() { design.name.clone() } else { format!("{} · {}", design.name, design.title) }
+}
+
+/// Heading of several records: their designs.
+pub(super) fn title(records: &[NamedRecord]) -> String {
+    let mut names: Vec<&str> = Vec::new();
+    for named in records {
+        let name = named.record.run.design.name.as_str();
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    match (names.as_slice(), records.first()) {
+        ([_], Some(first)) => heading(&first.record.run.design),
+        ([most @ .., last], _) if names.len() <= 6 => format!("{} and {last}", most.join(", ")),
+        _ => format!(
+            "{} and {} more designs",
+            names.iter().take(5).copied().collect::<Vec<_>>().join(", "),
+            names.len().saturating_sub(5)
+        ),
+    }
+}
+
+/// Radius, method, cell and parameters of the rows.
+pub(super) fn inputs(design: &Design, rows: &[LimitRow], parameters: &[String]) -> String {
+    let mut words = radii(design, rows, true);
+    words.extend(distinct(rows, |row| &row.method).iter().map(|method| format!("{method} method")));
+    words.extend(cells(rows));
+    words.extend(parameters.iter().cloned());
+    words.join("  ·  ")
+}
+
+/// `r = 0.1 mm`, with `(r/R = 0.1)` if asked for.
+fn radii(design: &Design, rows: &[LimitRow], relative: bool) -> Vec<String> {
+    let mut radii: Vec<f64> = rows.iter().filter_map(|row| row.minor_radius).collect();
+    radii.sort_by(f64::total_cmp);
+    radii.dedup();
+    let unit = design.unit.as_ref().map(|unit| format!(" {unit}")).unwrap_or_default();
+    let ratio = |r: f64| {
+        if relative { format!(" (r/R = {})", significant(r / design.reference_radius)) } else { String::new() }
+    };
+    radii.into_iter().map(|r| format!("r = {r}{unit}{}", ratio(r))).collect()
+}
+
+fn cells(rows: &[LimitRow]) -> Vec<String> {
+    distinct(rows, |row| &row.cell).iter().map(|cell| format!("cell {}", cell.replace('x', " × "))).collect()
+}
+
+fn distinct(rows: &[LimitRow], of: fn(&LimitRow) -> &String) -> Vec<&String> {
+    let mut all: Vec<_> = rows.iter().map(of).collect();
+    all.sort();
+    all.dedup();
+    all
+}
+
+fn significant(x: f64) -> String {
+    let rounded: f64 = format!("{x:.3e}").parse().unwrap_or(x);
+    format!("{rounded}")
+}
+
+/// What is different in a record, as `exact` or `3.1, r = 0.05`, and above all of them what it is: `Method`, or
+/// `Design, r`.
+pub(super) fn differences(records: &[NamedRecord]) -> (String, Vec<String>) {
+    let method = |named: &NamedRecord| named.record.run.parameters["method"].as_str().unwrap_or_default().to_owned();
+    let radius = |named: &NamedRecord| {
+        let radii = radii(&named.record.run.design, &named.record.rows, false).join(", ");
+        if radii.is_empty() { "r of each ring".to_owned() } else { radii }
+    };
+    type Part = (&'static str, Vec<String>);
+    let column =
+        |name: &'static str, of: &dyn Fn(&NamedRecord) -> String| -> Part { (name, records.iter().map(of).collect()) };
+    let first = [
+        column("design", &|named| named.record.run.design.name.clone()),
+        column("r", &radius),
+        column("method", &method),
+    ];
+    let mut parts: Vec<Part> = first.into_iter().filter(|(_, of)| of.windows(2).any(|w| w[0] != w[1])).collect();
+    // The method says already that its parameters are others.
+    let words: Vec<_> = records.iter().map(|named| parameter_words(&named.record.run.parameters)).collect();
+    let own = |i: usize| {
+        let same_method = (0..records.len()).filter(|&j| method(&records[j]) == method(&records[i]));
+        let others: Vec<usize> = same_method.collect();
+        words[i].iter().filter(|word| others.iter().any(|&j| !words[j].contains(word))).cloned().collect::<Vec<_>>()
+    };
+    let own: Vec<String> = (0..records.len()).map(|i| own(i).join(", ")).collect();
+    if own.iter().any(|text| !text.is_empty()) {
+        parts.push(("parameters", own));
+    }
+    // If nothing else tells records apart: their cells, and at last their folders.
+    for last in
+        [column("cell", &|named| cells(&named.record.rows).join(", ")), column("record", &|named| named.name.clone())]
+    {
+        let labels = labels(&parts, records.len());
+        if (0..labels.len()).any(|i| labels[..i].contains(&labels[i])) {
+            parts.retain(|(name, _)| *name != "cell");
+            parts.push(last);
+        }
+    }
+    let heading = parts.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
+    let mut letters = heading.chars();
+    let heading = match letters.next() {
+        Some('r') if heading == "r" || heading.starts_with("r,") => heading, // a symbol
+        Some(first) => first.to_uppercase().chain(letters).collect(),
+        None => heading,
+    };
+    let mut labels = labels(&parts, records.len());
+    for (label, named) in labels.iter_mut().zip(records) {
+        if label.is_empty() {
+            label.clone_from(&named.record.run.design.name);
+        }
+    }
+    (heading, labels)
+}
+
+fn labels(parts: &[(&str, Vec<String>)], count: usize) -> Vec<String> {
+    let label = |i: usize| parts.iter().map(|(_, of)| of[i].as_str()).filter(|t| !t.is_empty()).collect::<Vec<_>>();
+    (0..count).map(|i| label(i).join(", ")).collect()
+}
+
+/// A paragraph for each record: its label, inputs, directions, and what it has no limits for.
+pub(super) fn captions(records: &[NamedRecord], labels: &[String]) -> Vec<String> {
+    let caption = |(named, label): (&NamedRecord, &String)| {
+        let (run, rows) = (&named.record.run, &named.record.rows);
+        let words = inputs(&run.design, rows, &parameter_words(&run.parameters));
+        let gaps = missing(rows, |row| row.l1).map(|gaps| format!("  {gaps}")).unwrap_or_default();
+        let directions = directions(rows).map(|text| format!("  ·  {text}.")).unwrap_or_default();
+        let name = if records.len() > 1 { format!("{label}:  ") } else { String::new() };
+        format!("{name}{words}{directions}{gaps}")
+    };
+    records.iter().zip(labels).map(caption).collect()
+}
+
+/// `13 directions computed, 0° to 180°`.
+pub(super) fn directions(rows: &[LimitRow]) -> Option<String> {
+    let mut directions: Vec<f64> = rows.iter().map(|row| row.direction_deg).collect();
+    directions.sort_by(f64::total_cmp);
+    directions.dedup();
+    let (first, last) = (directions.first()?, directions.last()?);
+    Some(match directions.len() {
+        1 => format!("1 direction computed, {first}°"),
+        n => format!("{n} directions computed, {first}° to {last}°"),
+    })
+}
+
+/// How many rows have no value, and why: `Gaps: 3 of 39 searches gave no limit (2 l2-unreachable, 1 not-converged).`
+pub(super) fn missing(rows: &[LimitRow], of: impl Fn(&LimitRow) -> Option<f64>) -> Option<String> {
+    let without: Vec<_> = rows.iter().filter(|row| of(row).is_none()).collect();
+    if without.is_empty() {
+        return None;
+    }
+    let count = |status: Status| without.iter().filter(|row| row.status == status).count();
+    let by_status = Status::ALL.into_iter().map(|s| (count(s), s.name())).filter(|(n, _)| *n > 0);
+    let parts: Vec<_> = by_status.map(|(n, name)| format!("{n} {name}")).collect();
+    let (n, total) = (without.len(), rows.len());
+    Some(format!("Gaps: {n} of {total} searches gave no limit ({}).", parts.join(", ")))
+}
+
+/// The l2 of rows, from least to largest, each once.
+pub(super) fn l2_values<'a>(rows: impl Iterator<Item = &'a LimitRow>) -> Vec<f64> {
+    let mut l2: Vec<f64> = rows.map(|row| row.l2 + 0.0).collect(); // + 0.0 makes −0 equal to 0
+    l2.sort_by(f64::total_cmp);
+    l2.dedup();
+    l2
+}
+
+/// An l2 in a legend.
+pub(super) fn l2_label(l2: f64) -> String {
+    signed(&format!("{l2}"))
+}

@@ -1,0 +1,86 @@
+//! How much the limits of a sheet differ between directions: largest less smallest, against l2.
+
+use super::chart::{Chart, Point, Series, hollow_note, sample};
+use super::compare::{captions, differences, l2_values, title};
+use super::frame::{Entry, Frame};
+use super::look;
+use super::scale::Axis;
+use crate::record::NamedRecord;
+use maille::record::LimitRow;
+
+/// What is compared between directions.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Spread {
+    /// (1 + l1)² − 1, the λ1 − 1 of the thesis.
+    #[default]
+    Lambda1,
+    /// l1.
+    L1,
+}
+
+impl Spread {
+    fn of(self, row: &LimitRow) -> Option<f64> {
+        match self {
+            Spread::Lambda1 => row.l1.map(|l1| (1.0 + l1).powi(2) - 1.0),
+            Spread::L1 => row.l1,
+        }
+    }
+
+    fn symbol(self) -> &'static str {
+        match self {
+            Spread::Lambda1 => "λ₁ − 1",
+            Spread::L1 => "l₁",
+        }
+    }
+}
+
+/// The plot of one record or several, as SVG.
+pub fn difference_svg(records: &[NamedRecord], spread: Spread) -> String {
+    let (apart, labels) = differences(records);
+    let looks = look::of_records(records.len());
+    let series: Vec<Series> = records
+        .iter()
+        .zip(&looks)
+        .map(|(named, look)| {
+            let rows = &named.record.rows;
+            let points = l2_values(rows.iter()).into_iter().map(|l2| point(rows, l2, spread)).collect();
+            Series { look: look.clone(), points }
+        })
+        .collect();
+    let points = || series.iter().flat_map(|series| &series.points);
+    let mut legend = vec![Entry::Heading(if records.len() > 1 { apart } else { "Design".into() })];
+    legend.extend(looks.iter().zip(&labels).map(|(look, label)| sample(look, true, true, label)));
+    let mut caption = captions(records, &labels);
+    if points().any(|point| point.hollow) {
+        legend.push(hollow_note("some directions have no limit"));
+    }
+    if spread == Spread::Lambda1 {
+        caption.push("λ₁ = (1 + l₁)² is the eigenvalue of C = FᵀF along the pull.".into());
+    }
+    caption.push("0 would be a sheet that locks at the same stretch in every direction that was computed.".into());
+    let l2 = l2_values(records.iter().flat_map(|named| &named.record.rows));
+    Chart {
+        frame: Frame {
+            title: title(records),
+            subtitle: "How much the limit depends on the direction of the pull, for each l₂".into(),
+            legend,
+            caption,
+        },
+        x: Axis::of_l2(&l2),
+        y: Axis::linear(points().filter_map(|point| point.y)),
+        names: [
+            "l₂, stretch held across the pull, less 1 (no unit)".into(),
+            format!("Largest less smallest {} of all directions (no unit)", spread.symbol()),
+        ],
+        series,
+    }
+    .svg()
+}
+
+/// Nothing where fewer than two directions have a limit; hollow where only some have.
+fn point(rows: &[LimitRow], l2: f64, spread: Spread) -> Point {
+    let of_l2 = || rows.iter().filter(|row| row.l2 == l2);
+    let found: Vec<f64> = of_l2().filter_map(|row| spread.of(row)).collect();
+    let (min, max) = found.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), x| (lo.min(*x), hi.max(*x)));
+    Point { x: l2, y: (found.len() > 1).then_some(max - min), hollow: found.len() < of_l2().count() }
+}

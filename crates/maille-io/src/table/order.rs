@@ -1,0 +1,76 @@
+//! `l2,-l1`: the order of the rows.
+
+use super::{Field, Row, TableError};
+use crate::record::Cell;
+use std::cmp::Ordering;
+
+/// A column to sort by.
+#[derive(Clone, Copy, Debug)]
+pub struct SortKey {
+    field: Field,
+    /// Largest first.
+    down: bool,
+}
+
+impl SortKey {
+    /// Reads `l2,-l1`; the minus sign puts the largest first.
+    pub fn parse_list(text: &str) -> Result<Vec<Self>, TableError> {
+        let key = |name: &str| {
+            let name = name.trim();
+            let down = name.starts_with('-');
+            Ok(Self { field: Field::parse(name.strip_prefix('-').unwrap_or(name))?, down })
+        };
+        text.split(',').map(key).collect()
+    }
+}
+
+/// The order of two rows.
+pub(super) fn compare(keys: &[SortKey], a: &Row<'_>, b: &Row<'_>) -> Ordering {
+    let of_key = |key: &SortKey| {
+        let (a, b) = (key.field.of(a), key.field.of(b));
+        match (a == Cell::Empty, b == Cell::Empty) {
+            (false, false) if key.down => of_cells(b, a),
+            (false, false) => of_cells(a, b),
+            (a_empty, b_empty) => a_empty.cmp(&b_empty),
+        }
+    };
+    keys.iter().map(of_key).find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
+}
+
+/// The order of two values of one column.
+fn of_cells(a: Cell<'_>, b: Cell<'_>) -> Ordering {
+    match (a, b) {
+        (Cell::Number(a), Cell::Number(b)) => (a + 0.0).total_cmp(&(b + 0.0)), // −0 is 0
+        (Cell::Count(a), Cell::Count(b)) => a.cmp(&b),
+        (Cell::Text(a), Cell::Text(b)) => a.cmp(b),
+        (Cell::Flag(a), Cell::Flag(b)) => a.cmp(&b),
+        _ => Ordering::Equal,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use maille::record::LimitRow;
+
+    #[test]
+    fn rows_are_sorted_and_empty_ones_come_last() {
+        let limit = |l2: f64, l1: Option<f64>| LimitRow { l2, l1, ..LimitRow::default() };
+        let rows = [limit(0.0, None), limit(-0.0, Some(0.2)), limit(-1.0, Some(0.3)), limit(0.0, Some(0.5))];
+        let sorted = |text: &str| {
+            let keys = SortKey::parse_list(text).unwrap();
+            let mut order = [0, 1, 2, 3];
+            order.sort_by(|&a, &b| {
+                let row = |i: usize| Row { record: "", limit: &rows[i] };
+                compare(&keys, &row(a), &row(b))
+            });
+            order
+        };
+        assert_eq!(sorted("l1"), [1, 2, 3, 0]);
+        assert_eq!(sorted("-l1"), [3, 2, 1, 0]);
+        assert_eq!(sorted("l2,-l1"), [2, 3, 1, 0]);
+        assert_eq!(sorted("design"), [0, 1, 2, 3]);
+        let error = SortKey::parse_list("-l3").unwrap_err().to_string();
+        assert!(error.starts_with("there is no column \"l3\"; did you mean l"), "{error}");
+    }
+}

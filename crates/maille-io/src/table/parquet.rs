@@ -1,0 +1,80 @@
+//! A table as Apache Parquet, with units beside the columns and the records' inputs in the file.
+
+use super::{Field, Table, json};
+use crate::record::{Cell, Values};
+use arrow_array::{ArrayRef, BooleanArray, Float64Array, Int64Array, RecordBatch, StringArray};
+use arrow_schema::{ArrowError, DataType, Schema};
+use maille::record::RECORD_SCHEMA;
+use parquet::arrow::ArrowWriter;
+use parquet::basic::Compression;
+use parquet::file::metadata::KeyValue;
+use parquet::file::properties::WriterProperties;
+use std::collections::HashMap;
+use std::io::Write;
+use std::sync::Arc;
+use thiserror::Error;
+
+/// A table that cannot be written as Parquet.
+#[derive(Debug, Error)]
+pub enum ParquetError {
+    /// The columns do not make a table.
+    #[error("the table has no form in Arrow")]
+    Arrow(#[from] ArrowError),
+    /// The bytes could not be written.
+    #[error("the table cannot be written as Parquet")]
+    Parquet(#[from] parquet::errors::ParquetError),
+}
+
+impl Table<'_> {
+    /// Writes the table as Parquet. `unit` and `meaning` stand with each column, the inputs of each record as JSON under
+    /// the file's key `maille.records`, the version of the columns under `maille.schema`.
+    pub fn parquet(&self, out: impl Write + Send) -> Result<(), ParquetError> {
+        let columns: Vec<(Field, ArrayRef)> =
+            self.fields.iter().map(|&field| Ok((field, self.array(field)?))).collect::<Result<_, ArrowError>>()?;
+        let schema = columns.iter().map(|(field, array)| self.arrow_field(*field, array.data_type().clone()));
+        let records: serde_json::Value = self.records.iter().map(json::inputs).collect();
+        let metadata = [("maille.schema", RECORD_SCHEMA.to_string()), ("maille.records", records.to_string())];
+        // Twice: pyarrow shows those of the Arrow schema, DuckDB those of the file.
+        let of_file = metadata.clone().map(|(key, value)| KeyValue::new(key.to_owned(), value));
+        let of_schema = HashMap::from(metadata.map(|(key, value)| (key.to_owned(), value)));
+        let schema = Arc::new(Schema::new_with_metadata(schema.collect::<Vec<_>>(), of_schema));
+        let batch = RecordBatch::try_new(schema.clone(), columns.into_iter().map(|(_, array)| array).collect())?;
+        let properties = WriterProperties::builder()
+            .set_compression(Compression::SNAPPY)
+            .set_created_by(concat!("maille ", env!("CARGO_PKG_VERSION")).to_owned())
+            .set_key_value_metadata(Some(of_file.into()))
+            .build();
+        let mut writer = ArrowWriter::try_new(out, schema, Some(properties))?;
+        writer.write(&batch)?;
+        writer.close()?;
+        Ok(())
+    }
+
+    fn arrow_field(&self, field: Field, kind: DataType) -> arrow_schema::Field {
+        let mut metadata = HashMap::from([("meaning".to_owned(), field.meaning().to_owned())]);
+        metadata.extend(self.unit(field).map(|unit| ("unit".to_owned(), unit.to_owned())));
+        arrow_schema::Field::new(field.name(), kind, true).with_metadata(metadata)
+    }
+
+    /// The values of a column. A count is a signed integer, so that the difference of two is right in every reader.
+    fn array(&self, field: Field) -> Result<ArrayRef, ArrowError> {
+        let cells = self.rows.iter().map(|row| field.of(row));
+        let text = || cells.clone().map(|cell| if let Cell::Text(text) = cell { Some(text) } else { None });
+        Ok(match field {
+            Field::Record => Arc::new(text().collect::<StringArray>()),
+            Field::Limit(column) => match column.values {
+                Values::Text(_) => Arc::new(text().collect::<StringArray>()),
+                Values::Number(of) => Arc::new(self.rows.iter().map(|row| of(row.limit)).collect::<Float64Array>()),
+                Values::Flag(of) => Arc::new(self.rows.iter().map(|row| of(row.limit)).collect::<BooleanArray>()),
+                Values::Count(of) => {
+                    let signed = |n: u64| {
+                        let wide = |_| ArrowError::CastError(format!("{} is {n}, too large for Int64", column.name));
+                        i64::try_from(n).map_err(wide)
+                    };
+                    let counts = self.rows.iter().map(|row| of(row.limit).map(signed).transpose());
+                    Arc::new(counts.collect::<Result<Int64Array, _>>()?)
+                }
+            },
+        })
+    }
+}
