@@ -2,6 +2,8 @@
 
 pub mod cholesky;
 pub mod convex;
+pub mod curvature;
+pub mod descent;
 pub mod eigen;
 pub mod kkt;
 pub mod newton;
