@@ -1,10 +1,15 @@
 //! `maille characterize`: limits over directions and lateral strains, written as a record.
 
 use crate::{
+    exit::{self, wrong},
     input::{Input, file_name},
-    numbers::{Numbers, parse, parse_l2, positive},
+    interrupt,
+    numbers::{Numbers, parse, parse_cell, parse_l2, positive},
+    output,
     plot::Shown,
     progress::Progress,
+    summary::Summary,
+    watch::watch,
 };
 use maille::{
     characterize::{Finished, Method, Task, characterize, tasks},
@@ -24,7 +29,7 @@ use std::{
     path::PathBuf,
     process::ExitCode,
     sync::{
-        Arc, Mutex,
+        Mutex,
         atomic::{AtomicBool, Ordering},
     },
     time::{Duration, Instant},
@@ -42,9 +47,14 @@ Examples:
   maille characterize 3.1 --directions 0:180:5 --l2 -0.25,-0.125,0
   maille characterize 1.2 --minor-radius 0.05 --quantity lambda1
   maille characterize 3.1 --method energy --cell \"1,0;-1,2\" --protocol corners --tau 0.1 --out corners-3.1
-  maille characterize my-weave.toml --out results/my-weave")]
+  maille characterize my-weave.toml --out results/my-weave
+  maille characterize my-weave.toml --directions 0,45,90 --l2 0 --watch
+  maille characterize 1.1 --json | jq '.limits[] | .largest.l1'
+
+Exit codes: 0 every limit was found or proved not to be there, 5 the record is written but some were not found, \
+130 interrupted.")]
 pub struct Args {
-    /// A built-in design (see `maille designs`) or a TOML file
+    /// A built-in design (see `maille designs`), a TOML file, or - for standard input
     design: String,
     /// Directions of the pull, degrees counter-clockwise from x: a list, or first:last:step
     #[arg(long, default_value = "0:180:5", value_parser = parse, allow_hyphen_values = true)]
@@ -77,8 +87,14 @@ pub struct Args {
     /// Seed of everything random
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// Print the summary as one JSON document; docs/json.md has its keys
+    #[arg(long)]
+    json: bool,
+    /// Compute again whenever the design file is saved; implies --overwrite
+    #[arg(long)]
+    watch: bool,
     /// No progress and no summary
-    #[arg(long, short)]
+    #[arg(long, short, conflicts_with = "json")]
     quiet: bool,
     /// Exact method: starts of a limit whose bound is not attained
     #[arg(long, default_value_t = ExactOptions::default().starts, value_parser = |t: &str| small(t, 10_000))]
@@ -133,10 +149,7 @@ const MOST_ELEMENTS: usize = 40;
 fn cell_choice(text: &str) -> Result<CellChoice, String> {
     match text {
         "auto" => Ok(CellChoice::Auto),
-        _ => text
-            .parse()
-            .map(CellChoice::One)
-            .map_err(|e: maille::error::InvalidInput| format!("{}; {}", e.problem, e.help)),
+        _ => parse_cell(text).map(CellChoice::One),
     }
 }
 
@@ -241,6 +254,13 @@ impl Collected {
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
+    match args.watch {
+        true => watch(std::slice::from_ref(&args.design), || once(args)),
+        false => once(args),
+    }
+}
+
+fn once(args: &Args) -> Result<ExitCode> {
     let input = Input::read(&args.design, args.minor_radius)?;
     let cells = args.cell.cells(args.method, input.design.elements.len());
     let models: Vec<Model> = cells.iter().map(|cell| input.compile(&input.design, *cell)).collect::<Result<_>>()?;
@@ -259,8 +279,13 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         },
     });
     let out = args.out.clone().unwrap_or_else(|| PathBuf::from("maille-out").join(file_name(&input.design.name)));
+    if out.is_file() {
+        let help = "name another folder with --out";
+        return Err(wrong(exit::USAGE, format!("{} is a file; a record is a folder", out.display()), help));
+    }
     let version = env!("CARGO_PKG_VERSION");
-    let (folder, old_rows, old_states) = RecordFolder::open(&out, &input.design, &parameters, version, args.overwrite)?;
+    let (folder, old_rows, old_states) =
+        RecordFolder::open(&out, &input.design, &parameters, version, args.overwrite || args.watch)?;
 
     let all = tasks(&args.directions.0, &args.l2.0);
     let mut rows: Vec<Option<(LimitRow, StateRecord)>> = vec![None; all.len()];
@@ -279,8 +304,8 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         }
     }
 
-    let cancel = Arc::new(AtomicBool::new(false));
-    stop_on_interrupt(&cancel)?;
+    let cancel = interrupt::flag()?;
+    let cancel: &AtomicBool = &cancel;
     let progress = Progress::new(open.len() as u64, args.quiet);
     let collected = Mutex::new(Collected { folder, rows, written: Instant::now(), failure: None });
     let receive = |found: Finished| {
@@ -306,7 +331,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let (directions, l2) = (&args.directions.0, &args.l2.0);
     let wanted = |task: Task| open.contains(&task);
     pool.install(|| {
-        characterize(&models, input.design.minor_radius, &method, directions, l2, &wanted, &cancel, &receive)
+        characterize(&models, input.design.minor_radius, &method, directions, l2, &wanted, cancel, &receive)
     });
     progress.finish();
     let mut collected = collected.into_inner().unwrap_or_else(|e| e.into_inner());
@@ -321,59 +346,28 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let png = svg_to_png(&svg, 2.0).into_diagnostic().wrap_err("cannot draw the plot")?;
     collected.folder.write_polar(&svg, &png)?;
     let interrupted = cancel.load(Ordering::Relaxed);
-    if !args.quiet {
-        let solved = rows.iter().filter(|r| r.status != Status::Interrupted).count() - (all.len() - open.len());
-        summary(&rows, solved, begun.elapsed(), &out);
-        if interrupted {
-            eprintln!("interrupted; the same command goes on from here");
-        }
+    let solved = rows.iter().filter(|r| r.status != Status::Interrupted).count() - (all.len() - open.len());
+    let summary = Summary::new(&input.design.name, &rows, solved, begun.elapsed(), interrupted, &out);
+    if args.json {
+        output::print_json(&summary)?;
+    } else if !args.quiet {
+        summary.print();
     }
-    Ok(if interrupted { ExitCode::from(130) } else { ExitCode::SUCCESS })
-}
-
-/// The first Ctrl-C ends the run cleanly, the second at once.
-fn stop_on_interrupt(cancel: &Arc<AtomicBool>) -> Result<()> {
-    let cancel = Arc::clone(cancel);
-    ctrlc::set_handler(move || {
-        if cancel.swap(true, Ordering::Relaxed) {
-            std::process::exit(130);
-        }
-        eprintln!("\nstopping: finished limits are being written (Ctrl-C again ends at once)");
-    })
-    .into_diagnostic()
-    .wrap_err("cannot listen for Ctrl-C")
-}
-
-/// Least and largest limit of each l2, what has no limit, and where the files are.
-fn summary(rows: &[LimitRow], solved: usize, took: Duration, out: &std::path::Path) {
-    let mut l2: Vec<f64> = rows.iter().map(|r| r.l2).collect();
-    l2.sort_by(f64::total_cmp);
-    l2.dedup();
-    println!("{:>8}  {:>20}  {:>20}  {:>7}", "l2", "least l1", "largest l1", "limits");
-    for l2 in l2 {
-        let of: Vec<&LimitRow> = rows.iter().filter(|r| r.l2 == l2).collect();
-        let mut found: Vec<(f64, f64)> = of.iter().filter_map(|r| Some((r.l1?, r.direction_deg))).collect();
-        // Rounding decides nothing: of equal limits the first direction is named.
-        found.sort_by(|a, b| (a.0 * 1e9).round().total_cmp(&(b.0 * 1e9).round()));
-        let show = |x: Option<&(f64, f64)>| x.map_or("-".into(), |(l1, at)| format!("{l1:.4} at {at}°"));
-        println!(
-            "{l2:>8}  {:>20}  {:>20}  {:>3}/{:<3}",
-            show(found.first()),
-            show(found.iter().rev().take_while(|x| (x.0 - found[found.len() - 1].0).abs() < 1e-9).last()),
-            found.len(),
-            of.len()
-        );
+    if interrupted && !args.quiet {
+        eprintln!("interrupted; the same command goes on from here");
     }
-    for status in Status::ALL {
-        let count = rows.iter().filter(|r| r.status == status).count();
-        if count > 0 {
-            println!("{count} {}", status.name());
-        }
-    }
-    println!(
-        "{solved} limits in {:.1} s; {}, states.jsonl, run.json, polar.svg",
-        took.as_secs_f64(),
-        out.join("limits.csv").display()
-    );
-    println!("look at {}", out.join("polar.png").display());
+    // A proof that there is no limit is an answer.
+    let unanswered = |r: &LimitRow| match r.status {
+        Status::Global | Status::Local | Status::ThresholdReached | Status::L2Unreachable | Status::Unbounded => false,
+        Status::Uncertified
+        | Status::L2NotReached
+        | Status::NotConverged
+        | Status::InfeasibleStart
+        | Status::Interrupted => true,
+    };
+    Ok(ExitCode::from(match () {
+        () if interrupted => exit::INTERRUPTED,
+        () if rows.iter().any(unanswered) => exit::INCOMPLETE,
+        () => exit::DONE,
+    }))
 }

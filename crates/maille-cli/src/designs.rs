@@ -1,20 +1,50 @@
 //! `maille designs`: the built-in designs with a line each.
 
+use crate::output;
 use maille_io::{builtin_designs, read_design};
 use miette::Result;
+use serde_json::json;
 
 /// The built-in designs, with a line each
 #[derive(clap::Args)]
-pub struct Args {}
+#[command(after_help = "\
+Examples:
+  maille designs
+  maille designs --json | jq -r '.designs[].name'")]
+pub struct Args {
+    /// Print one JSON document; docs/json.md has its keys
+    #[arg(long)]
+    json: bool,
+}
 
 /// Prints the list.
-pub fn run(_: &Args) -> Result<()> {
-    println!("{:<6} {:>8} {:>6}  title", "name", "elements", "rings");
-    for entry in builtin_designs() {
-        let design = read_design(entry.name, entry.toml)?;
-        let rings: usize = design.elements.iter().map(|e| e.rings.len()).sum();
-        println!("{:<6} {:>8} {rings:>6}  {}", design.name, design.elements.len(), design.title);
+pub fn run(args: &Args) -> Result<()> {
+    let designs: Vec<_> =
+        builtin_designs().iter().map(|entry| read_design(entry.name, entry.toml)).collect::<Result<_, _>>()?;
+    let rings = |design: &maille::design::Design| design.elements.iter().map(|e| e.rings.len()).sum::<usize>();
+    if args.json {
+        let list: Vec<_> = designs
+            .iter()
+            .map(|d| {
+                json!({
+                    "name": d.name,
+                    "title": d.title,
+                    "source": d.source,
+                    "unit": d.unit,
+                    "elements": d.elements.len(),
+                    "rings": rings(d),
+                    "minor_radius": d.minor_radius,
+                    "reference_radius": d.reference_radius,
+                })
+            })
+            .collect();
+        return output::print_json(&json!({ "designs": list }));
     }
-    println!("\nmaille inspect NAME shows one; maille characterize NAME finds its limits.");
-    Ok(())
+    let mut text = format!("{:<16} {:>8} {:>6}  title\n", "name", "elements", "rings");
+    for design in &designs {
+        let (elements, rings) = (design.elements.len(), rings(design));
+        text += &format!("{:<16} {elements:>8} {rings:>6}  {}\n", design.name, design.title);
+    }
+    text += "\nmaille inspect NAME shows one; maille characterize NAME finds its limits.\n";
+    output::print(text.as_bytes())
 }

@@ -1,9 +1,11 @@
 //! A design from a built-in name or a file, and its model.
 
+use crate::exit::{self, wrong};
 use maille::{design::Design, error::InvalidInput, lattice::Cell, model::Model};
-use maille_io::{DesignSource, builtin, builtin_designs};
-use miette::{IntoDiagnostic, Report, Result, WrapErr, miette};
-use std::path::Path;
+use maille_io::{DesignError, DesignSource, builtin, builtin_designs, nearest_builtin};
+use miette::{IntoDiagnostic, Report, Result, WrapErr};
+use serde_json::{Value, json};
+use std::{io::Read, path::Path};
 
 /// A design as read, with the text that its errors point into.
 pub struct Input {
@@ -14,15 +16,29 @@ pub struct Input {
 }
 
 impl Input {
-    /// Reads the built-in design `name`, or the file of that path.
+    /// Reads the built-in design `name`, the file of that path, or standard input for `-`.
     pub fn read(name: &str, minor_radius: Option<f64>) -> Result<Input> {
         let path = Path::new(name);
         let source = match builtin(name) {
+            _ if name == "-" => {
+                let mut text = String::new();
+                std::io::stdin()
+                    .read_to_string(&mut text)
+                    .into_diagnostic()
+                    .wrap_err("cannot read a design from standard input")?;
+                DesignSource::new("<stdin>", text)
+            }
             Some(text) if !path.is_file() => DesignSource::new(format!("{name} (built in)"), text),
-            _ if path.is_dir() => return Err(miette!(help = "give a TOML file", "{name} is a folder, not a design")),
+            _ if path.is_dir() => {
+                return Err(wrong(exit::DESIGN, format!("{name} is a folder, not a design"), "give a TOML file in it"));
+            }
             _ => match std::fs::read_to_string(path) {
                 Ok(text) => DesignSource::new(name, text),
                 Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Err(unknown(name)),
+                Err(e) if e.kind() == std::io::ErrorKind::InvalidData => {
+                    let help = "a design is a TOML file, encoded in UTF-8";
+                    return Err(wrong(exit::DESIGN, format!("{name} is no text"), help));
+                }
                 Err(e) => return Err(e).into_diagnostic().wrap_err_with(|| format!("cannot read the design {name}")),
             },
         };
@@ -43,21 +59,55 @@ impl Input {
     }
 }
 
+/// Problems that are listed one by one.
+const MOST: usize = 6;
+
 fn of_minor_radius(r: f64, problems: &[InvalidInput]) -> Report {
-    let list: Vec<String> = problems.iter().map(|p| format!("  {}: {}", p.field, p.problem)).collect();
-    miette!(
-        help = "take a smaller --minor-radius, or allow_initial_overlap = true in the file where rings may start overlapped",
-        "with --minor-radius {r} the design cannot be used:\n{}",
-        list.join("\n")
+    let mut list: Vec<String> = problems.iter().take(MOST).map(|p| format!("  {}: {}", p.field, p.problem)).collect();
+    list.extend((problems.len() > MOST).then(|| format!("  … and {} more", problems.len() - MOST)));
+    wrong(
+        exit::DESIGN,
+        format!("with --minor-radius {r} the design cannot be used:\n{}", list.join("\n")),
+        "take a smaller --minor-radius, or allow_initial_overlap = true in the file where rings may start overlapped",
     )
 }
 
 fn unknown(name: &str) -> Report {
-    let names: Vec<&str> = builtin_designs().iter().map(|b| b.name).collect();
-    miette!(
-        help = format!("built in are {}; `maille designs` says what they are", names.join(", ")),
-        "there is no built-in design and no file \"{name}\""
-    )
+    if Path::new(name).extension().is_some_and(|e| e == "toml") || name.contains(std::path::is_separator) {
+        let help = "is it in this folder? `maille designs` lists the built-in ones, `maille new` writes a file";
+        return wrong(exit::DESIGN, format!("there is no file \"{name}\""), help);
+    }
+    // Nearly every number is near another: only words are guessed.
+    let near = nearest_builtin(name).filter(|_| name.len() > 3);
+    let help = match near {
+        Some(near) => format!("did you mean {near}? `maille designs` lists them"),
+        None => {
+            let names: Vec<&str> = builtin_designs().iter().map(|b| b.name).collect();
+            format!("`maille designs` says what they are: {}", names.join(", "))
+        }
+    };
+    wrong(exit::DESIGN, format!("there is no built-in design and no file \"{name}\""), help)
+}
+
+/// What is wrong, as a list for scripts: field, problem, help, and line and column from 1 where the file has a place.
+pub fn problems(report: &Report) -> Value {
+    let Some(error) = report.downcast_ref::<DesignError>() else {
+        let help = report.help().map(|h| h.to_string());
+        return json!([{ "field": null, "problem": report.to_string(), "help": help, "line": null, "column": null }]);
+    };
+    let one = |p: &maille_io::DesignProblem| {
+        let place = error.line_column(p);
+        let text = p.to_string();
+        let problem = text.strip_prefix(&format!("{}: ", p.field())).unwrap_or(&text);
+        json!({
+            "field": Some(p.field()).filter(|f| !f.is_empty()),
+            "problem": problem,
+            "help": p.help_text(),
+            "line": place.map(|(line, _)| line),
+            "column": place.map(|(_, column)| column),
+        })
+    };
+    error.problems().iter().map(one).collect()
 }
 
 /// A design's name as a file or folder: path separators and other odd characters become underscores.

@@ -1,129 +1,320 @@
 //! `maille inspect`: what a design is made of, before anything is solved.
 
-use crate::{input::Input, numbers::positive};
+use crate::{
+    exit::{self, wrong},
+    input::Input,
+    numbers::{parse_cell, positive},
+    output,
+    source::tolerant,
+    units::{millimetres, parse_density},
+    watch::watch,
+};
 use maille::{
     bound::{ChainBound, LinkBound, best_bound},
-    design::Design,
-    lattice::Cell,
+    design::Source,
+    lattice::{Cell, Shift},
     model::Model,
     topology,
 };
 use miette::Result;
+use serde::Serialize;
+use std::{f64::consts::TAU, process::ExitCode};
 
 /// Directions of the bounds that are shown, degrees.
 const BOUND_DIRECTIONS: [f64; 7] = [0.0, 15.0, 30.0, 45.0, 60.0, 75.0, 90.0];
 
-/// Elements, rings, links, gaps and the cell of a design
+/// Elements, rings, links, gaps, wire and the cell of a design
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   maille inspect 1.1
-  maille inspect my-weave.toml --minor-radius 0.08")]
+  maille inspect my-weave.toml --minor-radius 0.08
+  maille inspect european-4-in-1 --density 7.85g/cm3      its weight in steel
+  maille inspect kings-mail --json | jq .smallest_gap
+  maille inspect my-weave.toml --watch")]
 pub struct Args {
-    /// A built-in design (see `maille designs`) or a TOML file
+    /// A built-in design (see `maille designs`), a TOML file, or - for standard input
     design: String,
     /// Minor radius of every ring that gives none, in the file's unit
     #[arg(long, value_parser = positive)]
     minor_radius: Option<f64>,
     /// Cell: 1x1, 2x1, … or an integer matrix as "1,0;-1,2"
-    #[arg(long, default_value = "1x1")]
+    #[arg(long, default_value = "1x1", value_parser = parse_cell)]
     cell: Cell,
+    /// Density of the wire, as 7.85g/cm3 or 7850kg/m3: adds the weight
+    #[arg(long, value_parser = parse_density)]
+    density: Option<f64>,
+    /// Print one JSON document; docs/json.md has its keys
+    #[arg(long)]
+    json: bool,
+    /// Inspect again whenever the design file is saved
+    #[arg(long)]
+    watch: bool,
 }
 
-/// Prints the inspection.
-pub fn run(args: &Args) -> Result<()> {
+/// What is known of a design without solving; docs/json.md describes the keys. Lengths in the file's unit.
+#[derive(Serialize)]
+struct Inspection {
+    design: String,
+    title: String,
+    source: Source,
+    unit: Option<String>,
+    cell: String,
+    a1: [f64; 2],
+    a2: [f64; 2],
+    area: f64,
+    angle_deg: f64,
+    reference_radius: f64,
+    rings: usize,
+    links: usize,
+    elements: Vec<Element>,
+    smallest_gap: Option<Gap>,
+    overlap_allowed: bool,
+    wire: Wire,
+    binding_vectors: Vec<Shift>,
+    chains: Vec<Chain>,
+    bounds: Vec<Bound>,
+}
+
+#[derive(Serialize)]
+struct Element {
+    name: String,
+    rings: Vec<Ring>,
+    neighbours: Vec<Neighbour>,
+}
+
+#[derive(Serialize)]
+struct Ring {
+    major_radius: f64,
+    minor_radius: f64,
+    normal: [f64; 3],
+    offset: [f64; 3],
+}
+
+#[derive(Serialize)]
+struct Neighbour {
+    element: String,
+    cell: Shift,
+    linking_numbers: Vec<i32>,
+}
+
+#[derive(Serialize)]
+struct Gap {
+    gap: f64,
+    rings: [String; 2],
+}
+
+/// Core circles of all rings, as wire; square metres and weights where the unit is known.
+#[derive(Serialize)]
+struct Wire {
+    length: f64,
+    length_per_area: f64,
+    metres_per_square_metre: Option<f64>,
+    kilograms_per_square_metre: Option<f64>,
+}
+
+#[derive(Serialize)]
+struct Chain {
+    vector: Shift,
+    length: f64,
+    rings: Vec<String>,
+}
+
+/// Without `kind` the direction is unbounded; with it and no `l1`, l2 = 0 cannot be reached.
+#[derive(Serialize)]
+struct Bound {
+    direction_deg: f64,
+    l2: f64,
+    l1: Option<f64>,
+    kind: Option<String>,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<ExitCode> {
+    match args.watch {
+        true => watch(std::slice::from_ref(&args.design), || once(args)),
+        false => once(args),
+    }
+}
+
+fn once(args: &Args) -> Result<ExitCode> {
     let input = Input::read(&args.design, args.minor_radius)?;
     // Overlaps are shown here, not refused.
-    let tolerant = Design { allow_initial_overlap: true, ..input.design.clone() };
-    let model = input.compile(&tolerant, args.cell)?;
-    let design = &input.design;
-    let unit = design.unit.as_deref().map_or(String::new(), |u| format!(" {u}"));
-    println!("{}", format!("{}  {}", design.name, design.title).trim_end());
-    let length = |v: maille_geometry::Vec3| format!("({:.4}, {:.4})", v.x * model.unit, v.y * model.unit);
-    println!("cell {}: a1 = {}, a2 = {}{unit}", model.cell, length(model.start.a1), length(model.start.a2));
-    let (a1, a2) = (model.start.a1, model.start.a2);
-    println!(
-        "area {:.4}{}, angle {:.2}°, reference radius {}{unit}",
-        a1.cross(&a2).norm() * model.unit * model.unit,
-        design.unit.as_deref().map_or(String::new(), |u| format!(" {u}²")),
-        a1.angle(&a2).to_degrees(),
-        design.reference_radius,
-    );
-    println!("{} elements, {} rings, {} links a cell\n", model.elements.len(), model.rings.len(), model.links.len());
-    for (e, element) in model.elements.iter().enumerate() {
-        println!("\"{}\"", element.name);
-        for ring in element.rings.clone() {
-            let r = &model.rings[ring];
-            let (big, small) = (r.major_radius * model.unit, r.minor_radius * model.unit);
-            let n = r.normal;
-            print!("  ring R = {big:.4}, r = {small:.4}{unit}, normal ({:.4}, {:.4}, {:.4})", n.x, n.y, n.z);
-            match r.offset.norm() > 0.0 {
-                true => {
-                    let o = r.offset * model.unit;
-                    println!(", offset ({:.4}, {:.4}, {:.4})", o.x, o.y, o.z)
-                }
-                false => println!(),
-            }
-        }
-        let neighbours = topology::neighbours(&model, e);
-        let list: Vec<String> = neighbours
-            .iter()
-            .map(|n| {
-                let cell = match n.shift {
-                    [0, 0] => String::new(),
-                    [p, q] => format!(" in cell ({p:+},{q:+})"),
-                };
-                let numbers: Vec<String> = n.numbers.iter().map(|k| format!("{k:+}")).collect();
-                format!("    \"{}\"{cell}: {}", model.elements[n.element].name, numbers.join(", "))
-            })
-            .collect();
-        println!("  {} interlocking neighbours, with linking numbers", neighbours.len());
-        list.iter().for_each(|line| println!("{line}"));
-    }
-    println!();
-    match topology::smallest_gap(&model, &model.start) {
-        None => println!("no two rings are near each other"),
-        Some((gap, pair)) => {
-            let (a, b) = (model.ring_label(pair.ring_a, [0, 0]), model.ring_label(pair.ring_b, pair.shift));
-            if gap < 0.0 {
-                let allowed = if design.allow_initial_overlap { "allowed by the file" } else { "an error when solved" };
-                println!(
-                    "overlap of the starting state ({allowed}): {:.6}{unit} between {a} and {b}",
-                    -gap * model.unit
-                );
-            } else {
-                println!("smallest gap {:.6}{unit} between {a} and {b}", gap * model.unit);
-            }
-        }
-    }
-    let binding = topology::binding_vectors(&model);
-    if binding.is_empty() {
-        println!("warning: no chain of links joins the cells; every limit is unbounded");
+    let model = input.compile(&tolerant(&input.design), args.cell)?;
+    let found = inspection(&input, &model, args.density)?;
+    if args.json {
+        output::print_json(&found)?;
     } else {
-        let list: Vec<String> = binding.iter().map(|[p, q]| format!("({p}, {q})")).collect();
-        println!("chains of links join lattice vectors {}", list.join(", "));
-        bounds(&model);
+        output::print(found.text().as_bytes())?;
     }
-    Ok(())
+    Ok(ExitCode::from(exit::DONE))
+}
+
+fn inspection(input: &Input, model: &Model, density: Option<f64>) -> Result<Inspection> {
+    let design = &input.design;
+    let (a1, a2) = (model.start.a1, model.start.a2);
+    let area = a1.cross(&a2).norm() * model.unit * model.unit;
+    let element = |e: usize| Element {
+        name: model.elements[e].name.clone(),
+        rings: model.rings[model.elements[e].rings.clone()]
+            .iter()
+            .map(|r| Ring {
+                major_radius: r.major_radius * model.unit,
+                minor_radius: r.minor_radius * model.unit,
+                normal: r.normal.into_inner().into(),
+                offset: (r.offset * model.unit).into(),
+            })
+            .collect(),
+        neighbours: topology::neighbours(model, e)
+            .into_iter()
+            .map(|n| Neighbour {
+                element: model.elements[n.element].name.clone(),
+                cell: n.shift,
+                linking_numbers: n.numbers,
+            })
+            .collect(),
+    };
+    let gap = topology::smallest_gap(model, &model.start).map(|(gap, pair)| Gap {
+        gap: gap * model.unit,
+        rings: [model.ring_label(pair.ring_a, [0, 0]), model.ring_label(pair.ring_b, pair.shift)],
+    });
+    let binding_vectors = topology::binding_vectors(model);
+    let (chains, bounds) = if binding_vectors.is_empty() { Default::default() } else { bounds(model) };
+    Ok(Inspection {
+        design: design.name.clone(),
+        title: design.title.clone(),
+        source: design.source,
+        unit: design.unit.clone(),
+        cell: model.cell.to_string(),
+        a1: [a1.x * model.unit, a1.y * model.unit],
+        a2: [a2.x * model.unit, a2.y * model.unit],
+        area,
+        angle_deg: a1.angle(&a2).to_degrees(),
+        reference_radius: design.reference_radius,
+        rings: model.rings.len(),
+        links: model.links.len(),
+        elements: (0..model.elements.len()).map(element).collect(),
+        smallest_gap: gap,
+        overlap_allowed: design.allow_initial_overlap,
+        wire: wire(model, design.unit.as_deref(), area, density)?,
+        binding_vectors,
+        chains,
+        bounds,
+    })
+}
+
+/// A ring of major radius R and minor radius r is 2 π R of wire and 2 π² R r² of metal.
+fn wire(model: &Model, unit: Option<&str>, area: f64, density: Option<f64>) -> Result<Wire> {
+    let metres = unit.and_then(millimetres).map(|mm| mm / 1000.0);
+    if density.is_some() && metres.is_none() {
+        let problem = match unit {
+            None => "a weight needs the design's unit of length, and the file names none".into(),
+            Some(unit) => format!("a weight needs a unit of length, and \"{unit}\" is not known"),
+        };
+        return Err(wrong(exit::USAGE, problem, "write unit = \"mm\" at the top of the file, or leave --density out"));
+    }
+    let length: f64 = model.rings.iter().map(|r| TAU * r.major_radius * model.unit).sum();
+    let of_ring = |r: &maille::model::Ring| TAU * r.major_radius * (TAU / 2.0) * r.minor_radius * r.minor_radius;
+    let volume = model.rings.iter().map(of_ring).sum::<f64>() * model.unit.powi(3);
+    Ok(Wire {
+        length,
+        length_per_area: length / area,
+        metres_per_square_metre: metres.map(|m| length / area / m),
+        kilograms_per_square_metre: density.zip(metres).map(|(density, m)| density * volume / area * m),
+    })
 }
 
 /// What the links alone prove: the chains that can bind, and bounds of l1 with l2 = 0.
-fn bounds(model: &Model) {
+fn bounds(model: &Model) -> (Vec<Chain>, Vec<Bound>) {
     let chain = ChainBound::new(model);
     let link = LinkBound::new(model, &chain);
-    println!("\nchains that can bind: |F v| is at most");
-    for binding in chain.chains() {
-        let [p, q] = binding.vector;
-        let rings: Vec<String> = binding.rings.iter().map(|(ring, shift)| model.ring_label(*ring, *shift)).collect();
-        println!("  v = ({p}, {q}): {:.6} by {}", binding.length * model.unit, rings.join(" - "));
-    }
-    println!("\nproven bounds of l1 with l2 = 0");
-    for direction in BOUND_DIRECTIONS {
-        let bound = best_bound(&chain, Some(&link), direction, 0.0);
-        match bound.l1().zip(bound.kind()) {
-            Some((l1, kind)) => println!("  {direction:>4}°  {l1:>12.9}  {kind}"),
-            None if bound.kind().is_some() => println!("  {direction:>4}°  l2 = 0 is unreachable"),
-            None => println!("  {direction:>4}°  unbounded"),
+    let chains = chain.chains().map(|binding| Chain {
+        vector: binding.vector,
+        length: binding.length * model.unit,
+        rings: binding.rings.iter().map(|(ring, shift)| model.ring_label(*ring, *shift)).collect(),
+    });
+    let bounds = BOUND_DIRECTIONS.map(|direction_deg| {
+        let bound = best_bound(&chain, Some(&link), direction_deg, 0.0);
+        Bound { direction_deg, l2: 0.0, l1: bound.l1(), kind: bound.kind().map(|k| k.to_string()) }
+    });
+    (chains.collect(), bounds.into())
+}
+
+impl Inspection {
+    /// For people.
+    fn text(&self) -> String {
+        let unit = self.unit.as_deref().map_or(String::new(), |u| format!(" {u}"));
+        let square = self.unit.as_deref().map_or(String::new(), |u| format!(" {u}²"));
+        let mut out = String::new();
+        let mut line = |text: String| {
+            out.push_str(&text);
+            out.push('\n');
+        };
+        line(format!("{}  {}", self.design, self.title).trim_end().into());
+        let vector = |v: [f64; 2]| format!("({:.4}, {:.4})", v[0], v[1]);
+        line(format!("cell {}: a1 = {}, a2 = {}{unit}", self.cell, vector(self.a1), vector(self.a2)));
+        line(format!(
+            "area {:.4}{square}, angle {:.2}°, reference radius {}{unit}",
+            self.area, self.angle_deg, self.reference_radius
+        ));
+        line(format!("{} elements, {} rings, {} links a cell\n", self.elements.len(), self.rings, self.links));
+        for element in &self.elements {
+            line(format!("\"{}\"", element.name));
+            for ring in &element.rings {
+                let ([x, y, z], offset) = (ring.normal, ring.offset);
+                let offset = match offset == [0.0; 3] {
+                    true => String::new(),
+                    false => format!(", offset ({:.4}, {:.4}, {:.4})", offset[0], offset[1], offset[2]),
+                };
+                let (big, small) = (ring.major_radius, ring.minor_radius);
+                line(format!("  ring R = {big:.4}, r = {small:.4}{unit}, normal ({x:.4}, {y:.4}, {z:.4}){offset}"));
+            }
+            line(format!("  {} interlocking neighbours, with linking numbers", element.neighbours.len()));
+            for n in &element.neighbours {
+                let cell = match n.cell {
+                    [0, 0] => String::new(),
+                    [p, q] => format!(" in cell ({p:+},{q:+})"),
+                };
+                let numbers: Vec<String> = n.linking_numbers.iter().map(|k| format!("{k:+}")).collect();
+                line(format!("    \"{}\"{cell}: {}", n.element, numbers.join(", ")));
+            }
         }
+        line(String::new());
+        match &self.smallest_gap {
+            None => line("no two rings are near each other".into()),
+            Some(Gap { gap, rings: [a, b] }) if *gap < 0.0 => {
+                let allowed = if self.overlap_allowed { "allowed by the file" } else { "an error when solved" };
+                line(format!("overlap of the starting state ({allowed}): {:.6}{unit} between {a} and {b}", -gap));
+            }
+            Some(Gap { gap, rings: [a, b] }) => line(format!("smallest gap {gap:.6}{unit} between {a} and {b}")),
+        }
+        let Wire { length, length_per_area, metres_per_square_metre, kilograms_per_square_metre } = &self.wire;
+        let per_area = match metres_per_square_metre {
+            Some(metres) => format!("{metres:.1} m a square metre of sheet"),
+            None => format!("{length_per_area:.4} for each unit of area"),
+        };
+        line(format!("wire {length:.4}{unit} a cell, {per_area}"));
+        if let Some(weight) = kilograms_per_square_metre {
+            line(format!("weight {weight:.3} kg a square metre"));
+        }
+        if self.binding_vectors.is_empty() {
+            line("warning: no chain of links joins the cells; every limit is unbounded".into());
+            return out;
+        }
+        let list: Vec<String> = self.binding_vectors.iter().map(|[p, q]| format!("({p}, {q})")).collect();
+        line(format!("chains of links join lattice vectors {}", list.join(", ")));
+        line("\nchains that can bind: |F v| is at most".into());
+        for Chain { vector: [p, q], length, rings } in &self.chains {
+            line(format!("  v = ({p}, {q}): {length:.6} by {}", rings.join(" - ")));
+        }
+        line("\nproven bounds of l1 with l2 = 0".into());
+        for Bound { direction_deg, l1, kind, .. } in &self.bounds {
+            line(match (l1, kind) {
+                (Some(l1), Some(kind)) => format!("  {direction_deg:>4}°  {l1:>12.9}  {kind}"),
+                (None, Some(_)) => format!("  {direction_deg:>4}°  l2 = 0 is unreachable"),
+                (_, None) => format!("  {direction_deg:>4}°  unbounded"),
+            });
+        }
+        out
     }
 }

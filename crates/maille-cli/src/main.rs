@@ -2,18 +2,28 @@
 
 mod at;
 mod characterize;
+mod check;
+mod completions;
 mod designs;
+mod exit;
 mod export;
-mod files;
 mod input;
 mod inspect;
+mod interrupt;
+mod new;
 mod numbers;
+mod output;
 mod plot;
 mod progress;
 mod records;
 mod render;
 mod replay;
+mod schema;
+mod source;
+mod summary;
 mod table;
+mod units;
+mod watch;
 
 use clap::{Parser, Subcommand};
 use miette::Result;
@@ -28,8 +38,19 @@ Examples:
   maille characterize 1.1                 its limits, as a table and a polar plot in maille-out/1.1/
   maille characterize my-weave.toml --directions 0:90:5 --l2 0
   maille replay maille-out/1.3            solve the rows without a limit again
+  maille new shirt --weave european-4-in-1 --wire 16swg --id 5/16in
+  maille check my-weave.toml              is the file right, do rings overlap?
 
-Exit codes: 0 done, 1 the input or a file is wrong, 2 the arguments are wrong, 130 interrupted.")]
+Exit codes:
+    0  done
+    1  a file cannot be read or written, or maille is at fault
+    2  the arguments are wrong
+    3  a design file is wrong, or there is none of that name
+    4  a record is missing, damaged, or of other inputs
+    5  done, but some limits were not found; replay: some rows came out otherwise
+  130  interrupted
+
+NO_COLOR=1 takes colours away; where standard error is no terminal, progress is plain lines.")]
 struct Args {
     #[command(subcommand)]
     command: Command,
@@ -37,32 +58,46 @@ struct Args {
 
 #[derive(Subcommand)]
 enum Command {
-    Characterize(characterize::Args),
+    Characterize(Box<characterize::Args>),
     Inspect(inspect::Args),
+    Check(check::Args),
+    New(new::Args),
     Designs(designs::Args),
     Replay(replay::Args),
     Export(export::Args),
     Render(render::Args),
     Plot(plot::Args),
     Table(table::Args),
+    Schema(schema::Args),
+    Completions(completions::CompletionsArgs),
+    Man(completions::ManArgs),
 }
 
 fn main() -> ExitCode {
     // Lines of a help are commands to copy: they are not broken.
     let hook = miette::set_hook(Box::new(|_| Box::new(miette::MietteHandlerOpts::new().wrap_lines(false).build())));
     debug_assert!(hook.is_ok(), "the hook is set once");
-    let done: Result<ExitCode> = match Args::parse().command {
+    let ended: Result<ExitCode> = match Args::parse().command {
         Command::Characterize(args) => characterize::run(&args),
-        Command::Inspect(args) => inspect::run(&args).map(|()| ExitCode::SUCCESS),
+        Command::Inspect(args) => inspect::run(&args),
+        Command::Check(args) => check::run(&args),
+        Command::New(args) => done(new::run(&args)),
         Command::Replay(args) => replay::run(&args),
-        Command::Designs(args) => designs::run(&args).map(|()| ExitCode::SUCCESS),
-        Command::Export(args) => export::run(&args).map(|()| ExitCode::SUCCESS),
-        Command::Render(args) => render::run(&args).map(|()| ExitCode::SUCCESS),
-        Command::Plot(args) => plot::run(&args).map(|()| ExitCode::SUCCESS),
-        Command::Table(args) => table::run(&args).map(|()| ExitCode::SUCCESS),
+        Command::Designs(args) => done(designs::run(&args)),
+        Command::Export(args) => done(export::run(&args)),
+        Command::Render(args) => done(render::run(&args)),
+        Command::Schema(args) => done(schema::run(&args)),
+        Command::Completions(args) => done(completions::completions(&args)),
+        Command::Man(args) => done(completions::man(&args)),
+        Command::Plot(args) => done(plot::run(&args)),
+        Command::Table(args) => done(table::run(&args)),
     };
-    done.unwrap_or_else(|report| {
+    ended.unwrap_or_else(|report| {
         eprintln!("{report:?}");
-        ExitCode::FAILURE
+        ExitCode::from(exit::code(&report))
     })
+}
+
+fn done(result: Result<()>) -> Result<ExitCode> {
+    result.map(|()| ExitCode::from(exit::DONE))
 }

@@ -1,5 +1,7 @@
 //! Lists and ranges of numbers on the command line.
 
+use maille::lattice::Cell;
+
 /// Numbers of `--directions` or `--l2`, in the order given, without repetition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Numbers(pub Vec<f64>);
@@ -18,11 +20,13 @@ pub fn parse(text: &str) -> Result<Numbers, String> {
         [first, last, step] => {
             let (first, last, step) = (number(first)?, number(last)?, number(step)?);
             if step == 0.0 || (last - first) / step < 0.0 {
-                return Err(format!("a step of {step} never leads from {first} to {last}"));
+                return Err(format!(
+                    "a step of {step} never leads from {first} to {last}; turn its sign, or give a list"
+                ));
             }
             let count = ((last - first) / step + 1e-9).floor();
             if count >= MOST as f64 {
-                return Err(format!("{count} numbers are too many; at most {MOST}"));
+                return Err(format!("{count} numbers are too many; at most {MOST}: take a larger step"));
             }
             (0..=count as usize).map(|k| first + k as f64 * step).collect()
         }
@@ -55,6 +59,11 @@ pub fn positive(text: &str) -> Result<f64, String> {
         Ok(x) if x.is_finite() && x > 0.0 => Ok(x),
         _ => Err(format!("\"{text}\" is not a positive number")),
     }
+}
+
+/// A cell, as 2x1 or "1,0;-1,2".
+pub fn parse_cell(text: &str) -> Result<Cell, String> {
+    text.parse().map_err(|e: maille::error::InvalidInput| format!("{}; {}", e.problem, e.help))
 }
 
 #[cfg(test)]

@@ -1,11 +1,16 @@
 //! `maille plot`: records compared in a figure.
 
-use crate::{files, input::file_name, records, table};
+use crate::{
+    exit::{self, wrong},
+    input::file_name,
+    output::{self, say},
+    records, table,
+};
 use maille_io::{
     plot::{PolarPlot, Quantity, Spread, difference_svg, parameter_words, polar_svg, steps_svg, svg_to_png, times_svg},
     record::NamedRecord,
 };
-use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use miette::{IntoDiagnostic, Result, WrapErr};
 use std::path::{Path, PathBuf};
 
 /// Records in one figure: limits against direction, their spread, or what they cost
@@ -87,9 +92,10 @@ const MANY: usize = 12;
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
     if args.quantity.is_some() && matches!(args.kind, Kind::Steps | Kind::Times) {
-        return Err(miette!(
-            help = "leave --quantity out, or choose --kind polar or difference",
-            "steps and times have no --quantity"
+        return Err(wrong(
+            exit::USAGE,
+            "steps and times have no --quantity",
+            "leave --quantity out, or choose --kind polar or difference",
         ));
     }
     let outputs: Vec<(&Path, Format)> =
@@ -101,7 +107,7 @@ pub fn run(args: &Args) -> Result<()> {
         }
     }
     if records.iter().all(|named| named.record.rows.is_empty()) {
-        return Err(miette!(help = "`maille table` shows what there is", "no row is left to plot"));
+        return Err(wrong(exit::USAGE, "no row is left to plot", "`maille table` shows what there is"));
     }
     records.retain(|named| {
         let some = !named.record.rows.is_empty();
@@ -118,13 +124,13 @@ pub fn run(args: &Args) -> Result<()> {
     let default = default.iter().map(|file| Ok((file.as_path(), format(file)?))).collect::<Result<Vec<_>>>()?;
     for (file, format) in outputs.into_iter().chain(default) {
         match format {
-            Format::Svg => files::write(file, svg.as_bytes())?,
+            Format::Svg => output::write(file, svg.as_bytes())?,
             Format::Png => {
                 let png = svg_to_png(&svg, 2.0).into_diagnostic().wrap_err("cannot draw the plot")?;
-                files::write(file, &png)?;
+                output::write(file, &png)?;
             }
         }
-        println!("{}", file.display());
+        say!("{}", file.display());
     }
     Ok(())
 }
@@ -167,7 +173,11 @@ fn format(file: &Path) -> Result<Format> {
     match ending.as_str() {
         "svg" => Ok(Format::Svg),
         "png" => Ok(Format::Png),
-        _ => Err(miette!(help = "call it .svg or .png", "the ending of {} names no format of a plot", file.display())),
+        _ => Err(wrong(
+            exit::USAGE,
+            format!("the ending of {} names no format of a plot", file.display()),
+            "call it .svg or .png",
+        )),
     }
 }
 

@@ -1,7 +1,11 @@
 //! Records named on the command line.
 
-use maille_io::record::{NamedRecord, Record};
-use miette::{Result, miette};
+use crate::{
+    exit::{self, wrong},
+    source::read_record,
+};
+use maille_io::record::NamedRecord;
+use miette::Result;
 use std::path::{Path, PathBuf};
 
 /// The folder that is meant: itself, the one of a file in it, or `maille-out/NAME`.
@@ -23,9 +27,9 @@ pub fn read(named: &[PathBuf]) -> Result<Vec<NamedRecord>> {
         let folder: PathBuf = folder(path).components().collect(); // without a slash at the end
         let name = folder.display().to_string();
         if out.iter().any(|known| known.name == name) {
-            return Err(miette!(help = "name each record once", "the record {name} is given twice"));
+            return Err(wrong(exit::USAGE, format!("the record {name} is given twice"), "name each record once"));
         }
-        out.push(NamedRecord { record: Record::read(&folder)?, name });
+        out.push(NamedRecord { record: read_record(&folder)?, name });
     }
     Ok(out)
 }

@@ -2,7 +2,9 @@
 
 use crate::{
     at::{At, parse_at},
-    records,
+    exit::{self, wrong},
+    output, records,
+    source::read_record,
 };
 use maille::{
     characterize::{Finished, Method, Task, characterize},
@@ -10,8 +12,7 @@ use maille::{
     model::Model,
     record::{LimitRow, Status},
 };
-use maille_io::record::Record;
-use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use miette::{Report, Result};
 use serde_json::Value;
 use std::{
     path::PathBuf,
@@ -28,7 +29,7 @@ Examples:
   maille replay maille-out/1.3
   maille replay maille-out/1.3/run.json --at direction=30,l2=-0.125
 
-Exit codes: 0 all rows came out as recorded, 1 some did not, or the record cannot be read.")]
+Exit codes: 0 all rows came out as recorded, 5 some did not, 4 the record cannot be read.")]
 pub struct Args {
     /// A record's folder, or the run.json in it; NAME stands for maille-out/NAME
     record: PathBuf,
@@ -39,33 +40,40 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    let record = Record::read(&records::folder(&args.record))?;
+    let record = read_record(&records::folder(&args.record))?;
     let parameters = &record.run.parameters;
     let cells: Vec<Cell> = numbers(parameters, "cells")?;
     let design = &record.run.design;
     let models: Vec<Model> = cells
         .iter()
-        .map(|cell| Model::compile(design, *cell).map_err(|p| miette!("the record's design cannot be used: {}", p[0])))
+        .map(|cell| {
+            Model::compile(design, *cell).map_err(|p| damaged(format!("the record's design cannot be used: {}", p[0])))
+        })
         .collect::<Result<_>>()?;
     let options = parameters["options"].clone();
+    let unread = |name: &str, e: serde_json::Error| damaged(format!("{name} in run.json: {e}"));
     let method = match parameters["method"].as_str() {
-        Some("exact") => {
-            Method::Exact(serde_json::from_value(options).into_diagnostic().wrap_err("options in run.json")?)
+        Some("exact") => Method::Exact(serde_json::from_value(options).map_err(|e| unread("options", e))?),
+        Some("energy") => Method::Energy(serde_json::from_value(options).map_err(|e| unread("options", e))?),
+        other => {
+            let other = other.unwrap_or("none");
+            return Err(damaged(format!("run.json names the method \"{other}\"; exact and energy are known")));
         }
-        Some("energy") => {
-            Method::Energy(serde_json::from_value(options).into_diagnostic().wrap_err("options in run.json")?)
-        }
-        other => return Err(miette!("run.json names the method {other:?}; exact and energy are known")),
     };
-    let l2: Vec<f64> = serde_json::from_value(parameters["l2"].clone()).into_diagnostic().wrap_err("l2 in run.json")?;
+    let l2: Vec<f64> = serde_json::from_value(parameters["l2"].clone()).map_err(|e| unread("l2", e))?;
     let rows: Vec<&LimitRow> = match args.at {
         Some(at) => record.rows.iter().filter(|r| at.fits(r.direction_deg, r.l2)).collect(),
         None => record.rows.iter().filter(|r| r.l1.is_none()).collect(),
     };
     if rows.is_empty() {
         match args.at {
-            Some(at) => return Err(miette!("the record has no row at {at}")),
-            None => println!("every row of the record has a limit; name one with --at direction=…,l2=…"),
+            Some(at) => {
+                let rows =
+                    record.rows.iter().take(6).map(|r| format!("  --at direction={},l2={}", r.direction_deg, r.l2));
+                let help = format!("it has, among others:\n{}", rows.collect::<Vec<_>>().join("\n"));
+                return Err(wrong(exit::RECORD, format!("the record has no row at {at}"), help));
+            }
+            None => output::say!("every row of the record has a limit; name one with --at direction=…,l2=…"),
         }
     }
     let mut directions: Vec<f64> = rows.iter().map(|r| r.direction_deg).collect();
@@ -84,20 +92,31 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         };
         let agrees = then.status == now.row.status && close(then.l1, now.row.l1);
         same &= agrees;
-        println!("{}°, l2 = {}", then.direction_deg, then.l2);
-        println!("  recorded  {}", line(then));
-        println!("  now       {}{}", line(&now.row), if agrees { "" } else { "   DIFFERS" });
+        output::say!("{}°, l2 = {}", then.direction_deg, then.l2);
+        output::say!("  recorded  {}", line(then));
+        output::say!("  now       {}{}", line(&now.row), if agrees { "" } else { "   DIFFERS" });
         if let Some(note) = &now.state.note {
-            println!("  note      {note}");
+            output::say!("  note      {note}");
         }
     }
-    Ok(if same { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    Ok(ExitCode::from(if same { exit::DONE } else { exit::INCOMPLETE }))
+}
+
+/// A record whose run.json is not what `characterize` writes.
+fn damaged(problem: String) -> Report {
+    wrong(
+        exit::RECORD,
+        problem,
+        "the file is damaged or was edited: restore it, or compute the record again with --overwrite",
+    )
 }
 
 fn numbers(parameters: &Value, name: &str) -> Result<Vec<Cell>> {
-    let list = parameters[name].as_array().ok_or_else(|| miette!("run.json has no {name}"))?;
+    let list = parameters[name].as_array().ok_or_else(|| damaged(format!("run.json has no {name}")))?;
     let texts = list.iter().map(|cell| cell.as_str().unwrap_or_default());
-    texts.map(|t| t.parse().map_err(|e: maille::error::InvalidInput| miette!("run.json: {}", e.problem))).collect()
+    texts
+        .map(|t| t.parse().map_err(|e: maille::error::InvalidInput| damaged(format!("run.json: {}", e.problem))))
+        .collect()
 }
 
 fn close(a: Option<f64>, b: Option<f64>) -> bool {

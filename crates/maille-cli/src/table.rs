@@ -1,11 +1,14 @@
 //! `maille table`: rows of records.
 
-use crate::{files, records};
+use crate::{
+    exit::{self, wrong},
+    output, records,
+};
 use maille_io::{
     record::NamedRecord,
     table::{Condition, Extent, Field, SortKey, Table, TableError},
 };
-use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use miette::{IntoDiagnostic, Result, WrapErr};
 use std::{
     io::IsTerminal,
     path::{Path, PathBuf},
@@ -95,17 +98,17 @@ pub fn run(args: &Args) -> Result<()> {
         (None, None) => Format::Text,
     };
     if format == Format::Parquet && file.is_none() && std::io::stdout().is_terminal() {
-        return Err(miette!(help = "name a file, as -o limits.parquet", "Parquet is not for the terminal"));
+        return Err(wrong(exit::USAGE, "Parquet is not for the terminal", "name a file, as -o limits.parquet"));
     }
     let records = records::read(&args.records)?;
     let bytes = written(args, &records, format)?;
     match file {
         Some(file) => {
-            files::write(file, &bytes)?;
+            output::write(file, &bytes)?;
             eprintln!("{}", file.display());
             Ok(())
         }
-        None => files::print(&bytes),
+        None => output::print(&bytes),
     }
 }
 
@@ -147,10 +150,10 @@ fn format_of(file: &Path) -> Result<Format> {
         "csv" => Ok(Format::Csv),
         "json" => Ok(Format::Json),
         "parquet" => Ok(Format::Parquet),
-        _ => Err(miette!(
-            help = "call it .txt, .csv, .json or .parquet, or give --format",
-            "the ending of {} names no format of a table",
-            file.display()
+        _ => Err(wrong(
+            exit::USAGE,
+            format!("the ending of {} names no format of a table", file.display()),
+            "call it .txt, .csv, .json or .parquet, or give --format",
         )),
     }
 }

@@ -16,11 +16,33 @@ macro_rules! embed {
 }
 
 const DESIGNS: &[Builtin] = embed![
-    "1.1", "1.1t", "1.2", "1.2t", "1.3", "2", "3.1", "3.1t", "3.2", "3.2t", "3.3", "3.4", "4.1", "4.2", "4.3", "5.1",
+    "1.1",
+    "1.1t",
+    "1.2",
+    "1.2t",
+    "1.3",
+    "2",
+    "3.1",
+    "3.1t",
+    "3.2",
+    "3.2t",
+    "3.3",
+    "3.4",
+    "4.1",
+    "4.2",
+    "4.3",
+    "5.1",
     "5.2",
+    "european-4-in-1",
+    "european-6-in-1",
+    "japanese-4-in-1",
+    "japanese-6-in-1",
+    "japanese-8-in-2",
+    "japanese-12-in-2",
+    "kings-mail",
 ];
 
-/// All built-in designs, ordered by name.
+/// All built-in designs: those of the thesis, then weaves with a name.
 pub fn builtin_designs() -> &'static [Builtin] {
     DESIGNS
 }
@@ -28,4 +50,10 @@ pub fn builtin_designs() -> &'static [Builtin] {
 /// The text of a built-in design file.
 pub fn builtin(name: &str) -> Option<&'static str> {
     DESIGNS.iter().find(|d| d.name == name).map(|d| d.toml)
+}
+
+/// The built-in name that `name` was probably meant to be.
+pub fn nearest_builtin(name: &str) -> Option<&'static str> {
+    let names: Vec<&'static str> = DESIGNS.iter().map(|d| d.name).collect();
+    crate::nearest::nearest(name, &names)
 }

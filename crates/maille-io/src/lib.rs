@@ -11,6 +11,7 @@ pub mod plot;
 pub mod record;
 pub mod render;
 pub mod table;
+pub mod weave;
 
-pub use builtin::{Builtin, builtin, builtin_designs};
-pub use design_toml::{DesignError, DesignProblem, DesignSource, read_design, write_design};
+pub use builtin::{Builtin, builtin, builtin_designs, nearest_builtin};
+pub use design_toml::{DESIGN_JSON_SCHEMA, DesignError, DesignProblem, DesignSource, read_design, write_design};

@@ -12,7 +12,9 @@ fn every_builtin_design_is_read_and_survives_the_round_trip() {
     for builtin in builtin_designs() {
         let design = design(builtin.name);
         assert_eq!(design.name, builtin.name);
-        assert_eq!((design.minor_radius, design.reference_radius), (Some(0.1), 1.0));
+        if design.unit.is_none() {
+            assert_eq!((design.minor_radius, design.reference_radius), (Some(0.1), 1.0));
+        }
         assert!(!design.title.is_empty() && builtin.toml.starts_with("# "), "{}", builtin.name);
         assert_eq!(design.allow_initial_overlap, builtin.name.ends_with('t'));
         assert_eq!(read_design("written", &write_design(&design)).unwrap(), design);
@@ -57,7 +59,8 @@ fn elements_and_rings_are_counted() {
 #[test]
 fn sources_say_what_the_text_fixes() {
     for builtin in builtin_designs() {
-        let reconstructed = ["3.3", "3.4", "4.1", "4.2", "4.3", "5.1", "5.2"].contains(&builtin.name);
+        let named = builtin.name.starts_with(char::is_alphabetic);
+        let reconstructed = named || ["3.3", "3.4", "4.1", "4.2", "4.3", "5.1", "5.2"].contains(&builtin.name);
         let expected = if reconstructed { Source::Reconstruction } else { Source::ThesisText };
         assert_eq!(design(builtin.name).source, expected, "{}", builtin.name);
     }

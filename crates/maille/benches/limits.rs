@@ -39,10 +39,11 @@ fn exact_map(bencher: Bencher<'_, '_>, name: &str) {
     });
 }
 
-/// One limit of larger cells of 1.1: 12, 27 and 108 elements.
-#[divan::bench(args = ["2x2", "3x3", "6x6"], sample_count = 3, sample_size = 1)]
-fn exact_cell(bencher: Bencher<'_, '_>, cell: &str) {
-    let models = [model("1.1", cell)];
+/// One limit of larger cells: 12, 27 and 108 elements of 1.1, and 36 and 100 of 3.1.
+#[divan::bench(args = ["1.1 2x2", "1.1 3x3", "1.1 6x6", "3.1 3x3", "3.1 5x5"], sample_count = 3, sample_size = 1)]
+fn exact_cell(bencher: Bencher<'_, '_>, what: &str) {
+    let (name, cell) = what.split_once(' ').expect("a design and a cell");
+    let models = [model(name, cell)];
     bencher.counter(ItemsCount::new(1usize)).bench_local(|| {
         let method = ExactMethod::new(&models, ExactOptions { starts: 1, ..ExactOptions::default() });
         method.limits(15.0, &[0.0], &AtomicBool::new(false), &mut |_, limit| drop(divan::black_box(limit)));

@@ -122,7 +122,7 @@ fn loads_match_finite_differences() {
             sum += (there(e) - there(-e)) / (2.0 * e);
             assert!((hessian[(k, j)] - 0.5 * sum).abs() < 1e-5 * hessian.norm_max(), "{k},{j}");
         }
-        floor_turns += usize::from(k < 6 && k >= 3 && gradient[k].abs() > 1e-3);
+        floor_turns += usize::from((3..6).contains(&k) && gradient[k].abs() > 1e-3);
     }
     assert!(floor_turns > 0, "the gyroscope presses on the floor off its centre");
 }

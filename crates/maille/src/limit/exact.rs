@@ -14,7 +14,8 @@ use crate::{
     model::Model,
     record::Status,
     solve::{
-        kkt::{Certificate, GAP_TOLERANCE, RESIDUAL_TOLERANCE, polish},
+        certificate::{Certificate, GAP_TOLERANCE, RESIDUAL_TOLERANCE},
+        kkt::polish,
         rows::{Derivatives, Multiplier, violation},
         sqp::{Program, SqpOptions, maximize},
     },

@@ -7,7 +7,7 @@ use crate::{
     bound::{BindingChain, BoundKind},
     constraint::Contact,
     record::Status,
-    solve::kkt::Certificate,
+    solve::certificate::Certificate,
     state::State,
 };
 use nalgebra::Matrix2;

@@ -37,8 +37,7 @@ impl Cholesky {
             let (left, right) = self.matrix.split_at_mut((k + 1) * n);
             let column = &mut left[k * n + k..];
             let pivot = column[0];
-            // Not `<=`: it shall be false for NaN.
-            if !(pivot > 0.0) {
+            if pivot.is_nan() || pivot <= 0.0 {
                 return false;
             }
             let inverse = 1.0 / pivot.sqrt();

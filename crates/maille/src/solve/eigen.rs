@@ -82,6 +82,34 @@ impl Eigen {
     }
 }
 
+/// Minimum-norm least-squares solutions of a symmetric system.
+pub(super) struct LeastNorm {
+    /// The unknowns that the system couples; the others are 0.
+    coupled: Vec<usize>,
+    eigen: Option<Eigen>,
+}
+
+impl LeastNorm {
+    pub(super) fn new(system: &Mat<f64>) -> Self {
+        let coupled = coupled(system);
+        let eigen = symmetric_eigen(&block(system, &coupled)).ok();
+        LeastNorm { coupled, eigen }
+    }
+
+    /// The solution where eigenvalues below `cut` times the largest count as zero.
+    pub(super) fn solve(&self, right: &[f64], cut: f64) -> Vec<f64> {
+        let Some(eigen) = &self.eigen else { return vec![f64::NAN; right.len()] };
+        let largest = eigen.values.iter().fold(0.0f64, |a, v| a.max(v.abs()));
+        let mut out = vec![0.0; right.len()];
+        for (k, value) in eigen.values.iter().enumerate().filter(|(_, v)| v.abs() > cut * largest) {
+            let v = || eigen.vectors.col(k).iter().zip(&self.coupled);
+            let along: f64 = v().map(|(v, &i)| v * right[i]).sum::<f64>() / value;
+            v().for_each(|(v, &i)| out[i] += along * v);
+        }
+        out
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

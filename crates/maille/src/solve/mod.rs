@@ -1,5 +1,6 @@
 //! Solvers' outer loops. They know no ring: they see an objective.
 
+pub mod certificate;
 pub mod cholesky;
 pub mod convex;
 pub mod curvature;

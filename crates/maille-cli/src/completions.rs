@@ -1,0 +1,55 @@
+//! `maille completions` and `maille man`: what a shell and `man` know of the program.
+
+use crate::output;
+use clap::{Command, CommandFactory};
+use miette::{IntoDiagnostic, Result};
+use std::path::PathBuf;
+
+/// Completions for a shell, on standard output
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  maille completions bash > ~/.local/share/bash-completion/completions/maille
+  maille completions zsh > ~/.zfunc/_maille
+  maille completions fish > ~/.config/fish/completions/maille.fish")]
+pub struct CompletionsArgs {
+    /// The shell
+    shell: clap_complete::Shell,
+}
+
+/// Manual pages: maille.1 and one for each command
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  maille man ~/.local/share/man/man1
+  maille man man1 && man ./man1/maille-characterize.1")]
+pub struct ManArgs {
+    /// The folder to write to
+    folder: PathBuf,
+}
+
+/// Prints completions.
+pub fn completions(args: &CompletionsArgs) -> Result<()> {
+    let mut bytes = Vec::new();
+    clap_complete::generate(args.shell, &mut crate::Args::command(), "maille", &mut bytes);
+    output::print(&bytes)
+}
+
+/// Writes manual pages.
+pub fn man(args: &ManArgs) -> Result<()> {
+    let mut command = crate::Args::command();
+    command.build();
+    let page = |command: &Command, name: String| -> Result<()> {
+        let mut bytes = Vec::new();
+        clap_mangen::Man::new(command.clone()).title(name.to_uppercase()).render(&mut bytes).into_diagnostic()?;
+        let path = args.folder.join(format!("{name}.1"));
+        output::write(&path, &bytes)?;
+        output::say!("{}", path.display());
+        Ok(())
+    };
+    page(&command, "maille".into())?;
+    for sub in command.get_subcommands().filter(|sub| sub.get_name() != "help") {
+        page(sub, format!("maille-{}", sub.get_name()))?;
+    }
+    Ok(())
+}

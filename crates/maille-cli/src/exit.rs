@@ -1,0 +1,69 @@
+//! Exit codes by cause, for scripts.
+
+use maille_io::{DesignError, mesh::MeshError, record::RecordError, render::RenderError};
+use miette::{Diagnostic, Report};
+use std::fmt;
+
+/// All done.
+pub const DONE: u8 = 0;
+/// A file cannot be read or written, or maille itself is at fault.
+pub const FAILED: u8 = 1;
+/// The arguments are wrong.
+pub const USAGE: u8 = 2;
+/// A design file is wrong, or there is none of that name.
+pub const DESIGN: u8 = 3;
+/// A record is missing, damaged or another one.
+pub const RECORD: u8 = 4;
+/// The record is written, but some limits were not found; in `replay`: some rows came out otherwise.
+pub const INCOMPLETE: u8 = 5;
+/// Stopped by Ctrl-C.
+pub const INTERRUPTED: u8 = 130;
+
+/// Something wrong that is no error of a library, with what to do next.
+#[derive(Debug)]
+struct Wrong {
+    code: u8,
+    problem: String,
+    help: String,
+}
+
+impl fmt::Display for Wrong {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.problem)
+    }
+}
+
+impl std::error::Error for Wrong {}
+
+impl Diagnostic for Wrong {
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        Some(Box::new(&self.help))
+    }
+}
+
+/// A report that ends the program with `code`.
+pub fn wrong(code: u8, problem: impl Into<String>, help: impl Into<String>) -> Report {
+    Report::new(Wrong { code, problem: problem.into(), help: help.into() })
+}
+
+/// The exit code of what went wrong.
+pub fn code(report: &Report) -> u8 {
+    if let Some(wrong) = report.downcast_ref::<Wrong>() {
+        return wrong.code;
+    }
+    if report.downcast_ref::<DesignError>().is_some() {
+        return DESIGN;
+    }
+    match report.downcast_ref::<RecordError>() {
+        Some(RecordError::Io { action, .. }) if *action != "read" => return FAILED,
+        Some(_) => return RECORD,
+        None => {}
+    }
+    match report.downcast_ref::<MeshError>() {
+        Some(MeshError::Write(_)) => return FAILED,
+        Some(MeshError::OtherElements { .. }) => return RECORD,
+        Some(_) => return USAGE,
+        None => {}
+    }
+    if report.downcast_ref::<RenderError>().is_some() { USAGE } else { FAILED }
+}

@@ -1,0 +1,95 @@
+//! What is said about a mesh: rings that would fuse, sizes.
+
+use crate::{
+    exit::{self, wrong},
+    output,
+};
+use maille::design::Design;
+use maille_io::mesh::{self, Scene};
+use miette::Report;
+
+/// What would fuse, and what would help.
+pub fn fuse(close: &mesh::TooClose, clearance: f64, mm: f64, design: &Design, locked: bool) -> Report {
+    let [a, b] = &close.rings;
+    let [x, y, z] = [close.place.x, close.place.y, close.place.z].map(|x| (x * 1e3).round() / 1e3 + 0.0);
+    let how = match close.gap < 0.0 {
+        true => format!("overlap by {:.3} mm", -close.gap),
+        false => format!("are {:.3} mm apart", close.gap),
+    };
+    let more = match close.pairs {
+        1 => "no other pair of the cell is".to_owned(),
+        n => format!("{n} pairs of the cell are"),
+    };
+    let thinner = match (close.minor_radius_factor, design.minor_radius) {
+        (None, _) => "no minor radius would leave it in this state".to_owned(),
+        (Some(f), Some(r)) if design.elements.iter().flat_map(|e| &e.rings).all(|ring| ring.minor_radius.is_none()) => {
+            format!("minor_radius = {} would leave it (now {r})", down(f * r))
+        }
+        (Some(f), _) => format!("{} times every minor_radius would leave it", down(f)),
+    };
+    let larger = match close.scale_factor {
+        Some(f) => format!("--scale {} would leave it (now {mm})", up(f * mm)),
+        None => "rings touch, so no --scale would leave it".to_owned(),
+    };
+    let state = if locked { "\nin a locked state rings touch: print the starting state" } else { "" };
+    let help = format!("{thinner}\n{larger}\n--warn writes all the same{state}");
+    wrong(
+        exit::USAGE,
+        format!(
+            "rings would fuse: {a} and {b} {how} at ({x}, {y}, {z}) mm, less than --min-clearance {clearance}; {more} too close"
+        ),
+        help,
+    )
+}
+
+/// Four digits, rounded so that the clearance stays.
+fn down(x: f64) -> f64 {
+    let unit = 10_f64.powf(x.log10().floor() - 3.0);
+    let digits = (x / unit + 1e-9).floor() * unit;
+    format!("{digits:.12}").parse().unwrap_or(digits)
+}
+
+fn up(x: f64) -> f64 {
+    let unit = 10_f64.powf(x.log10().floor() - 3.0);
+    let digits = (x / unit - 1e-9).ceil() * unit;
+    format!("{digits:.12}").parse().unwrap_or(digits)
+}
+
+/// A number of bytes, for people.
+pub fn size(bytes: u64) -> String {
+    match bytes {
+        0..1_000 => format!("{bytes} B"),
+        1_000..1_000_000 => format!("{:.0} kB", bytes as f64 / 1e3),
+        1_000_000..1_000_000_000 => format!("{:.1} MB", bytes as f64 / 1e6),
+        _ => format!("{:.2} GB", bytes as f64 / 1e9),
+    }
+}
+
+/// Rings, triangles and size of what was written.
+pub fn summary(scene: &Scene) {
+    let [least, largest] = scene.bounds();
+    let extent = largest - least;
+    output::say!(
+        "{} rings, {} triangles (meshes within {:.3} mm of the tori); {:.1} × {:.1} × {:.1} mm",
+        scene.ring_count(),
+        scene.triangle_count(),
+        scene.chordal_error(),
+        extent.x,
+        extent.y,
+        extent.z
+    );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn advice_keeps_the_clearance() {
+        for x in [0.083_333_3, 0.1, 1.0, 12.3456, 9999.5] {
+            assert!(down(x) <= x * (1.0 + 1e-8) && down(x) > x * 0.998);
+            assert!(up(x) >= x * (1.0 - 1e-8) && up(x) < x * 1.002);
+        }
+        assert_eq!(down(0.1), 0.1);
+    }
+}

@@ -1,0 +1,265 @@
+//! `maille export`: meshes of a sheet, to print, to show and to analyse.
+
+mod advice;
+mod destination;
+
+use crate::{
+    numbers::positive,
+    output,
+    source::{Frame, Source, SourceArgs, Wanted},
+    units::millimetres,
+};
+use advice::{fuse, size, summary};
+use destination::{Destination, FormatArg, destination, with_ending};
+use maille::topology;
+use maille_io::mesh::{self, Colours, Fineness, MeshFile, Objects, Scene, Tile, WriteOptions};
+use miette::Result;
+use std::{
+    fs,
+    io::Cursor,
+    path::{Path, PathBuf},
+};
+
+/// Meshes of a sheet: to print, to show and to analyse
+///
+/// Exports a tile of the starting state, of a locked state from a record, or frames from the one to the other. Lengths
+/// come out in millimetres (GLB: metres); rings are closed meshes that face outward.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  maille export 1.1 --tile 8x8                                    maille-out/1.1-export/1.1.3mf
+  maille export 1.1 --tile 8x8 --format stl,glb --scale 5         R = 1 becomes 5 mm
+  maille export my-weave.toml --out prints/ --min-clearance 0.3   refuses if rings would fuse
+  maille export 1.1 --at direction=30,l2=-0.25 --out locked.glb   a limit of maille-out/1.1
+  maille export --from results/weave --at direction=0,l2=0 --format vtk --frames 20
+
+Formats:
+  3mf  for printing: real units, each ring stored once; see --objects
+  stl  binary; obj; ply (binary, coloured): every ring with its own triangles
+  glb  glTF for viewers: each ring stored once, coloured; see --color-by
+  vtk  for ParaView: NAME.vtp (rings), NAME-poses.vtp, NAME-contacts.vtp; NAME.pvd for frames
+
+Elements of several rings are several closed bodies that overlap where they are joined. Slicers unite the \
+overlapping bodies of one object, so print such designs as 3mf with --objects element (the default) or sheet.
+
+Frames are interpolated: lattice and positions on straight lines, rotations at constant rate. That is a picture of \
+the change, no motion that the rings could make: they may overlap in between.")]
+pub struct Args {
+    #[command(flatten)]
+    source: SourceArgs,
+    /// Cells along a1 and a2
+    #[arg(long, default_value = "4x4")]
+    tile: Tile,
+    /// One or several, as stl,3mf [default: by the name of --out, or 3mf]
+    #[arg(long, value_enum, value_delimiter = ',')]
+    format: Vec<FormatArg>,
+    /// Export N frames from the starting state to the record's state
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=10_000))]
+    frames: Option<u32>,
+    /// A file, a folder (with a / at its end), how the files' names begin, or - for standard output [default: maille-out/DESIGN-export/DESIGN]
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// Most distance between mesh and torus, in the file's unit [default: a hundredth of the reference radius]
+    #[arg(long, value_parser = positive, conflicts_with = "segments")]
+    tolerance: Option<f64>,
+    /// Segments around a ring, or around a ring and across its wire, as 48 or 48x16
+    #[arg(long, value_parser = parse_segments)]
+    segments: Option<Fineness>,
+    /// Millimetres for one unit of the file [default: by the file's `unit`, or 1]
+    #[arg(long, value_parser = positive, value_name = "MM")]
+    scale: Option<f64>,
+    /// 3mf: what is one object
+    #[arg(long, value_enum, default_value_t = ObjectsArg::Element)]
+    objects: ObjectsArg,
+    /// glb, ply: what colours show [default: load where the state has contact forces, kind elsewhere]
+    #[arg(long, value_enum)]
+    color_by: Option<ColorArg>,
+    /// glb: instances by EXT_mesh_gpu_instancing; smaller and faster, but only for viewers that know it
+    #[arg(long)]
+    gpu_instancing: bool,
+    /// Refuse if rings of different elements come closer than this many millimetres
+    #[arg(long, value_parser = positive, value_name = "MM", conflicts_with = "frames")]
+    min_clearance: Option<f64>,
+    /// Only warn of rings closer than --min-clearance
+    #[arg(long, requires = "min_clearance")]
+    warn: bool,
+    /// No list of files and no notes
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum ObjectsArg {
+    /// Each element, its rings as components
+    Element,
+    /// Each ring
+    Ring,
+    /// The whole tile, its rings as components: a slicer keeps their places
+    Sheet,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum ColorArg {
+    /// The element of the design
+    Kind,
+    /// The sum of the contact forces on the element
+    Load,
+}
+
+fn parse_segments(text: &str) -> Result<Fineness, String> {
+    let count = |t: &str| match t.parse::<usize>() {
+        Ok(n) if n >= 3 => Ok(n),
+        _ => Err(format!("\"{t}\" is no number of segments; give 3 or more, as 48 or 48x16")),
+    };
+    Ok(match text.split_once('x') {
+        None => Fineness::Segments(count(text)?, None),
+        Some((around, across)) => Fineness::Segments(count(around)?, Some(count(across)?)),
+    })
+}
+
+/// Triangles that make large files where every ring has its own.
+const MANY: usize = 5_000_000;
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<()> {
+    let source = args.source.read(Wanted { locked: args.frames.is_some(), overlaps: false })?;
+    let Source { design, model, locked } = &source;
+    let (destination, formats) = destination(args.out.as_deref(), &args.format, args.frames.is_some(), &source)?;
+    let note = |text: String| {
+        if !args.quiet {
+            eprintln!("note: {text}");
+        }
+    };
+    let mm = match (args.scale, design.unit.as_deref()) {
+        (Some(mm), _) => mm,
+        (None, None) => {
+            note("the design names no unit: one unit of the file becomes 1 mm (change it with --scale)".into());
+            1.0
+        }
+        (None, Some(unit)) => millimetres(unit).unwrap_or_else(|| {
+            note(format!("the unit \"{unit}\" is not known: one becomes 1 mm (change it with --scale)"));
+            1.0
+        }),
+    };
+    source.caution().into_iter().for_each(note);
+    let tolerance = args.tolerance.unwrap_or(0.01 * design.reference_radius);
+    let fineness = args.segments.unwrap_or(Fineness::Tolerance(tolerance));
+    let options = WriteOptions {
+        objects: match args.objects {
+            ObjectsArg::Element => Objects::Element,
+            ObjectsArg::Ring => Objects::Ring,
+            ObjectsArg::Sheet => Objects::Sheet,
+        },
+        colours: match args.color_by {
+            Some(ColorArg::Kind) => Colours::Kind,
+            Some(ColorArg::Load) => Colours::Load,
+            None if args.frames.is_some() => Colours::Kind,
+            None => Colours::Load,
+        },
+        gpu_instancing: args.gpu_instancing,
+    };
+    if matches!(args.color_by, Some(ColorArg::Load)) && source.contacts().is_empty() {
+        note("there are no contact forces in this state: colours show the kind of element".into());
+    }
+
+    let frames = source.frames(args.frames);
+    if let Some(clearance) = args.min_clearance
+        && let Some(close) = mesh::too_close(model, &frames[0].state, args.tile, clearance, mm)
+    {
+        let problem = fuse(&close, clearance, mm, design, locked.is_some());
+        match args.warn {
+            false => return Err(problem),
+            true => eprintln!("{:?}", problem.wrap_err("warning: written all the same (--warn)")),
+        }
+    }
+    if args.frames.is_some() {
+        interpolation_note(&source, &frames, mm).into_iter().for_each(note);
+    }
+
+    let mut series: Vec<(MeshFile, f64, PathBuf)> = Vec::new();
+    for frame in &frames {
+        let mut scene = Scene::new(model, &frame.state, args.tile, fineness, mm)?;
+        scene.description = format!("{}; {} cells; 1 file unit = {mm} mm", frame.description, args.tile);
+        if let Some((record, _)) = locked {
+            match frame.time < 1.0 {
+                true => scene.add_loads(model, &record.contacts),
+                false => scene.add_contacts(model, &frame.state, args.tile, &record.contacts),
+            }
+        }
+        let triangles = scene.triangle_count();
+        if triangles > MANY && frame.time == frames[0].time && formats.iter().any(|f| !f.instanced()) {
+            note(format!("{triangles} triangles will be written; 3mf and glb store each ring once"));
+        }
+        for file in formats.iter().flat_map(|f| f.format().files(&scene)) {
+            let Destination::Files(prefix) = &destination else {
+                let mut bytes = Cursor::new(Vec::new()); // 3MF goes back in its file
+                file.write(&scene, options, &mut bytes)?;
+                return output::print(bytes.get_ref());
+            };
+            let path = with_ending(prefix, &format!("{}{}", frame.suffix, file.ending()));
+            let bytes = write(&path, &scene, file, options)?;
+            if !args.quiet {
+                output::say!("{}  {}", path.display(), size(bytes));
+            }
+            series.push((file, frame.time, path));
+        }
+        if !args.quiet && frame.time == frames[frames.len() - 1].time {
+            summary(&scene);
+        }
+    }
+    if let Destination::Files(prefix) = &destination
+        && args.frames.is_some()
+        && formats.contains(&FormatArg::Vtk)
+    {
+        for (path, text) in collections(prefix, &series) {
+            output::write(&path, text.as_bytes())?;
+            if !args.quiet {
+                output::say!("{}  {} frames", path.display(), frames.len());
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A word on frames that overlap: they are interpolated.
+fn interpolation_note(source: &Source, frames: &[Frame], mm: f64) -> Option<String> {
+    let unit = source.model.unit * mm;
+    let gaps = frames.iter().filter_map(|f| Some((topology::smallest_gap(&source.model, &f.state)?.0 * unit, f.time)));
+    let (gap, time) = gaps.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let overlap = gap < -1e-6 * unit;
+    overlap.then(|| format!("interpolated frames overlap, most by {:.3} mm at {:.0} % of the way", -gap, 100.0 * time))
+}
+
+/// The files that list a series of VTK frames, with their texts.
+fn collections(prefix: &Path, series: &[(MeshFile, f64, PathBuf)]) -> Vec<(PathBuf, String)> {
+    let of = |wanted: MeshFile, part: usize| {
+        series.iter().filter(move |(f, ..)| *f == wanted).map(move |(_, time, path)| {
+            (*time, part, path.file_name().unwrap_or_default().to_string_lossy().into_owned())
+        })
+    };
+    [(MeshFile::VtkRings, ".pvd"), (MeshFile::VtkPoses, "-poses.pvd")]
+        .map(|(file, ending)| {
+            let files: Vec<_> = of(file, 0).chain(of(MeshFile::VtkContacts, 1)).collect();
+            (with_ending(prefix, ending), mesh::write_pvd(&files))
+        })
+        .into()
+}
+
+/// Writes one file of `scene`; gives its size.
+fn write(path: &Path, scene: &Scene, file: MeshFile, options: WriteOptions) -> Result<u64> {
+    output::replace(path, |out| Ok(file.write(scene, options, out)?))?;
+    Ok(fs::metadata(path).map(|m| m.len()).unwrap_or(0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn segments_are_read() {
+        assert_eq!(parse_segments("48x16").unwrap(), Fineness::Segments(48, Some(16)));
+        for wrong in ["", "2", "x", "48x", "48x2", "-3"] {
+            assert!(parse_segments(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,31 @@
+//! Ctrl-C: the first ends a run cleanly, the second at once.
+
+use crate::exit;
+use miette::{IntoDiagnostic, Result, WrapErr};
+use std::sync::{
+    Arc, Mutex,
+    atomic::{AtomicBool, Ordering},
+};
+
+/// The flag of the one handler that a program may have.
+static FLAG: Mutex<Option<Arc<AtomicBool>>> = Mutex::new(None);
+
+/// The flag that Ctrl-C sets; listens from the first call on.
+pub fn flag() -> Result<Arc<AtomicBool>> {
+    let mut known = FLAG.lock().unwrap_or_else(|e| e.into_inner());
+    if let Some(flag) = &*known {
+        return Ok(Arc::clone(flag));
+    }
+    let flag = Arc::new(AtomicBool::new(false));
+    let set = Arc::clone(&flag);
+    ctrlc::set_handler(move || {
+        if set.swap(true, Ordering::Relaxed) {
+            std::process::exit(i32::from(exit::INTERRUPTED));
+        }
+        eprintln!("\nstopping: what is finished is written (Ctrl-C again ends at once)");
+    })
+    .into_diagnostic()
+    .wrap_err("cannot listen for Ctrl-C")?;
+    *known = Some(Arc::clone(&flag));
+    Ok(flag)
+}

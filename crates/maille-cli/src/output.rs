@@ -1,0 +1,74 @@
+//! Where results go: a file, whole or not at all, or standard output.
+
+use miette::{IntoDiagnostic, Result, WrapErr};
+use std::{
+    fmt, fs,
+    io::{BufWriter, Write},
+    path::Path,
+};
+
+/// Whether `-`, standard output, is meant.
+pub fn is_standard(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// Writes under a temporary name in the same folder and renames: whatever happens, a file of this name is whole.
+pub fn replace(path: &Path, write: impl FnOnce(&mut BufWriter<&mut fs::File>) -> Result<()>) -> Result<()> {
+    let context = || format!("cannot write {}", path.display());
+    if path.is_dir() {
+        return Err(crate::exit::wrong(
+            crate::exit::USAGE,
+            format!("{} is a folder; a file is written here", path.display()),
+            "give the name of a file",
+        ));
+    }
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    fs::create_dir_all(folder)
+        .into_diagnostic()
+        .wrap_err_with(|| format!("cannot create the folder {}; name another", folder.display()))?;
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".maille-").suffix(".tmp");
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666)); // the umask applies, as to any new file
+    let mut file = builder.tempfile_in(folder).into_diagnostic().wrap_err_with(context)?;
+    let mut out = BufWriter::with_capacity(1 << 18, file.as_file_mut());
+    write(&mut out).wrap_err_with(context)?;
+    out.flush().into_diagnostic().wrap_err_with(context)?;
+    drop(out);
+    file.persist(path).into_diagnostic().wrap_err_with(context)?;
+    Ok(())
+}
+
+/// Writes to the file, or to standard output for `-`.
+pub fn write(path: &Path, bytes: &[u8]) -> Result<()> {
+    match is_standard(path) {
+        true => print(bytes),
+        false => replace(path, |out| out.write_all(bytes).into_diagnostic()),
+    }
+}
+
+/// Writes to standard output; a reader that has gone (`| head`) is no error.
+pub fn print(bytes: &[u8]) -> Result<()> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(bytes).and_then(|()| out.flush()) {
+        Err(e) if e.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
+        done => done.into_diagnostic().wrap_err("cannot write to standard output"),
+    }
+}
+
+/// A line on standard output, as `println!`, which would panic where the reader has gone.
+macro_rules! say {
+    ($($text:tt)*) => { $crate::output::line(format_args!($($text)*)) };
+}
+pub(crate) use say;
+
+/// See [`say`]. What is said here is a word on results that are in files: if nobody can read it, nothing is lost.
+pub fn line(text: fmt::Arguments<'_>) {
+    let _ = writeln!(std::io::stdout(), "{text}");
+}
+
+/// Prints one JSON document.
+pub fn print_json(document: &impl serde::Serialize) -> Result<()> {
+    let text = serde_json::to_string_pretty(document).into_diagnostic().wrap_err("cannot write JSON")?;
+    print(format!("{text}\n").as_bytes())
+}

@@ -1,0 +1,314 @@
+//! A state to show: of a design's start, of a record, or a series of frames from the one to the other.
+
+use crate::{
+    at::{At, parse_at},
+    exit::{self, wrong},
+    input::{Input, file_name},
+    numbers::positive,
+};
+use maille::{
+    design::Design,
+    error::InvalidInput,
+    lattice::Cell,
+    model::Model,
+    record::{ContactRecord, StateRecord, Status},
+    state::State,
+};
+use maille_io::{mesh, record::Record};
+use miette::{Report, Result};
+use std::path::{Path, PathBuf};
+
+/// Which state is shown.
+#[derive(clap::Args)]
+pub struct SourceArgs {
+    /// A built-in design (see `maille designs`), a TOML file, or - for standard input; may be left out with --from
+    #[arg(required_unless_present = "from")]
+    pub design: Option<String>,
+    /// Folder of a record: take one of its states [default with --at: maille-out/DESIGN]
+    #[arg(long, value_name = "RECORD")]
+    pub from: Option<PathBuf>,
+    /// Which state of the record, as direction=30,l2=-0.125; what only one state fits may be left out
+    #[arg(long, value_parser = parse_at, allow_hyphen_values = true)]
+    pub at: Option<At>,
+    /// Minor radius of every ring that gives none, in the file's unit
+    #[arg(long, value_parser = positive, conflicts_with = "from")]
+    pub minor_radius: Option<f64>,
+}
+
+/// A design, compiled, and perhaps a state of a record.
+pub struct Source {
+    /// The design as read, or as the record holds it.
+    pub design: Design,
+    /// Compiled for the cell of the state.
+    pub model: Model,
+    /// The state of the record, as recorded and as poses.
+    pub locked: Option<(StateRecord, State)>,
+}
+
+/// One state of a series.
+pub struct Frame {
+    /// The poses.
+    pub state: State,
+    /// Part of the way to the locked state.
+    pub time: f64,
+    /// Added to the names of files.
+    pub suffix: String,
+    /// What it is, in words.
+    pub description: String,
+}
+
+/// What else a command asks of its source.
+#[derive(Clone, Copy)]
+pub struct Wanted {
+    /// A state of a record, even without --at.
+    pub locked: bool,
+    /// A start with overlaps is shown, not refused.
+    pub overlaps: bool,
+}
+
+impl SourceArgs {
+    /// Reads the design and its state, from the record where one is asked for.
+    pub fn read(&self, wanted: Wanted) -> Result<Source> {
+        let input = self.design.as_deref().map(|name| Input::read(name, self.minor_radius)).transpose()?;
+        let folder = match (&self.from, &input) {
+            (Some(folder), _) => folder.clone(),
+            (None, Some(input)) if self.at.is_some() || wanted.locked => usual_folder(&input.design),
+            (None, Some(input)) => {
+                let design = input.design.clone();
+                let compiled = if wanted.overlaps { &tolerant(&design) } else { &design };
+                let model = input.compile(compiled, Cell::PRIMITIVE)?;
+                return Ok(Source { design, model, locked: None });
+            }
+            (None, None) => {
+                return Err(wrong(exit::USAGE, "there is neither a design nor a record", "name one of them"));
+            }
+        };
+        self.of_record(input.as_ref(), &folder)
+    }
+
+    fn of_record(&self, input: Option<&Input>, folder: &Path) -> Result<Source> {
+        let at = self.at.unwrap_or_default();
+        let record = match input {
+            Some(input) if self.from.is_none() && !holds_record(folder) => {
+                return Err(wrong(
+                    exit::RECORD,
+                    format!("{} holds no record to take a state from", folder.display()),
+                    format!("compute it with\n  {}", self.characterize_line(&input.design, None, at, folder)),
+                ));
+            }
+            _ => read_record(folder)?,
+        };
+        let design = &record.run.design;
+        if let Some(input) = input.filter(|input| input.design != *design) {
+            let line = self.characterize_line(&input.design, Some(&record), at, &another(folder, at));
+            return Err(wrong(
+                exit::RECORD,
+                format!(
+                    "the record {} is of another design: \"{}\"{}, not \"{}\"{} as in the file",
+                    folder.display(),
+                    design.name,
+                    radius(design),
+                    input.design.name,
+                    radius(&input.design),
+                ),
+                format!("leave the design out to show what the record holds, or compute this one with\n  {line}"),
+            ));
+        }
+        let state = self.pick(&record, at, folder)?;
+        // The cell is that of the row: a run may solve several.
+        let key = (state.direction_deg, state.l2, state.status);
+        let row = record.rows.iter().find(|r| (r.direction_deg, r.l2, r.status) == key);
+        let unusable = |problems: Vec<InvalidInput>| {
+            let list: Vec<String> = problems.iter().map(|p| format!("  {}: {}", p.field, p.problem)).collect();
+            let problem = format!("the record {} cannot be used:\n{}", folder.display(), list.join("\n"));
+            wrong(
+                exit::RECORD,
+                problem,
+                "its files were edited or do not belong together: compute it again with --overwrite",
+            )
+        };
+        let cell: Cell = row.map_or("1x1", |r| &r.cell).parse().map_err(|problem| unusable(vec![problem]))?;
+        let model = Model::compile(&tolerant(design), cell).map_err(unusable)?;
+        let locked = mesh::state_of(&model, state)?;
+        Ok(Source { design: design.clone(), locked: Some((state.clone(), locked)), model })
+    }
+
+    /// The only state that fits.
+    fn pick<'a>(&self, record: &'a Record, at: At, folder: &Path) -> Result<&'a StateRecord> {
+        let all: Vec<&StateRecord> = record.states.iter().filter(|s| !s.poses.is_empty()).collect();
+        let found: Vec<&StateRecord> = all.iter().copied().filter(|s| at.fits(s.direction_deg, s.l2)).collect();
+        let list = |states: &[&StateRecord]| {
+            let some = states.iter().take(6).map(|s| format!("  --at direction={},l2={}", s.direction_deg, s.l2));
+            let more = states.len().saturating_sub(6);
+            some.chain((more > 0).then(|| format!("  … and {more} more"))).collect::<Vec<_>>().join("\n")
+        };
+        match found[..] {
+            [state] => Ok(state),
+            [] => {
+                let line = self.characterize_line(&record.run.design, Some(record), at, &another(folder, at));
+                // The nearest first: a degree weighs as much as 0.01 of l2.
+                let far = |s: &StateRecord| {
+                    let of = |wanted: Option<f64>, x: f64| wanted.map_or(0.0, |w| (w - x).abs());
+                    of(at.direction, s.direction_deg) + 100.0 * of(at.l2, s.l2)
+                };
+                let mut nearest = all;
+                nearest.sort_by(|a, b| far(a).total_cmp(&far(b)));
+                let has = match nearest.is_empty() {
+                    true => "it has none with poses".into(),
+                    false => format!("it has, the nearest first:\n{}", list(&nearest)),
+                };
+                Err(wrong(
+                    exit::RECORD,
+                    format!("the record {} has no state at {at}", folder.display()),
+                    format!("{has}\ncompute the one asked for with\n  {line}\nand then give its folder with --from"),
+                ))
+            }
+            _ => Err(wrong(
+                exit::USAGE,
+                format!("{} states of the record {} fit", found.len(), folder.display()),
+                format!("name one:\n{}", list(&found)),
+            )),
+        }
+    }
+
+    /// The command that computes the state asked for.
+    fn characterize_line(&self, design: &Design, record: Option<&Record>, at: At, folder: &Path) -> String {
+        let quoted = |text: &str| match text.contains([' ', ';']) {
+            true => format!("\"{text}\""),
+            false => text.to_owned(),
+        };
+        let mut line = format!("maille characterize {}", quoted(self.design.as_deref().unwrap_or(&design.name)));
+        line += &at.direction.map_or(String::new(), |d| format!(" --directions {d}"));
+        line += &at.l2.map_or(String::new(), |l2| format!(" --l2 {l2}"));
+        let of_record = record.and_then(|r| r.run.design.minor_radius).filter(|_| self.design.is_none());
+        line += &self.minor_radius.or(of_record).map_or(String::new(), |r| format!(" --minor-radius {r}"));
+        let parameter = |name: &str| record.and_then(|r| r.run.parameters.get(name));
+        if let Some(method) = parameter("method").and_then(|v| v.as_str()) {
+            line += &format!(" --method {method}");
+        }
+        // Several cells are those of the default, auto.
+        if let Some([cell]) = parameter("cells").and_then(|v| v.as_array()).map(Vec::as_slice) {
+            line += &format!(" --cell {}", quoted(cell.as_str().unwrap_or("1x1")));
+        }
+        line + &format!(" --out {}", quoted(&folder.display().to_string()))
+    }
+
+    /// Forces are asked for, and the state has none: how to get one that has.
+    pub fn no_forces(&self, source: &Source) -> Report {
+        let name = self.design.as_deref().unwrap_or(&source.design.name);
+        let (what, direction, l2) = match &source.locked {
+            Some((s, _)) => {
+                (format!("the state at direction {}°, l2 {}", s.direction_deg, s.l2), s.direction_deg, s.l2)
+            }
+            None => ("the starting state".into(), 0.0, 0.0),
+        };
+        let folder = format!("maille-out/{}-exact", file_name(&source.design.name));
+        wrong(
+            exit::USAGE,
+            format!("{what} has no contact forces"),
+            format!(
+                "limits of the exact method have them:\n  maille characterize {name} --method exact --directions {direction} \
+                 --l2 {l2} --out {folder}\nthen take the state from there with\n  --from {folder} --at direction={direction},l2={l2}"
+            ),
+        )
+    }
+}
+
+impl Source {
+    /// The state that is shown.
+    pub fn state(&self) -> &State {
+        self.locked.as_ref().map_or(&self.model.start, |(_, state)| state)
+    }
+
+    /// Its contacts that carry force.
+    pub fn contacts(&self) -> &[ContactRecord] {
+        self.locked.as_ref().map_or(&[], |(record, _)| &record.contacts)
+    }
+
+    /// How files of this state are named.
+    pub fn stem(&self) -> String {
+        let name = file_name(&self.design.name);
+        self.locked.as_ref().map_or(name.clone(), |(s, _)| name + &place(Some(s.direction_deg), Some(s.l2)))
+    }
+
+    /// What a reader should know about the state, if it is no limit.
+    pub fn caution(&self) -> Option<String> {
+        let (record, _) = self.locked.as_ref()?;
+        let limit = matches!(record.status, Status::Global | Status::Local | Status::ThresholdReached);
+        (!limit).then(|| format!("the state is \"{}\": the last of its search, no limit", record.status.name()))
+    }
+
+    /// The states to write: one, or `count` frames to the locked one.
+    pub fn frames(&self, count: Option<u32>) -> Vec<Frame> {
+        let title = format!("{} {}", self.design.name, self.design.title);
+        let one = |state: &State, time: f64, description: String| Frame {
+            state: state.clone(),
+            time,
+            suffix: String::new(),
+            description,
+        };
+        let Some((record, state)) = &self.locked else {
+            return vec![one(&self.model.start, 0.0, format!("{title}; starting state"))];
+        };
+        let place = format!("direction {}°, l2 {}, {}", record.direction_deg, record.l2, record.status.name());
+        let Some(count) = count else {
+            return vec![one(state, 1.0, format!("{title}; {place}"))];
+        };
+        let digits = (count - 1).to_string().len();
+        let frame = |k: u32| {
+            let time = f64::from(k) / f64::from(count - 1);
+            Frame {
+                state: mesh::between(&self.model.start, state, time),
+                suffix: format!("_f{k:0digits$}"),
+                time,
+                description: format!(
+                    "{title}; frame {} of {count} from the starting state to {place}; interpolated, may overlap",
+                    k + 1
+                ),
+            }
+        };
+        (0..count).map(frame).collect()
+    }
+}
+
+fn holds_record(folder: &Path) -> bool {
+    folder.join("run.json").is_file()
+}
+
+/// The record of a folder that was named.
+pub fn read_record(folder: &Path) -> Result<Record> {
+    if holds_record(folder) {
+        return Ok(Record::read(folder)?);
+    }
+    let problem = match folder.exists() {
+        true => format!("{} holds no record of maille", folder.display()),
+        false => format!("there is no folder {}", folder.display()),
+    };
+    let help = "give the folder that `maille characterize` wrote: it holds run.json, limits.csv and states.jsonl";
+    Err(wrong(exit::RECORD, problem, help))
+}
+
+/// The design with overlaps of its start accepted.
+pub fn tolerant(design: &Design) -> Design {
+    Design { allow_initial_overlap: true, ..design.clone() }
+}
+
+/// Where `characterize` writes if it is not told.
+pub fn usual_folder(design: &Design) -> PathBuf {
+    PathBuf::from("maille-out").join(file_name(&design.name))
+}
+
+/// A folder for a record of other directions than those of `folder`.
+fn another(folder: &Path, at: At) -> PathBuf {
+    let mut name = folder.as_os_str().to_owned();
+    name.push(place(at.direction, at.l2));
+    name.into()
+}
+
+fn place(direction: Option<f64>, l2: Option<f64>) -> String {
+    direction.map_or(String::new(), |d| format!("_dir{d}")) + &l2.map_or(String::new(), |l2| format!("_l2_{l2}"))
+}
+
+fn radius(design: &Design) -> String {
+    design.minor_radius.map_or(String::new(), |r| format!(" with r = {r}"))
+}

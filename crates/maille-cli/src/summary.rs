@@ -1,0 +1,94 @@
+//! The summary of a record: least and largest limit of each l2, what has no limit, and where the files are.
+
+use crate::output;
+use maille::record::{LimitRow, Status};
+use serde::Serialize;
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+    time::Duration,
+};
+
+/// What `characterize` says at its end; docs/json.md describes the keys.
+#[derive(Serialize)]
+pub struct Summary {
+    design: String,
+    record: PathBuf,
+    limits: Vec<OfL2>,
+    statuses: BTreeMap<&'static str, usize>,
+    solved: usize,
+    wall_s: f64,
+    interrupted: bool,
+}
+
+/// Limits of one l2.
+#[derive(Serialize)]
+struct OfL2 {
+    l2: f64,
+    least: Option<Extreme>,
+    largest: Option<Extreme>,
+    found: usize,
+    asked: usize,
+}
+
+#[derive(Clone, Copy, Serialize)]
+struct Extreme {
+    l1: f64,
+    direction_deg: f64,
+}
+
+impl Summary {
+    /// Of `rows`, `solved` of them now in `took`.
+    pub fn new(
+        design: &str,
+        rows: &[LimitRow],
+        solved: usize,
+        took: Duration,
+        interrupted: bool,
+        record: &Path,
+    ) -> Summary {
+        let mut l2: Vec<f64> = rows.iter().map(|r| r.l2).collect();
+        l2.sort_by(f64::total_cmp);
+        l2.dedup();
+        let of = |l2: f64| {
+            let asked = rows.iter().filter(|r| r.l2 == l2);
+            let found = asked.clone().filter_map(|r| Some(Extreme { l1: r.l1?, direction_deg: r.direction_deg }));
+            // Rounding decides nothing: of equal limits the first direction is named.
+            let order = |a: &Extreme, b: &Extreme| (a.l1 * 1e9).round().total_cmp(&(b.l1 * 1e9).round());
+            let largest = found.clone().reduce(|a, b| if order(&b, &a).is_gt() { b } else { a });
+            OfL2 { l2, least: found.clone().min_by(order), largest, found: found.count(), asked: asked.count() }
+        };
+        let count = |status: Status| rows.iter().filter(|r| r.status == status).count();
+        Summary {
+            design: design.into(),
+            record: record.into(),
+            limits: l2.into_iter().map(of).collect(),
+            statuses: Status::ALL.iter().map(|s| (s.name(), count(*s))).filter(|(_, n)| *n > 0).collect(),
+            solved,
+            wall_s: took.as_secs_f64(),
+            interrupted,
+        }
+    }
+
+    /// Prints it for people.
+    pub fn print(&self) {
+        output::say!("{:>8}  {:>20}  {:>20}  {:>7}", "l2", "least l1", "largest l1", "limits");
+        let show = |x: &Option<Extreme>| x.map_or("-".into(), |x| format!("{:.4} at {}°", x.l1, x.direction_deg));
+        for of in &self.limits {
+            let (least, largest) = (show(&of.least), show(&of.largest));
+            output::say!("{:>8}  {least:>20}  {largest:>20}  {:>3}/{:<3}", of.l2, of.found, of.asked);
+        }
+        for status in Status::ALL {
+            if let Some(count) = self.statuses.get(status.name()) {
+                output::say!("{count} {}", status.name());
+            }
+        }
+        output::say!(
+            "{} limits in {:.1} s; {}, states.jsonl, run.json, polar.svg",
+            self.solved,
+            self.wall_s,
+            self.record.join("limits.csv").display()
+        );
+        output::say!("look at {}", self.record.join("polar.png").display());
+    }
+}

@@ -1,0 +1,136 @@
+//! Lengths and densities as people write them: units, fractions of an inch, wire gauges.
+
+/// Millimetres of a unit that people write in a design.
+pub fn millimetres(unit: &str) -> Option<f64> {
+    Some(match unit.trim().to_lowercase().as_str() {
+        "mm" | "millimetre" | "millimetres" | "millimeter" | "millimeters" => 1.0,
+        "cm" | "centimetre" | "centimetres" | "centimeter" | "centimeters" => 10.0,
+        "m" | "metre" | "metres" | "meter" | "meters" => 1000.0,
+        "um" | "µm" | "μm" | "micron" | "microns" | "micrometre" | "micrometer" => 0.001,
+        "in" | "inch" | "inches" | "\"" => 25.4,
+        "ft" | "foot" | "feet" => 304.8,
+        _ => return None,
+    })
+}
+
+/// Diameters of the British Standard Wire Gauge, numbers 0 to 40, in thousandths of an inch.
+const SWG_MIL: [f64; 41] = [
+    324.0, 300.0, 276.0, 252.0, 232.0, 212.0, 192.0, 176.0, 160.0, 144.0, 128.0, 116.0, 104.0, 92.0, 80.0, 72.0, 64.0,
+    56.0, 48.0, 40.0, 36.0, 32.0, 28.0, 24.0, 22.0, 20.0, 18.0, 16.4, 14.8, 13.6, 12.4, 11.6, 10.8, 10.0, 9.2, 8.4,
+    7.6, 6.8, 6.0, 5.2, 4.8,
+];
+
+/// A table of wire diameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Gauge {
+    /// British Standard Wire Gauge.
+    Swg,
+    /// American Wire Gauge: 0.127 mm · 92^((36 − n)/39).
+    Awg,
+}
+
+impl Gauge {
+    fn name(self) -> &'static str {
+        match self {
+            Gauge::Swg => "swg",
+            Gauge::Awg => "awg",
+        }
+    }
+
+    fn millimetres(self, number: usize) -> Option<f64> {
+        match self {
+            Gauge::Swg => SWG_MIL.get(number).map(|mil| mil * 0.0254),
+            Gauge::Awg if number <= 40 => Some(0.127 * 92.0_f64.powf((36.0 - number as f64) / 39.0)),
+            Gauge::Awg => None,
+        }
+    }
+
+    /// The thickest wire of the table below `mm`, as `17swg (1.4224 mm)`.
+    pub fn thinner(self, mm: f64) -> Option<String> {
+        let found = (0..=40).find_map(|n| Some((n, self.millimetres(n)?)).filter(|(_, wire)| *wire < mm))?;
+        Some(format!("{}{} ({:.4} mm)", found.0, self.name(), found.1))
+    }
+}
+
+/// A wire or an inner diameter, in millimetres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Length {
+    /// Millimetres.
+    pub mm: f64,
+    /// The table it was given by.
+    pub gauge: Option<Gauge>,
+}
+
+/// Reads `1.6mm`, `0.064in`, `5/16in` or `5/16"`.
+pub fn parse_length(text: &str) -> Result<Length, String> {
+    let wrong = || format!("\"{text}\" is no length; give it with its unit, as 8mm, 0.3125in or 5/16in");
+    let text = text.trim();
+    let split = text.find(|c: char| !(c.is_ascii_digit() || "./".contains(c))).ok_or_else(wrong)?;
+    let (value, unit) = text.split_at(split);
+    let value = match value.split_once('/') {
+        Some((a, b)) => a.parse::<f64>().ok().zip(b.parse::<f64>().ok()).map(|(a, b)| a / b),
+        None => value.parse().ok(),
+    };
+    let mm = value.zip(millimetres(unit)).map(|(value, unit)| value * unit);
+    let mm = mm.filter(|mm| mm.is_finite() && *mm > 0.0).ok_or_else(wrong)?;
+    Ok(Length { mm, gauge: None })
+}
+
+/// As [`parse_length`], or a gauge: `16swg`, `14awg`.
+pub fn parse_wire(text: &str) -> Result<Length, String> {
+    let lower = text.trim().to_lowercase();
+    for gauge in [Gauge::Swg, Gauge::Awg] {
+        let Some(number) = lower.strip_suffix(gauge.name()) else { continue };
+        let mm =
+            number.trim().parse::<usize>().ok().and_then(|n| gauge.millimetres(n)).ok_or_else(|| {
+                format!("\"{text}\" is no gauge; {0} has the numbers 0 to 40, as 16{0}", gauge.name())
+            })?;
+        return Ok(Length { mm, gauge: Some(gauge) });
+    }
+    parse_length(text).map_err(|_| {
+        format!("\"{text}\" is no wire; give a diameter as 1.6mm or 0.064in, or a gauge as 16swg or 14awg")
+    })
+}
+
+/// Reads a density as `7.85g/cm3` or `7850kg/m3`; gives kilograms per cubic metre.
+pub fn parse_density(text: &str) -> Result<f64, String> {
+    let text = text.trim();
+    let units = [("g/cm3", 1000.0), ("g/cm³", 1000.0), ("kg/m3", 1.0), ("kg/m³", 1.0)];
+    let found =
+        units.iter().find_map(|(unit, factor)| Some(text.strip_suffix(unit)?.trim().parse::<f64>().ok()? * factor));
+    found
+        .filter(|x| x.is_finite() && *x > 0.0)
+        .ok_or_else(|| format!("\"{text}\" is no density; give it as 7.85g/cm3 or 7850kg/m3"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_and_gauges() {
+        let mm = |text: &str| parse_wire(text).map(|w| (w.mm * 1e4).round() / 1e4);
+        assert_eq!(mm("1.6mm"), Ok(1.6));
+        assert_eq!(mm("5/16in"), Ok(7.9375));
+        assert_eq!(mm("5/16\""), Ok(7.9375));
+        assert_eq!(mm(".25 in"), Ok(6.35));
+        // Published values.
+        assert_eq!((mm("16swg"), mm("18SWG"), mm("14 swg")), (Ok(1.6256), Ok(1.2192), Ok(2.032)));
+        assert_eq!((mm("36awg"), mm("16awg"), mm("0awg")), (Ok(0.127), Ok(1.2908), Ok(8.2515)));
+        for wrong in ["", "16", "16gauge", "41swg", "-1swg", "mm", "0mm", "1/0in", "1/2/3in", "-2mm", "1e999mm", "swg"]
+        {
+            assert!(parse_wire(wrong).is_err(), "{wrong}");
+        }
+        assert!(parse_length("16swg").is_err());
+        assert_eq!(Gauge::Swg.thinner(1.6).as_deref(), Some("17swg (1.4224 mm)"));
+        assert!(SWG_MIL.windows(2).all(|w| w[0] > w[1]));
+    }
+
+    #[test]
+    fn densities() {
+        assert_eq!((parse_density("7.85g/cm3"), parse_density("7850 kg/m³")), (Ok(7850.0), Ok(7850.0)));
+        for wrong in ["", "7.85", "g/cm3", "-1g/cm3", "7.85 lb/in3"] {
+            assert!(parse_density(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,227 @@
+//! The program as scripts and people use it: pipes, JSON, exit codes, `--watch`, completions and manual pages.
+
+use serde_json::Value;
+use std::{
+    collections::BTreeSet,
+    fs,
+    io::Write,
+    path::Path,
+    process::{Command, Output, Stdio},
+    time::{Duration, Instant},
+};
+
+fn maille(folder: &Path, line: &str, input: &[u8]) -> Output {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_maille"))
+        .args(line.split_whitespace())
+        .current_dir(folder)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    child.stdin.take().unwrap().write_all(input).unwrap();
+    child.wait_with_output().unwrap()
+}
+
+fn done(folder: &Path, line: &str, input: &[u8]) -> Vec<u8> {
+    let output = maille(folder, line, input);
+    assert_eq!(output.status.code(), Some(0), "{line}: {}", String::from_utf8_lossy(&output.stderr));
+    output.stdout
+}
+
+fn json(folder: &Path, line: &str) -> Value {
+    serde_json::from_slice(&done(folder, line, b"")).unwrap()
+}
+
+#[test]
+fn a_new_design_goes_through_pipes() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let design = done(folder, "new shirt --weave european-6-in-1 --wire 16swg --id 3/8in -o -", b"");
+    assert!(!String::from_utf8_lossy(&design).contains("#:schema"), "there is no schema beside standard output");
+    assert!(done(folder, "check -", &design).starts_with(b"-: right; 2 rings, 6 links a cell"));
+    assert!(String::from_utf8_lossy(&done(folder, "inspect -", &design)).contains("6 interlocking neighbours"));
+    let stl = done(folder, "export - --tile 1x1 --format stl --out - --quiet", &design);
+    let triangles = u32::from_le_bytes(stl[80..84].try_into().unwrap()) as usize;
+    assert_eq!(stl.len(), 84 + 50 * triangles);
+    assert!(done(folder, "export - --tile 1x1 --out - --quiet", &design).starts_with(b"PK"));
+    let png = done(folder, "render - --tile 1x1 --size 64x48 --out -", &design);
+    assert!(png.starts_with(b"\x89PNG"));
+    assert_eq!(fs::read_dir(folder).unwrap().count(), 0, "nothing was written");
+}
+
+#[test]
+fn a_new_design_names_the_schema_beside_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    done(folder, "new cuff --weave japanese-8-in-2 --wire 1.2mm --id 8mm -o sub/cuff.toml", b"");
+    let text = fs::read_to_string(folder.join("sub/cuff.toml")).unwrap();
+    let schema = text.lines().next().unwrap().strip_prefix("#:schema ").unwrap();
+    assert_eq!(fs::read(folder.join("sub").join(schema)).unwrap(), done(folder, "schema", b""));
+    done(folder, "new cuff --weave kings-mail --major 6 --minor 0.5 --no-schema", b"");
+    assert!(fs::read_to_string(folder.join("cuff.toml")).unwrap().starts_with("# King's mail"));
+    assert_eq!(maille(folder, "new cuff --weave kings-mail --major 6 --minor 0.5", b"").status.code(), Some(2));
+    done(folder, "new cuff --weave kings-mail --major 6 --minor 0.4 --overwrite --quiet", b"");
+}
+
+/// 1.1 in steel: three rings of R = 1 mm and r = 0.1 mm on 2.5 mm by 2.5 mm.
+#[test]
+fn wire_and_weight_are_those_of_tori() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../designs/1.1.toml")).unwrap();
+    fs::write(folder.path().join("mm.toml"), text.replace("minor_radius = 0.1", "minor_radius = 0.1\nunit = \"mm\""))
+        .unwrap();
+    let found = json(folder.path(), "inspect mm.toml --json --density 7.85g/cm3");
+    let number = |key: &str| found["wire"][key].as_f64().unwrap();
+    let near = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-12, "{a} {b}");
+    let pi = std::f64::consts::PI;
+    near(number("length"), 6.0 * pi);
+    near(number("length_per_area"), 6.0 * pi / 6.25);
+    near(number("metres_per_square_metre"), 6.0 * pi / 6.25 * 1000.0);
+    // 2 π² R r² of metal a ring, in cubic millimetres, on 6.25 square millimetres.
+    near(number("kilograms_per_square_metre"), 3.0 * 2.0 * pi * pi * 0.01 / 6.25 * 7.85);
+    assert!(json(folder.path(), "inspect 1.1 --json")["wire"]["metres_per_square_metre"].is_null());
+}
+
+fn keys(value: &Value, into: &mut BTreeSet<String>) {
+    match value {
+        Value::Object(map) => map.iter().for_each(|(key, value)| {
+            into.insert(key.clone());
+            keys(value, into);
+        }),
+        Value::Array(list) => list.iter().for_each(|value| keys(value, into)),
+        _ => {}
+    }
+}
+
+#[test]
+fn every_key_of_the_json_output_is_documented() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let documented = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/json.md")).unwrap();
+    let summary = json(folder, "characterize 1.1 --directions 0,45 --l2 0 --json");
+    assert_eq!(summary["statuses"]["global"], 2);
+    assert!((summary["limits"][0]["largest"]["l1"].as_f64().unwrap() - 0.774_034_949).abs() < 1e-8);
+    let check = maille(folder, "check 1.1 missing.toml --json", b"");
+    assert_eq!(check.status.code(), Some(3));
+    let check: Value = serde_json::from_slice(&check.stdout).unwrap();
+    assert_eq!((&check["files"][0]["ok"], &check["files"][1]["ok"]), (&Value::Bool(true), &Value::Bool(false)));
+    let mut found = BTreeSet::new();
+    keys(&json(folder, "designs --json"), &mut found);
+    keys(&json(folder, "inspect 1.1 --json"), &mut found);
+    keys(&check, &mut found);
+    let mut summary = summary;
+    summary["statuses"] = Value::Null; // its keys are the statuses of the README
+    keys(&summary, &mut found);
+    let missing: Vec<&String> = found.iter().filter(|key| !documented.contains(&format!("`{key}`"))).collect();
+    assert!(missing.is_empty(), "{missing:?}");
+}
+
+#[test]
+fn limits_that_are_not_found_have_an_exit_code_of_their_own() {
+    let folder = tempfile::tempdir().unwrap();
+    // Proved not to be there: an answer.
+    let proved = maille(folder.path(), "characterize 1.1 --directions 45 --l2 2 --quiet --out proved", b"");
+    assert_eq!(proved.status.code(), Some(0), "{}", String::from_utf8_lossy(&proved.stderr));
+    assert!(fs::read_to_string(folder.path().join("proved/limits.csv")).unwrap().contains("l2-unreachable"));
+    // Beyond what the sheet can do: the energy method fails to reach it, and proves nothing.
+    let open =
+        maille(folder.path(), "characterize 1.1 --method energy --directions 0 --l2 1.5 --quiet --out open", b"");
+    let table = fs::read_to_string(folder.path().join("open/limits.csv")).unwrap();
+    assert_eq!(open.status.code(), Some(5), "{table}");
+    let replayed = maille(folder.path(), "replay open", b"");
+    assert_eq!(replayed.status.code(), Some(0), "{}", String::from_utf8_lossy(&replayed.stdout));
+}
+
+#[test]
+fn watch_runs_again_when_the_file_is_saved() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mine.toml");
+    let text = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../designs/1.1.toml")).unwrap();
+    fs::write(&path, &text).unwrap();
+    let log = folder.path().join("log");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_maille"))
+        .args(["check", "--watch", "mine.toml"])
+        .current_dir(folder.path())
+        .stdout(fs::File::create(&log).unwrap())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let begun = Instant::now();
+    let wait_for = |runs: usize| {
+        while fs::read_to_string(&log).unwrap().matches("mine.toml: right").count() < runs {
+            assert!(begun.elapsed() < Duration::from_secs(60), "{}", fs::read_to_string(&log).unwrap());
+            std::thread::sleep(Duration::from_millis(50));
+        }
+    };
+    wait_for(1);
+    // As editors save: under another name, then renamed.
+    let other = folder.path().join("mine.toml~");
+    fs::write(&other, text.replace("minor_radius = 0.1", "minor_radius = 0.12")).unwrap();
+    fs::rename(&other, &path).unwrap();
+    wait_for(2);
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert!(fs::read_to_string(&log).unwrap().contains("smallest gap 0.113553"));
+}
+
+#[test]
+fn shells_and_man_know_every_command() {
+    let folder = tempfile::tempdir().unwrap();
+    let help = String::from_utf8(done(folder.path(), "--help", b"")).unwrap();
+    let commands: Vec<&str> = help
+        .lines()
+        .skip_while(|l| *l != "Commands:")
+        .skip(1)
+        .take_while(|l| !l.is_empty())
+        .filter_map(|l| l.split_whitespace().next())
+        .filter(|c| *c != "help")
+        .collect();
+    assert!(commands.len() >= 11, "{commands:?}");
+    done(folder.path(), "man pages", b"");
+    let bash = String::from_utf8(done(folder.path(), "completions bash", b"")).unwrap();
+    for shell in ["zsh", "fish", "elvish", "powershell"] {
+        assert!(!done(folder.path(), &format!("completions {shell}"), b"").is_empty());
+    }
+    for command in commands {
+        assert!(bash.contains(command), "{command}");
+        let page = fs::read_to_string(folder.path().join(format!("pages/maille-{command}.1"))).unwrap();
+        assert!(page.contains(".SH NAME"), "{command}");
+        let text = String::from_utf8(done(folder.path(), &format!("{command} --help"), b"")).unwrap();
+        assert!(text.contains("Examples:"), "{command} --help has no examples");
+    }
+}
+
+#[test]
+fn a_reader_that_goes_away_is_no_failure() {
+    let folder = tempfile::tempdir().unwrap();
+    for line in ["designs", "inspect 5.2", "check 1.1 1.2 1.3", "schema", "completions bash"] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_maille"))
+            .args(line.split_whitespace())
+            .current_dir(folder.path())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        assert_eq!((output.status.code(), output.stderr.is_empty()), (Some(0), true), "{line}");
+    }
+}
+
+/// Along a chain of Japanese 4-in-1 and 6-in-1 a period holds two rings, pulled until each touches the next inside:
+/// 4 (R − r).
+#[test]
+fn japanese_weaves_lock_along_their_chains_where_the_closed_form_says() {
+    let folder = tempfile::tempdir().unwrap();
+    for weave in ["japanese-4-in-1", "japanese-6-in-1"] {
+        let design = json(folder.path(), &format!("inspect {weave} --json"));
+        let ring = &design["elements"][0]["rings"][0];
+        let [major, minor] = ["major_radius", "minor_radius"].map(|key| ring[key].as_f64().unwrap());
+        let expected = 4.0 * (major - minor) / design["a1"][0].as_f64().unwrap() - 1.0;
+        let found = json(folder.path(), &format!("characterize {weave} --directions 0 --l2 0 --json"));
+        let l1 = found["limits"][0]["largest"]["l1"].as_f64().unwrap();
+        assert!((l1 - expected).abs() < 1e-9, "{weave}: {l1}, not {expected}");
+        assert_eq!(found["statuses"]["global"], 1);
+    }
+}

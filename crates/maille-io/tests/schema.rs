@@ -1,0 +1,81 @@
+//! The JSON Schema of design files against the reader: what the reader takes the schema takes, and what it refuses the
+//! schema refuses too, but for what no schema can say.
+
+use maille_io::{DESIGN_JSON_SCHEMA, builtin_designs, read_design};
+use serde_json::{Map, Value};
+use std::{fs, path::Path};
+
+fn validator() -> jsonschema::Validator {
+    let schema: Value = serde_json::from_str(DESIGN_JSON_SCHEMA).unwrap();
+    jsonschema::meta::validate(&schema).unwrap();
+    jsonschema::validator_for(&schema).unwrap()
+}
+
+/// TOML as JSON; NaN and infinity, which JSON has not, become strings.
+fn json(value: &toml::Value) -> Value {
+    match value {
+        toml::Value::Float(x) if !x.is_finite() => Value::String(x.to_string()),
+        toml::Value::Array(list) => list.iter().map(json).collect(),
+        toml::Value::Table(table) => {
+            Value::Object(table.iter().map(|(k, v)| (k.clone(), json(v))).collect::<Map<_, _>>())
+        }
+        other => serde_json::to_value(other).unwrap(),
+    }
+}
+
+fn parsed(text: &str) -> Option<Value> {
+    Some(json(&toml::Value::Table(text.parse::<toml::Table>().ok()?)))
+}
+
+#[test]
+fn every_builtin_design_fits_the_schema() {
+    let validator = validator();
+    for design in builtin_designs() {
+        let instance = parsed(design.toml).unwrap();
+        let errors: Vec<String> =
+            validator.iter_errors(&instance).map(|e| format!("{}: {e}", e.instance_path())).collect();
+        assert!(errors.is_empty(), "{}: {errors:?}", design.name);
+    }
+}
+
+/// What a schema cannot say: relations between two fields.
+const BEYOND: [&str; 4] = [
+    "minor-radius-too-large.toml",
+    "parallel-lattice.toml",
+    "ring-minor-radius-too-large.toml",
+    "same-name-twice.toml",
+];
+
+#[test]
+fn wrong_designs_do_not_fit_the_schema() {
+    let validator = validator();
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/errors");
+    let (mut fit, mut refused) = (Vec::new(), 0);
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_none_or(|e| e != "toml") {
+            continue;
+        }
+        let text = fs::read_to_string(&path).unwrap();
+        // Files that are no TOML are the parser's to refuse.
+        let Some(instance) = parsed(&text) else { continue };
+        match validator.is_valid(&instance) {
+            true => fit.push(path.file_name().unwrap().to_str().unwrap().to_owned()),
+            false => refused += 1,
+        }
+    }
+    fit.sort();
+    assert_eq!(fit, BEYOND);
+    assert!(refused >= 35, "{refused}");
+}
+
+#[test]
+fn what_the_schema_leaves_out_the_reader_leaves_out() {
+    let least = "name = 'x'\nreference_radius = 1\nlattice = { a1 = [3, 0, 0], a2 = [0, 3, 0] }\nelements = \
+                 [{ name = 'a', center = [0, 0, 0], rings = [{ major_radius = 1, normal = [0, 0, 1], minor_radius = 0.1 }] }]\n";
+    assert!(read_design("least", least).is_ok() && validator().is_valid(&parsed(least).unwrap()));
+    for key in ["name", "reference_radius", "lattice", "elements"] {
+        let without: String = least.lines().filter(|l| !l.starts_with(key)).map(|l| format!("{l}\n")).collect();
+        assert!(read_design(key, &without).is_err() && !validator().is_valid(&parsed(&without).unwrap()), "{key}");
+    }
+}
