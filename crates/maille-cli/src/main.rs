@@ -19,6 +19,7 @@ mod records;
 mod render;
 mod replay;
 mod schema;
+mod simulate;
 mod source;
 mod summary;
 mod table;
@@ -38,6 +39,7 @@ Examples:
   maille characterize 1.1                 its limits, as a table and a polar plot in maille-out/1.1/
   maille characterize my-weave.toml --directions 0:90:5 --l2 0
   maille replay maille-out/1.3            solve the rows without a limit again
+  maille simulate 1.1 --fix left --pull right=5,0,0    a finite sheet
   maille new shirt --weave european-4-in-1 --wire 16swg --id 5/16in
   maille check my-weave.toml              is the file right, do rings overlap?
 
@@ -64,6 +66,7 @@ enum Command {
     New(new::Args),
     Designs(designs::Args),
     Replay(replay::Args),
+    Simulate(Box<simulate::Args>),
     Export(export::Args),
     Render(render::Args),
     Plot(plot::Args),
@@ -83,6 +86,7 @@ fn main() -> ExitCode {
         Command::Check(args) => check::run(&args),
         Command::New(args) => done(new::run(&args)),
         Command::Replay(args) => replay::run(&args),
+        Command::Simulate(args) => simulate::run(&args),
         Command::Designs(args) => done(designs::run(&args)),
         Command::Export(args) => done(export::run(&args)),
         Command::Render(args) => done(render::run(&args)),

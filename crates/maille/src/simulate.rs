@@ -13,6 +13,7 @@ use crate::{
     error::InvalidInput,
     limit::energy::EnergyOptions,
     model::Model,
+    record::{FrameRecord, pose_records},
     solve::newton::{Outcome, minimize},
     state::State,
     topology,
@@ -143,6 +144,8 @@ pub struct Simulation {
     pub iterations: usize,
     /// Random kicks of all runs.
     pub kicks: usize,
+    /// The states that were reached, one for each position of the pull, the state before it first.
+    pub path: Vec<FrameRecord>,
     /// Whether the links are those of the start.
     pub links_ok: bool,
     /// Smallest gap of the state, where rings are near each other.
@@ -159,6 +162,7 @@ struct Run<'a> {
     runs: u32,
     iterations: usize,
     kicks: usize,
+    path: Vec<FrameRecord>,
 }
 
 /// The end of one minimisation.
@@ -218,7 +222,12 @@ impl Run<'_> {
         for factor in softer {
             from = self.minimise(share, &from, self.setup.options.alpha * factor).state;
         }
-        self.minimise(share, &from, self.setup.options.alpha)
+        let rest = self.minimise(share, &from, self.setup.options.alpha);
+        if self.reached(&rest) {
+            let poses = pose_records(self.model, &rest.state);
+            self.path.push(FrameRecord { run: self.runs - 1, share, energy: rest.energy, poses });
+        }
+        rest
     }
 
     fn minimise(&mut self, share: f64, from: &State, alpha: f64) -> Rest {
@@ -255,6 +264,7 @@ impl Run<'_> {
             energy: rest.energy,
             iterations: self.iterations,
             kicks: self.kicks,
+            path: self.path.clone(),
             links_ok: topology::links_kept(model, &state),
             smallest_gap: topology::smallest_gap(model, &state).map(|(gap, _)| gap),
             state,
@@ -271,7 +281,7 @@ pub fn simulate(
     watch: &mut dyn FnMut(&Accepted<'_>),
 ) -> Result<Simulation, InvalidInput> {
     setup.check(model)?;
-    let mut run = Run { model, setup, cancel, watch, runs: 0, iterations: 0, kicks: 0 };
+    let mut run = Run { model, setup, cancel, watch, runs: 0, iterations: 0, kicks: 0, path: Vec::new() };
     let (mut share, mut rest) = (0.0, run.relax(0.0, &model.start));
     // The last position that was reached, then the first one that was missed.
     let steps = if setup.pull.is_empty() { 0 } else { setup.steps.max(1) };
