@@ -29,6 +29,9 @@ pub fn symmetric_eigen(h: &Mat<f64>) -> Result<Eigen, EigenFailure> {
     if !h.col_iter().all(|column| column.iter().all(|x| x.is_finite())) {
         return Err(EigenFailure { residual: f64::NAN, norm: f64::NAN });
     }
+    if h.nrows() == 0 {
+        return Ok(Eigen { values: Vec::new(), vectors: Mat::zeros(0, 0) }); // faer takes no empty matrix
+    }
     let eigen = h.self_adjoint_eigen(Side::Lower).map_err(|_| EigenFailure { residual: f64::NAN, norm })?;
     let vectors = eigen.U().to_owned();
     let values: Vec<f64> = eigen.S().column_vector().iter().copied().collect();
@@ -43,6 +46,9 @@ pub fn symmetric_eigen(h: &Mat<f64>) -> Result<Eigen, EigenFailure> {
 /// Least eigenvalue of the symmetric matrix `h`, unchecked; `None` where the decomposition fails.
 pub fn least_eigenvalue(h: &Mat<f64>) -> Option<f64> {
     let of = coupled(h);
+    if of.is_empty() {
+        return Some(0.0);
+    }
     let values = block(h, &of).self_adjoint_eigenvalues(Side::Lower).ok()?;
     // Unknowns that nothing couples have the eigenvalue 0.
     let zero = (of.len() < h.ncols()).then_some(0.0);
@@ -121,6 +127,8 @@ mod tests {
         for (value, expected) in eigen.values.iter().zip([2.0 - 2f64.sqrt(), 2.0, 2.0 + 2f64.sqrt()]) {
             assert!((value - expected).abs() < 1e-14);
         }
+        assert!(symmetric_eigen(&Mat::zeros(0, 0)).unwrap().values.is_empty());
+        assert_eq!(least_eigenvalue(&Mat::zeros(3, 3)), Some(0.0));
         let nan = Mat::from_fn(2, 2, |_, _| f64::NAN);
         assert!(symmetric_eigen(&nan).is_err());
     }
