@@ -9,6 +9,8 @@ pub struct At {
     pub direction: Option<f64>,
     /// l2 of the row.
     pub l2: Option<f64>,
+    /// Frame of a simulation, from 0.
+    pub frame: Option<usize>,
 }
 
 /// Reads `direction=30,l2=-0.125`; what is not named stays open.
@@ -17,6 +19,13 @@ pub fn parse_at(text: &str) -> Result<At, String> {
     for part in text.split(',') {
         let wrong = || format!("\"{part}\" is no place; give direction=30,l2=-0.125");
         let (key, value) = part.split_once('=').ok_or_else(wrong)?;
+        if key.trim() == "frame" {
+            let frame = value.trim().parse().map_err(|_| format!("\"{part}\" is no frame; give frame=12"))?;
+            if at.frame.replace(frame).is_some() {
+                return Err("frame is given twice".into());
+            }
+            continue;
+        }
         let value: f64 = value.trim().parse().ok().filter(|x: &f64| x.is_finite()).ok_or_else(wrong)?;
         let slot = match key.trim() {
             "direction" => &mut at.direction,

@@ -14,8 +14,11 @@ use crate::{
 };
 use maille::{
     characterize::Method,
-    energy::{HessianMethod, MinimaMethod, target::Protocol},
-    limit::{energy::EnergyOptions, exact::ExactOptions},
+    energy::{HessianMethod, MinimaMethod, barrier::ContactLaw, target::Protocol},
+    limit::{
+        energy::{EnergyOptions, Minimiser},
+        exact::ExactOptions,
+    },
     record::Status,
 };
 use miette::Result;
@@ -118,6 +121,30 @@ struct EnergyArgs {
     /// Minima of the circle-circle distance: complete enumeration, or the thesis's polynomial
     #[arg(long, value_enum, default_value_t = MinimaArg::Enumeration)]
     minima: MinimaArg,
+    /// What an overlap costs: the barrier, or the square that the thesis rejects
+    #[arg(long, value_enum, default_value_t = ContactLawArg::Barrier)]
+    contact_law: ContactLawArg,
+    /// Newton, or gradient descent, which the thesis rejects
+    #[arg(long, value_enum, default_value_t = MinimiserArg::Newton)]
+    minimiser: MinimiserArg,
+    /// Refuse steps that flip a side sign of an element of several rings, as the thesis does
+    #[arg(long)]
+    side_signs: bool,
+    /// Iterations of one minimisation at most
+    #[arg(long, default_value_t = EnergyOptions::default().max_iterations, value_parser = |t: &str| small(t, 10_000_000))]
+    max_iterations: usize,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum ContactLawArg {
+    Barrier,
+    Quadratic,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum MinimiserArg {
+    Newton,
+    GradientDescent,
 }
 
 /// `auto`, or one cell.
@@ -182,6 +209,16 @@ impl EnergyArgs {
                 MinimaArg::Enumeration => MinimaMethod::Enumeration,
                 MinimaArg::Polynomial => MinimaMethod::Polynomial,
             },
+            contact_law: match self.contact_law {
+                ContactLawArg::Barrier => ContactLaw::Barrier,
+                ContactLawArg::Quadratic => ContactLaw::Quadratic,
+            },
+            minimiser: match self.minimiser {
+                MinimiserArg::Newton => Minimiser::Newton,
+                MinimiserArg::GradientDescent => Minimiser::GradientDescent,
+            },
+            side_signs: self.side_signs,
+            max_iterations: self.max_iterations,
             seed,
             ..EnergyOptions::default()
         }

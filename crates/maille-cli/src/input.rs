@@ -58,10 +58,19 @@ impl Input {
     /// Compiles the design for `cell`; what is wrong is shown at its place in the file, or, where it comes from
     /// `--minor-radius`, named after that option.
     pub fn compile(&self, design: &Design, cell: Cell) -> Result<Model> {
-        Model::compile(design, cell).map_err(|problems| match self.minor_radius {
-            Some(r) => of_minor_radius(r, &problems),
-            None => Report::new(self.source.explain(&problems)),
-        })
+        Model::compile(design, cell).map_err(|problems| self.explain(&problems))
+    }
+
+    /// The same for a finite sheet of the cells of `tile`.
+    pub fn compile_sheet(&self, design: &Design, tile: Cell) -> Result<Model> {
+        Model::compile_sheet(design, tile).map_err(|problems| self.explain(&problems))
+    }
+
+    fn explain(&self, problems: &[InvalidInput]) -> Report {
+        match self.minor_radius {
+            Some(r) => of_minor_radius(r, problems),
+            None => Report::new(self.source.explain(problems)),
+        }
     }
 }
 

@@ -23,6 +23,7 @@ mod render;
 mod replay;
 mod reproduce;
 mod schema;
+mod simulate;
 mod source;
 mod summary;
 mod table;
@@ -43,6 +44,7 @@ Examples:
   maille characterize my-weave.toml --directions 0:90:5 --l2 0
   maille replay maille-out/1.3            solve the rows without a limit again
   maille reproduce --quick                chapter 6 of the thesis, computed anew
+  maille simulate 1.1 --fix left --pull right=5,0,0    a finite sheet
   maille new shirt --weave european-4-in-1 --wire 16swg --id 5/16in
   maille check my-weave.toml              is the file right, do rings overlap?
 
@@ -70,6 +72,7 @@ enum Command {
     Designs(designs::Args),
     Replay(replay::Args),
     Reproduce(reproduce::Args),
+    Simulate(Box<simulate::Args>),
     Export(export::Args),
     Render(render::Args),
     Plot(plot::Args),
@@ -90,6 +93,7 @@ fn main() -> ExitCode {
         Command::New(args) => done(new::run(&args)),
         Command::Replay(args) => replay::run(&args),
         Command::Reproduce(args) => reproduce::run(&args),
+        Command::Simulate(args) => simulate::run(&args),
         Command::Designs(args) => done(designs::run(&args)),
         Command::Export(args) => done(export::run(&args)),
         Command::Render(args) => done(render::run(&args)),

@@ -29,6 +29,7 @@ Examples:
   maille render my-weave.toml --tile 6x4 --perspective --background dark --out slide.png
   maille render 1.1 --at direction=30,l2=-0.125                   a limit of maille-out/1.1, with its forces
   maille render --from results/weave --at direction=0,l2=0 --color load --forces none
+  maille render --from maille-out/1.1-simulate --at frame=3       a state of a simulated sheet
   maille render 1.1 --size 300x225 --no-scale-bar --out -         to standard output
 
 Colours: elements that differ by a translation alone share one. With --color load, from yellow to violet by the sum of
@@ -131,6 +132,8 @@ pub fn run(args: &Args) -> Result<()> {
         eprintln!("note: {caution}");
     }
     let extent = match (args.tile, args.patch) {
+        // A simulated sheet is one cell, the whole of it.
+        _ if !source.model.periodic => Extent::Cells([1, 1]),
         (Some(tile), _) => Extent::Cells(tile.0),
         (None, Some(patch)) => Extent::Patch(patch),
         (None, None) => Extent::filling(args.size, args.view, source.design.reference_radius),

@@ -11,10 +11,13 @@ use maille::{
     error::InvalidInput,
     lattice::Cell,
     model::Model,
-    record::{ContactRecord, StateRecord, Status},
+    record::{ContactRecord, FrameRecord, StateRecord, Status},
     state::State,
 };
-use maille_io::{mesh, record::Record};
+use maille_io::{
+    mesh,
+    record::{Record, SIMULATION, read_frames, read_simulation},
+};
 use miette::{Report, Result};
 use std::path::{Path, PathBuf};
 
@@ -24,10 +27,11 @@ pub struct SourceArgs {
     /// A built-in design (see `maille designs`), a TOML file, or - for standard input; may be left out with --from
     #[arg(required_unless_present = "from")]
     pub design: Option<String>,
-    /// Folder of a record: take one of its states [default with --at: maille-out/DESIGN]
+    /// Folder of a record or of a simulation: take one of its states [default with --at: maille-out/DESIGN]
     #[arg(long, value_name = "RECORD")]
     pub from: Option<PathBuf>,
-    /// Which state of the record, as direction=30,l2=-0.125; what only one state fits may be left out
+    /// Which state of the record, as direction=30,l2=-0.125; what only one state fits may be left out. Of a simulation:
+    /// frame=12 [default: the last]
     #[arg(long, value_parser = parse_at, allow_hyphen_values = true)]
     pub at: Option<At>,
     /// Minor radius of every ring that gives none, in the file's unit
@@ -43,6 +47,8 @@ pub struct Source {
     pub model: Model,
     /// The state of the record, as recorded and as poses.
     pub locked: Option<(StateRecord, State)>,
+    /// The states of a simulation and which of them is shown; the model is a finite sheet.
+    pub simulated: Option<(Vec<State>, usize)>,
 }
 
 /// One state of a series.
@@ -77,17 +83,59 @@ impl SourceArgs {
                 let design = input.design.clone();
                 let compiled = if wanted.overlaps { &tolerant(&design) } else { &design };
                 let model = input.compile(compiled, Cell::PRIMITIVE)?;
-                return Ok(Source { design, model, locked: None });
+                return Ok(Source { design, model, locked: None, simulated: None });
             }
             (None, None) => {
                 return Err(wrong(exit::USAGE, "there is neither a design nor a record", "name one of them"));
             }
         };
-        self.of_record(input.as_ref(), &folder)
+        match folder.join(SIMULATION[0]).is_file() {
+            true => self.of_simulation(&folder),
+            false => self.of_record(input.as_ref(), &folder),
+        }
+    }
+
+    fn of_simulation(&self, folder: &Path) -> Result<Source> {
+        let read = |name: &str| {
+            let path = folder.join(name);
+            let text = std::fs::read_to_string(&path).map_err(|e| {
+                wrong(exit::RECORD, format!("cannot read {}: {e}", path.display()), "simulate it again")
+            })?;
+            Ok::<_, Report>((path.display().to_string(), text))
+        };
+        let ((file, text), (frames_file, frames)) = (read(SIMULATION[0])?, read(SIMULATION[1])?);
+        let record = read_simulation(&file, &text)?;
+        let unusable = |problem: String| {
+            let help = "its files were edited or do not belong together: simulate it again";
+            wrong(exit::RECORD, format!("the simulation {} cannot be used: {problem}", folder.display()), help)
+        };
+        let tile: Cell = record.tile.parse().map_err(|e: InvalidInput| unusable(e.problem))?;
+        let model = Model::compile_sheet(&tolerant(&record.design), tile)
+            .map_err(|problems| unusable(problems.iter().map(|p| p.problem.clone()).collect::<Vec<_>>().join("; ")))?;
+        let state = |frame: FrameRecord| {
+            let [a1, a2] = [model.start.a1, model.start.a2].map(|a| (a * model.unit).into());
+            mesh::state_of(&model, &StateRecord { poses: frame.poses, a1, a2, ..StateRecord::default() })
+        };
+        let states: Vec<State> =
+            read_frames(&frames_file, &frames)?.into_iter().map(state).collect::<Result<_, _>>()?;
+        let last = states.len().checked_sub(1).ok_or_else(|| unusable("it has no frames".into()))?;
+        let shown = match (self.at.unwrap_or_default().frame, self.at) {
+            (Some(frame), _) if frame <= last => frame,
+            (None, None) => last,
+            _ => {
+                let help = format!("name one of its frames, --at frame=0 to --at frame={last}");
+                return Err(wrong(exit::USAGE, format!("{} has {} frames", folder.display(), last + 1), help));
+            }
+        };
+        Ok(Source { design: record.design, model, locked: None, simulated: Some((states, shown)) })
     }
 
     fn of_record(&self, input: Option<&Input>, folder: &Path) -> Result<Source> {
         let at = self.at.unwrap_or_default();
+        if at.frame.is_some() {
+            let help = "frames are those of `maille simulate`; a limit is named as --at direction=30,l2=-0.125";
+            return Err(wrong(exit::USAGE, format!("{} is no simulation: it has no frames", folder.display()), help));
+        }
         let record = match input {
             Some(input) if self.from.is_none() && !holds_record(folder) => {
                 return Err(wrong(
@@ -130,7 +178,7 @@ impl SourceArgs {
         let cell: Cell = row.map_or("1x1", |r| &r.cell).parse().map_err(|problem| unusable(vec![problem]))?;
         let model = Model::compile(&tolerant(design), cell).map_err(unusable)?;
         let locked = mesh::state_of(&model, state)?;
-        Ok(Source { design: design.clone(), locked: Some((state.clone(), locked)), model })
+        Ok(Source { design: design.clone(), locked: Some((state.clone(), locked)), model, simulated: None })
     }
 
     /// The only state that fits.
@@ -217,7 +265,11 @@ impl SourceArgs {
 impl Source {
     /// The state that is shown.
     pub fn state(&self) -> &State {
-        self.locked.as_ref().map_or(&self.model.start, |(_, state)| state)
+        match (&self.locked, &self.simulated) {
+            (Some((_, state)), _) => state,
+            (None, Some((states, shown))) => &states[*shown],
+            (None, None) => &self.model.start,
+        }
     }
 
     /// Its contacts that carry force.
@@ -228,6 +280,9 @@ impl Source {
     /// How files of this state are named.
     pub fn stem(&self) -> String {
         let name = file_name(&self.design.name);
+        if let Some((_, shown)) = self.simulated {
+            return format!("{name}-simulate_frame{shown}");
+        }
         self.locked.as_ref().map_or(name.clone(), |(s, _)| name + &place(Some(s.direction_deg), Some(s.l2)))
     }
 
@@ -247,6 +302,21 @@ impl Source {
             suffix: String::new(),
             description,
         };
+        if let Some((states, shown)) = &self.simulated {
+            let Some(count) = count else {
+                let place = format!("frame {shown} of {} of a simulated sheet", states.len());
+                return vec![one(&states[*shown], 1.0, format!("{title}; {place}"))];
+            };
+            // As many of the recorded states, spread evenly.
+            let count = (count as usize).min(states.len());
+            let (last, digits) = (states.len() - 1, count.saturating_sub(1).to_string().len());
+            let of = |k: usize| k * last / (count - 1).max(1);
+            let frame = |k: usize| Frame {
+                suffix: format!("_f{k:0digits$}"),
+                ..one(&states[of(k)], of(k) as f64 / last.max(1) as f64, format!("{title}; simulated, frame {}", of(k)))
+            };
+            return (0..count).map(frame).collect();
+        }
         let Some((record, state)) = &self.locked else {
             return vec![one(&self.model.start, 0.0, format!("{title}; starting state"))];
         };

@@ -225,3 +225,29 @@ fn japanese_weaves_lock_along_their_chains_where_the_closed_form_says() {
         assert_eq!(found["statuses"]["global"], 1);
     }
 }
+
+/// A finite sheet is pulled until it locks; its frames are exported and drawn.
+#[test]
+fn a_simulated_sheet_is_exported_and_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let line = "simulate 1.1 --tile 2x1 --fix left --pull right=3,0,0 --steps 3 -o run --frames all --json";
+    let said = json(folder, line);
+    assert_eq!((said["outcome"]["end"].as_str(), said["elements"].as_u64()), (Some("locked"), Some(6)));
+    // Three links of 1.8 where 3.75 was: 1.65 of the 3.
+    let share = said["outcome"]["share"].as_f64().unwrap();
+    assert!((3.0 * share - 1.65).abs() < 0.01, "{share}");
+    assert_eq!(said["outcome"]["links_ok"], Value::Bool(true));
+    let lines = |name: &str| fs::read_to_string(folder.join(name)).unwrap().lines().count();
+    assert!(lines("all/frames.jsonl") > lines("run/frames.jsonl") && lines("run/frames.jsonl") >= 3);
+    done(folder, "export --from all --format vtk --frames 5 --out vtk/ --quiet", b"");
+    let series = fs::read_dir(folder.join("vtk")).unwrap().map(|e| e.unwrap().path());
+    let pvd: Vec<_> = series.filter(|p| p.extension().is_some_and(|e| e == "pvd")).collect();
+    assert_eq!(pvd.len(), 2);
+    assert_eq!(fs::read_to_string(&pvd[0]).unwrap().matches("<DataSet").count(), 5);
+    let draw = |frame: usize| done(folder, &format!("render --from run --at frame={frame} --size 96x72 --out -"), b"");
+    assert!(draw(0).starts_with(b"\x89PNG") && draw(0) != draw(2));
+    // Six rings, not a tile of the periodic sheet.
+    let text = String::from_utf8(done(folder, "export --from run --format obj --out -", b"")).unwrap();
+    assert_eq!(text.lines().filter(|l| l.starts_with("g ") || l.starts_with("o ")).count(), 6, "{}", &text[..400]);
+}

@@ -7,6 +7,9 @@
 //! | `run.json` | a [`RunRecord`]: design, parameters, hash of both, counters |
 //! | `polar.svg`, `polar.png` | the plot |
 //!
+//! A simulated sheet leaves `simulation.json`, a [`SimulationRecord`], and `frames.jsonl`, one
+//! [`FrameRecord`](maille::record::FrameRecord) a line.
+//!
 //! Numbers are written with the fewest digits that read back bit for bit.
 
 mod columns;
@@ -14,6 +17,7 @@ mod error;
 mod folder;
 mod limits;
 mod run;
+mod simulation;
 mod states;
 
 pub use columns::{Cell, Column, LIMIT_COLUMNS, Unit, Values};
@@ -22,4 +26,7 @@ pub use folder::{NamedRecord, Record, RecordFolder};
 pub(crate) use limits::csv_cell;
 pub use limits::{read_limits, write_limits};
 pub use run::{Counters, RunRecord, input_hash, read_run, write_run};
+pub use simulation::{
+    SIMULATION, SimulationOutcome, SimulationRecord, read_frames, read_simulation, write_frames, write_simulation,
+};
 pub use states::{read_states, write_states};

@@ -8,7 +8,7 @@ use crate::{
         exact::{ExactMethod, ExactOptions},
     },
     model::Model,
-    record::{ChainRecord, ContactRecord, LimitRow, PoseRecord, StateRecord, Status},
+    record::{ChainRecord, ContactRecord, LimitRow, StateRecord, Status, pose_records},
     topology,
 };
 use maille_geometry::Vec3;
@@ -167,19 +167,7 @@ fn report(
         l1_uncertified: exact.and_then(|e| e.l1_uncertified),
     };
     let position = |v: Vec3| -> [f64; 3] { (v * model.unit).into() };
-    let poses = model
-        .elements
-        .iter()
-        .zip(&outcome.state.poses)
-        .map(|(element, pose)| {
-            let q = pose.rotation.quaternion();
-            PoseRecord {
-                element: element.name.clone(),
-                position: position(pose.position),
-                rotation: [q.w, q.i, q.j, q.k],
-            }
-        })
-        .collect();
+    let poses = pose_records(model, &outcome.state);
     let contact = |c: &crate::constraint::Contact| ContactRecord {
         ring_a: c.pair.ring_a,
         ring_b: c.pair.ring_b,

@@ -14,6 +14,7 @@ pub mod lattice;
 pub mod limit;
 pub mod model;
 pub mod record;
+pub mod simulate;
 pub mod solve;
 pub mod state;
 pub mod topology;

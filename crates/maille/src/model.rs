@@ -42,8 +42,11 @@ pub struct Element {
 pub struct Model {
     /// Name of the design.
     pub name: String,
-    /// The cell that is solved.
+    /// The cell that is solved; of a finite sheet, the whole sheet.
     pub cell: Cell,
+    /// Whether the cell has images. A finite sheet has none: the only shift is (0, 0), and its lattice vectors, which
+    /// nothing moves, only say where the cells were.
+    pub periodic: bool,
     /// Length of one unit of the model, in the file's unit: the reference radius R.
     pub unit: f64,
     /// Elements of the cell.
@@ -63,6 +66,15 @@ pub struct Model {
 impl Model {
     /// Compiles `design` for `cell`, or returns everything that is wrong with it.
     pub fn compile(design: &Design, cell: Cell) -> Result<Model, Vec<InvalidInput>> {
+        Self::compile_with(design, cell, true)
+    }
+
+    /// Compiles the cells of `tile` alone, a finite sheet with free edges.
+    pub fn compile_sheet(design: &Design, tile: Cell) -> Result<Model, Vec<InvalidInput>> {
+        Self::compile_with(design, tile, false)
+    }
+
+    fn compile_with(design: &Design, cell: Cell, periodic: bool) -> Result<Model, Vec<InvalidInput>> {
         let problems = design.problems();
         if !problems.is_empty() {
             return Err(problems);
@@ -101,8 +113,9 @@ impl Model {
         let largest_radius = rings.iter().map(|r| r.major_radius).fold(0.0, f64::max);
         let start = State { poses, a1, a2 };
         let name = design.name.clone();
+        let links = Vec::new();
         let mut model =
-            Model { name, cell, unit, elements, rings, start, reference_inverse, links: Vec::new(), largest_radius };
+            Model { name, cell, periodic, unit, elements, rings, start, reference_inverse, links, largest_radius };
         let pairs = topology::close_pairs(&model, &model.start, 0.0);
         let overlaps = model.overlaps(&pairs, design);
         if !overlaps.is_empty() {

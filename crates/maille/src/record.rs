@@ -1,5 +1,9 @@
 //! What a run leaves behind: one row a limit, and the state that proves it.
 
+use crate::{
+    model::{Element, Model},
+    state::{Pose, State},
+};
 use serde::{Deserialize, Serialize};
 
 /// Version of the record's files.
@@ -138,6 +142,32 @@ pub struct PoseRecord {
     pub position: [f64; 3],
     /// Rotation from the design's pose, unit quaternion `[w, x, y, z]`.
     pub rotation: [f64; 4],
+}
+
+/// The poses of a state, in the file's unit.
+pub fn pose_records(model: &Model, state: &State) -> Vec<PoseRecord> {
+    let record = |(element, pose): (&Element, &Pose)| {
+        let q = pose.rotation.quaternion();
+        PoseRecord {
+            element: element.name.clone(),
+            position: (pose.position * model.unit).into(),
+            rotation: [q.w, q.i, q.j, q.k],
+        }
+    };
+    model.elements.iter().zip(&state.poses).map(record).collect()
+}
+
+/// One line of `frames.jsonl`: a state of a simulated sheet.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FrameRecord {
+    /// Minimisation that it belongs to, counted from 0.
+    pub run: u32,
+    /// Share of the pull.
+    pub share: f64,
+    /// Energy, in β R².
+    pub energy: f64,
+    /// Poses of the elements.
+    pub poses: Vec<PoseRecord>,
 }
 
 /// A contact that carries force in a locked state.

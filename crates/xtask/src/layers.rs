@@ -26,13 +26,13 @@ const MODULES: &[&[&str]] = &[
     &["bound"],
     &["energy", "constraint"],
     &["record"],
-    &["limit"],
+    &["limit", "simulate"],
     &["characterize"],
 ];
 
 /// Stands aside from the order: it uses no other module and no ring, and only [`ASIDE_USERS`] use it.
 const ASIDE: &str = "solve";
-const ASIDE_USERS: &[&str] = &["energy", "constraint", "limit", "characterize"];
+const ASIDE_USERS: &[&str] = &["energy", "constraint", "limit", "simulate", "characterize"];
 
 /// Where the modules of [`MODULES`] live.
 const SOURCES: &str = "crates/maille/src";

@@ -32,6 +32,7 @@ Examples:
   maille export my-weave.toml --out prints/ --min-clearance 0.3   refuses if rings would fuse
   maille export 1.1 --at direction=30,l2=-0.25 --out locked.glb   a limit of maille-out/1.1
   maille export --from results/weave --at direction=0,l2=0 --format vtk --frames 20
+  maille export --from maille-out/1.1-simulate --format vtk --frames 100    the states of a simulation
 
 Formats:
   3mf  for printing: real units, each ring stored once; see --objects
@@ -42,7 +43,7 @@ Formats:
 Elements of several rings are several closed bodies that overlap where they are joined. Slicers unite the \
 overlapping bodies of one object, so print such designs as 3mf with --objects element (the default) or sheet.
 
-Frames are interpolated: lattice and positions on straight lines, rotations at constant rate. That is a picture of \
+Frames of a simulation are states that it found. Others are interpolated: lattice and positions on straight lines, rotations at constant rate. That is a picture of \
 the change, no motion that the rings could make: they may overlap in between.")]
 pub struct Args {
     #[command(flatten)]
@@ -123,7 +124,9 @@ const MANY: usize = 5_000_000;
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
     let source = args.source.read(Wanted { locked: args.frames.is_some(), overlaps: false })?;
-    let Source { design, model, locked } = &source;
+    let Source { design, model, locked, .. } = &source;
+    // A simulated sheet is one cell, the whole of it.
+    let tile = if model.periodic { args.tile } else { Tile([1, 1]) };
     let (destination, formats) = destination(args.out.as_deref(), &args.format, args.frames.is_some(), &source)?;
     let note = |text: String| {
         if !args.quiet {
@@ -164,7 +167,7 @@ pub fn run(args: &Args) -> Result<()> {
 
     let frames = source.frames(args.frames);
     if let Some(clearance) = args.min_clearance
-        && let Some(close) = mesh::too_close(model, &frames[0].state, args.tile, clearance, mm)
+        && let Some(close) = mesh::too_close(model, &frames[0].state, tile, clearance, mm)
     {
         let problem = fuse(&close, clearance, mm, design, locked.is_some());
         match args.warn {
@@ -172,18 +175,22 @@ pub fn run(args: &Args) -> Result<()> {
             true => eprintln!("{:?}", problem.wrap_err("warning: written all the same (--warn)")),
         }
     }
-    if args.frames.is_some() {
+    if args.frames.is_some() && source.simulated.is_none() {
         interpolation_note(&source, &frames, mm).into_iter().for_each(note);
     }
 
     let mut series: Vec<(MeshFile, f64, PathBuf)> = Vec::new();
     for frame in &frames {
-        let mut scene = Scene::new(model, &frame.state, args.tile, fineness, mm)?;
-        scene.description = format!("{}; {} cells; 1 file unit = {mm} mm", frame.description, args.tile);
+        let mut scene = Scene::new(model, &frame.state, tile, fineness, mm)?;
+        scene.description = format!(
+            "{}; {} cells; 1 file unit = {mm} mm",
+            frame.description,
+            if model.periodic { tile.to_string() } else { model.cell.to_string() }
+        );
         if let Some((record, _)) = locked {
             match frame.time < 1.0 {
                 true => scene.add_loads(model, &record.contacts),
-                false => scene.add_contacts(model, &frame.state, args.tile, &record.contacts),
+                false => scene.add_contacts(model, &frame.state, tile, &record.contacts),
             }
         }
         let triangles = scene.triangle_count();

@@ -1,13 +1,13 @@
 //! Contact energy E_c of a cell: every overlapping local minimum (eq. 4.1.3), and the sampled points beside it (§4.1.2).
 
-use super::{SheetEnergy, barrier::barrier};
+use super::barrier::ContactLaw;
 use crate::{
     contact::kernel::{Grad, Hess, PairFrame, RootMotion},
     model::Model,
+    solve::curvature::Curvature,
     state::State,
     topology::{RingPair, close_pairs},
 };
-use faer::Mat;
 use maille_geometry::{circle_distance_minima, circle_distance_minima_polynomial};
 use serde::{Deserialize, Serialize};
 
@@ -24,7 +24,9 @@ pub enum MinimaMethod {
 /// Parameters of the contact energy, in units of the reference radius.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactOptions {
-    /// α of eq. 4.1.3.
+    /// What an overlap costs.
+    pub law: ContactLaw,
+    /// Its weight α (eq. 4.1.1, 4.1.3).
     pub alpha: f64,
     /// Offsets δ of the non-minimal points θ + δ on the second circle (eq. 4.1.4), radians.
     pub sample_offsets_rad: Vec<f64>,
@@ -68,15 +70,14 @@ fn overlaps(model: &Model, state: &State, options: &ContactOptions) -> Vec<Overl
 }
 
 /// E_c of one cell.
-pub(super) fn energy(sheet: &SheetEnergy<'_>, state: &State) -> f64 {
-    let options = sheet.contacts;
+pub(super) fn energy(model: &Model, options: &ContactOptions, state: &State) -> f64 {
     let mut sum = 0.0;
-    for overlap in overlaps(sheet.model, state, options) {
+    for overlap in overlaps(model, state, options) {
         for &(angle, distance) in &overlap.minima {
-            sum += barrier(distance, overlap.contact_distance, options.alpha)[0];
+            sum += options.law.at(distance, overlap.contact_distance, options.alpha)[0];
             for offset in &options.sample_offsets_rad {
                 let distance = overlap.frame.distance(angle + offset);
-                sum += barrier(distance, overlap.contact_distance, options.alpha)[0];
+                sum += options.law.at(distance, overlap.contact_distance, options.alpha)[0];
             }
         }
     }
@@ -85,14 +86,14 @@ pub(super) fn energy(sheet: &SheetEnergy<'_>, state: &State) -> f64 {
 
 /// Adds gradient and Hessian of E_c; returns E_c.
 pub(super) fn add_derivatives(
-    sheet: &SheetEnergy<'_>,
+    model: &Model,
+    options: &ContactOptions,
     state: &State,
     gradient: &mut [f64],
-    hessian: &mut Mat<f64>,
+    hessian: &mut Curvature,
 ) -> f64 {
-    let options = sheet.contacts;
     let mut sum = 0.0;
-    for overlap in overlaps(sheet.model, state, options) {
+    for overlap in overlaps(model, state, options) {
         let (mut grad, mut hess) = (Grad::zeros(), Hess::zeros());
         for &(angle, _) in &overlap.minima {
             let root = overlap.frame.jet(angle);
@@ -103,20 +104,20 @@ pub(super) fn add_derivatives(
                 .filter(|offset| overlap.frame.distance(angle + **offset) < overlap.contact_distance)
                 .map(|offset| overlap.frame.jet(angle + offset));
             for jet in std::iter::once(root).chain(samples) {
-                let [value, first, second] = barrier(jet.distance, overlap.contact_distance, options.alpha);
+                let [value, first, second] = options.law.at(jet.distance, overlap.contact_distance, options.alpha);
                 let (d_grad, d_hess) = jet.distance_derivatives(&motion);
                 sum += value;
                 grad += d_grad * first;
                 hess += d_hess * first + d_grad * d_grad.transpose() * second;
             }
         }
-        scatter(sheet.model, &overlap.pair, &grad, &hess, gradient, hessian);
+        scatter(model, &overlap.pair, &grad, &hess, gradient, hessian);
     }
     sum
 }
 
 /// Adds a pair's derivatives in y = (x, α, β) to those in the cell's unknowns: x = x_j + s1 a1 + s2 a2 − x_i.
-fn scatter(model: &Model, pair: &RingPair, grad: &Grad, hess: &Hess, gradient: &mut [f64], hessian: &mut Mat<f64>) {
+fn scatter(model: &Model, pair: &RingPair, grad: &Grad, hess: &Hess, gradient: &mut [f64], hessian: &mut Curvature) {
     let (i, j) = (model.rings[pair.ring_a].element, model.rings[pair.ring_b].element);
     let lattice = 6 * model.elements.len();
     let (s1, s2) = (f64::from(pair.shift[0]), f64::from(pair.shift[1]));
@@ -137,8 +138,6 @@ fn scatter(model: &Model, pair: &RingPair, grad: &Grad, hess: &Hess, gradient: &
     }
     for &(p, column, c) in &entries {
         gradient[column] += c * grad[p];
-        for &(q, other, d) in &entries {
-            hessian[(column, other)] += c * d * hess[(p, q)];
-        }
     }
+    hessian.add(&entries, 9, |p, q| hess[(p, q)]);
 }

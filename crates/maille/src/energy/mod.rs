@@ -1,18 +1,26 @@
-//! The thesis's energy (chapter 4): contacts, the lattice's targets, and the objective made of them.
+//! The thesis's energy (chapter 4): contacts, the lattice's targets, forces, and the objective made of them.
 
 pub mod barrier;
 mod contacts;
+pub mod load;
 pub mod target;
 
 pub use contacts::{ContactOptions, MinimaMethod};
 
 use crate::{
     model::Model,
-    solve::newton::{Derivatives, Objective},
+    solve::{
+        curvature::Curvature,
+        newton::{Derivatives, Objective},
+    },
     state::State,
-    topology::crossing::{Motion, StepBound},
+    topology::{
+        crossing::{Motion, StepBound},
+        side::SideSigns,
+    },
 };
 use faer::Mat;
+use load::Loads;
 use maille_geometry::Vec3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -46,16 +54,21 @@ impl Configuration {
     }
 }
 
-/// E = E_c + E_b + E_f of a cell, as a function of six unknowns an element and those of the lattice.
+/// E = E_c + E_b + E_f of a cell or of a finite sheet, as a function of six unknowns an element and, where the lattice
+/// has a target, those of the lattice.
 pub struct SheetEnergy<'a> {
     /// The sheet.
     pub model: &'a Model,
-    /// The pull.
-    pub target: &'a Target,
+    /// The pull on the lattice; without one the lattice does not move.
+    pub target: Option<&'a Target>,
+    /// Forces on single elements.
+    pub loads: Loads,
     /// The contacts.
     pub contacts: &'a ContactOptions,
     /// How the Hessian is found.
     pub hessian: HessianMethod,
+    /// Side signs that steps must keep.
+    pub side_signs: Option<&'a SideSigns>,
     /// Seed of the kicks.
     pub seed: u64,
 }
@@ -63,23 +76,47 @@ pub struct SheetEnergy<'a> {
 /// Largest motion of an element in one step, in largest radii.
 const STEP_CAP: f64 = 0.3;
 
-impl SheetEnergy<'_> {
+impl<'a> SheetEnergy<'a> {
+    /// Contacts alone, with nothing that pulls and no rule but the step bound.
+    pub fn new(model: &'a Model, contacts: &'a ContactOptions) -> Self {
+        SheetEnergy {
+            model,
+            target: None,
+            loads: Loads::default(),
+            contacts,
+            hessian: HessianMethod::Analytic,
+            side_signs: None,
+            seed: 1,
+        }
+    }
+
     fn lattice_index(&self) -> usize {
         6 * self.model.elements.len()
     }
 
     /// Number of unknowns.
     pub fn unknowns(&self) -> usize {
-        self.lattice_index() + self.target.lattice_unknowns()
+        self.lattice_index() + self.target.map_or(0, Target::lattice_unknowns)
     }
 
     /// Energy and gradient alone.
     pub fn gradient(&self, x: &Configuration) -> (f64, Vec<f64>) {
-        let mut gradient = vec![0.0; self.unknowns()];
-        let mut hessian = Mat::zeros(self.unknowns(), self.unknowns());
-        let contact = contacts::add_derivatives(self, &x.state, &mut gradient, &mut hessian);
-        self.target.add_derivatives(&x.state, &x.corner, self.lattice_index(), &mut gradient, &mut hessian);
-        (contact + self.target.energy(&x.state, &x.corner), gradient)
+        let (energy, gradient, _) = self.formulas(x);
+        (energy, gradient)
+    }
+
+    fn formulas(&self, x: &Configuration) -> (f64, Vec<f64>, Curvature) {
+        let held = self.loads.held_unknowns();
+        let (mut gradient, mut hessian) = (vec![0.0; self.unknowns()], Curvature::new(self.unknowns(), &held));
+        let contact = contacts::add_derivatives(self.model, self.contacts, &x.state, &mut gradient, &mut hessian);
+        let mut energy = contact + self.loads.energy(self.model, &x.state);
+        self.loads.add_derivatives(self.model, &x.state, &mut gradient, &mut hessian);
+        if let Some(target) = self.target {
+            target.add_derivatives(&x.state, &x.corner, self.lattice_index(), &mut gradient, &mut hessian);
+            energy += target.energy(&x.state, &x.corner);
+        }
+        held.into_iter().for_each(|k| gradient[k] = 0.0);
+        (energy, gradient, hessian)
     }
 
     /// Hessian by central differences of the gradient.
@@ -108,26 +145,36 @@ impl Objective for SheetEnergy<'_> {
     type Guard = StepBound;
 
     fn energy(&self, x: &Configuration) -> f64 {
-        contacts::energy(self, &x.state) + self.target.energy(&x.state, &x.corner)
+        contacts::energy(self.model, self.contacts, &x.state)
+            + self.loads.energy(self.model, &x.state)
+            + self.target.map_or(0.0, |target| target.energy(&x.state, &x.corner))
+    }
+
+    fn slope(&self, x: &Configuration) -> (f64, Vec<f64>, StepBound) {
+        let (energy, gradient) = self.gradient(x);
+        (energy, gradient, StepBound::new(self.model, &x.state))
     }
 
     fn derivatives(&self, x: &Configuration) -> Derivatives<StepBound> {
-        let n = self.unknowns();
-        let (mut gradient, mut hessian) = (vec![0.0; n], Mat::zeros(n, n));
-        let contact = contacts::add_derivatives(self, &x.state, &mut gradient, &mut hessian);
-        self.target.add_derivatives(&x.state, &x.corner, self.lattice_index(), &mut gradient, &mut hessian);
+        let (energy, gradient, mut hessian) = self.formulas(x);
         if self.hessian == HessianMethod::FiniteDifference {
-            hessian = self.finite_difference_hessian(x);
+            hessian = Curvature::dense(self.finite_difference_hessian(x));
         }
-        let guard = StepBound::new(self.model, &x.state);
-        let energy = contact + self.target.energy(&x.state, &x.corner);
-        Derivatives { energy, gradient, hessian, guard }
+        Derivatives { energy, gradient, hessian, guard: StepBound::new(self.model, &x.state) }
+    }
+
+    fn allows(&self, _from: &Configuration, to: &Configuration) -> bool {
+        self.side_signs.is_none_or(|signs| signs.kept(self.model, &to.state))
     }
 
     fn largest_step(&self, guard: &StepBound, step: &[f64]) -> f64 {
         let lattice = self.lattice_index();
         let elements = (0..self.model.elements.len()).map(|e| (block(step, 6 * e), block(step, 6 * e + 3))).collect();
-        let motion = Motion { elements, lattice: [block(step, lattice), block(step, lattice + 3)] };
+        let moved = match self.target {
+            Some(_) => [block(step, lattice), block(step, lattice + 3)],
+            None => [Vec3::zeros(); 2],
+        };
+        let motion = Motion { elements, lattice: moved };
         guard.largest_fraction(self.model, &motion, STEP_CAP * self.model.largest_radius)
     }
 
@@ -135,8 +182,12 @@ impl Objective for SheetEnergy<'_> {
         let part = |at: usize| block(step, at) * fraction;
         let lattice = self.lattice_index();
         let poses = x.state.poses.iter().enumerate().map(|(e, p)| p.moved(&part(6 * e), &part(6 * e + 3))).collect();
-        let state = State { poses, a1: x.state.a1 + part(lattice), a2: x.state.a2 + part(lattice + 3) };
-        let corner = match self.target.lattice_unknowns() {
+        let mut state = State { poses, a1: x.state.a1, a2: x.state.a2 };
+        if self.target.is_some() {
+            state.a1 += part(lattice);
+            state.a2 += part(lattice + 3);
+        }
+        let corner = match self.unknowns() - lattice {
             9 => x.corner + part(lattice + 6),
             _ => state.a1 + state.a2,
         };
@@ -146,8 +197,10 @@ impl Objective for SheetEnergy<'_> {
     fn kick(&self, attempt: usize) -> Vec<f64> {
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed.wrapping_add(attempt as u64));
         let size = 1e-3 * self.model.largest_radius;
-        (0..self.unknowns())
+        let mut kick: Vec<f64> = (0..self.unknowns())
             .map(|k| if k < self.lattice_index() { size * rng.random_range(-1.0..1.0) } else { 0.0 })
-            .collect()
+            .collect();
+        self.loads.held_unknowns().into_iter().for_each(|k| kick[k] = 0.0);
+        kick
     }
 }

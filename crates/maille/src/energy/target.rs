@@ -3,7 +3,7 @@
 //! Both protocols are sums of weighted squares of linear functions of four points: the first element's centre x1,
 //! the lattice vectors a1, a2, and the fourth corner's x4 − x1.
 
-use crate::{lattice::direction, model::Model, state::State};
+use crate::{lattice::direction, model::Model, solve::curvature::Curvature, state::State};
 use maille_geometry::Vec3;
 use nalgebra::{Matrix2, Vector2};
 use serde::{Deserialize, Serialize};
@@ -110,17 +110,21 @@ impl Target {
         corner: &Vec3,
         first_lattice: usize,
         gradient: &mut [f64],
-        hessian: &mut faer::Mat<f64>,
+        hessian: &mut Curvature,
     ) {
         let columns = [0, first_lattice, first_lattice + 3, first_lattice + 6];
         for (square, miss) in self.misses(state, corner) {
             for (p, cp) in square.coefficients.iter().enumerate().filter(|c| *c.1 != 0.0) {
                 for axis in 0..3 {
                     gradient[columns[p] + axis] += 2.0 * square.weight * cp * miss[axis];
-                    for (q, cq) in square.coefficients.iter().enumerate().filter(|c| *c.1 != 0.0) {
-                        hessian[(columns[p] + axis, columns[q] + axis)] += 2.0 * square.weight * cp * cq;
-                    }
                 }
+            }
+            for axis in 0..3 {
+                let entries: Vec<(usize, usize, f64)> = (0..4)
+                    .filter(|&p| square.coefficients[p] != 0.0)
+                    .map(|p| (0, columns[p] + axis, square.coefficients[p]))
+                    .collect();
+                hessian.add(&entries, 1, |_, _| 2.0 * square.weight);
             }
         }
     }

@@ -5,18 +5,32 @@ use super::LimitOutcome;
 use crate::{
     energy::{
         Configuration, ContactOptions, HessianMethod, MinimaMethod, SheetEnergy,
+        barrier::ContactLaw,
         target::{Protocol, Target, target_gradient},
     },
     lattice::direction,
     model::Model,
     record::Status,
-    solve::newton::{Minimization, NewtonOptions, Outcome, minimize},
+    solve::{
+        descent::steepest_descent,
+        newton::{Minimization, NewtonOptions, Outcome, minimize},
+    },
     state::State,
-    topology,
+    topology::{self, side::SideSigns},
 };
 use nalgebra::Matrix2;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::AtomicBool;
+
+/// How the energy is minimised.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Minimiser {
+    /// Newton's iteration with floored eigenvalues.
+    Newton,
+    /// Plain gradient descent, which the thesis rejects.
+    GradientDescent,
+}
 
 /// Parameters of the energy method. Lengths are in units of the design's reference radius R, energies in β R².
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -45,6 +59,23 @@ pub struct EnergyOptions {
     pub max_iterations: usize,
     /// Seed of the kicks that end stalls.
     pub seed: u64,
+    /// What an overlap costs.
+    #[serde(default = "barrier")]
+    pub contact_law: ContactLaw,
+    /// How the energy is minimised.
+    #[serde(default = "newton")]
+    pub minimiser: Minimiser,
+    /// Refuse steps that flip a side sign (§4.3.3).
+    #[serde(default)]
+    pub side_signs: bool,
+}
+
+fn barrier() -> ContactLaw {
+    ContactLaw::Barrier
+}
+
+fn newton() -> Minimiser {
+    Minimiser::Newton
 }
 
 impl Default for EnergyOptions {
@@ -62,6 +93,9 @@ impl Default for EnergyOptions {
             minima: MinimaMethod::Enumeration,
             max_iterations: 400,
             seed: 1,
+            contact_law: ContactLaw::Barrier,
+            minimiser: Minimiser::Newton,
+            side_signs: false,
         }
     }
 }
@@ -108,6 +142,27 @@ impl EnergyOptions {
         }
     }
 
+    /// The contact energy on `model`.
+    pub fn contacts(&self, model: &Model) -> ContactOptions {
+        ContactOptions {
+            law: self.contact_law,
+            alpha: self.alpha,
+            sample_offsets_rad: self.sample_offsets_rad(model),
+            minima: self.minima,
+        }
+    }
+
+    /// Tolerances of one minimisation.
+    pub fn newton(&self) -> NewtonOptions {
+        NewtonOptions {
+            gradient_tolerance: GRADIENT_TOLERANCE,
+            curvature_floor: CURVATURE_FLOOR,
+            saddle_tolerance: SADDLE_TOLERANCE,
+            max_iterations: self.max_iterations,
+            max_kicks: MAX_KICKS,
+        }
+    }
+
     /// Offsets of the non-minimal points. The default spacing follows the overlap that balances the pull at the
     /// threshold: depth p = √(4 β τ r̂ / (3 α)), half width √(2 r̂ p) / R; the points divide the half width evenly.
     pub fn sample_offsets_rad(&self, model: &Model) -> Vec<f64> {
@@ -124,6 +179,7 @@ pub struct EnergyMethod<'a> {
     model: &'a Model,
     options: EnergyOptions,
     contacts: ContactOptions,
+    side_signs: Option<SideSigns>,
     start: State,
     start_note: Option<String>,
 }
@@ -132,12 +188,10 @@ impl<'a> EnergyMethod<'a> {
     /// Prepares the start of every run: the design's state, or, where that overlaps, the state in which the contact
     /// energy has resolved the overlap with the lattice held by the target energy.
     pub fn new(model: &'a Model, options: EnergyOptions, cancel: &AtomicBool) -> Self {
-        let contacts = ContactOptions {
-            alpha: options.alpha,
-            sample_offsets_rad: options.sample_offsets_rad(model),
-            minima: options.minima,
-        };
-        let mut method = EnergyMethod { model, options, contacts, start: model.start.clone(), start_note: None };
+        let contacts = options.contacts(model);
+        let side_signs = options.side_signs.then(|| SideSigns::new(model));
+        let start = model.start.clone();
+        let mut method = EnergyMethod { model, options, contacts, side_signs, start, start_note: None };
         if topology::smallest_gap(model, &model.start).is_some_and(|(gap, _)| gap < 0.0) {
             let (run, _, _) = method.run(Matrix2::identity(), cancel);
             if run.outcome == Outcome::Minimum {
@@ -156,20 +210,17 @@ impl<'a> EnergyMethod<'a> {
     fn run(&self, target: Matrix2<f64>, cancel: &AtomicBool) -> (Minimization<Configuration>, f64, Matrix2<f64>) {
         let target = Target::new(self.model, self.options.protocol, target, 1.0, self.options.corner_weight);
         let energy = SheetEnergy {
-            model: self.model,
-            target: &target,
-            contacts: &self.contacts,
+            target: Some(&target),
             hessian: self.options.hessian,
+            side_signs: self.side_signs.as_ref(),
             seed: self.options.seed,
+            ..SheetEnergy::new(self.model, &self.contacts)
         };
-        let newton = NewtonOptions {
-            gradient_tolerance: GRADIENT_TOLERANCE,
-            curvature_floor: CURVATURE_FLOOR,
-            saddle_tolerance: SADDLE_TOLERANCE,
-            max_iterations: self.options.max_iterations,
-            max_kicks: MAX_KICKS,
+        let (start, options) = (Configuration::start(self.start.clone()), self.options.newton());
+        let end = match self.options.minimiser {
+            Minimiser::Newton => minimize(&energy, start, &options, cancel, &mut |_, _| {}),
+            Minimiser::GradientDescent => steepest_descent(&energy, start, &options, cancel),
         };
-        let end = minimize(&energy, Configuration::start(self.start.clone()), &newton, cancel);
         let residual = target.residual(self.model, &end.point.state, &end.point.corner);
         let measured = target.measured(self.model, &end.point.state, &end.point.corner);
         (end, residual, measured)

@@ -47,6 +47,9 @@ pub fn symmetric_eigen(h: &Mat<f64>) -> Result<Eigen, EigenFailure> {
 /// Least eigenvalue of the symmetric matrix `h`, unchecked; `None` where the decomposition fails.
 pub fn least_eigenvalue(h: &Mat<f64>) -> Option<f64> {
     let of = coupled(h);
+    if of.is_empty() {
+        return Some(0.0);
+    }
     let values = block(h, &of).self_adjoint_eigenvalues(Side::Lower).ok()?;
     // Unknowns that nothing couples have the eigenvalue 0.
     let zero = (of.len() < h.ncols()).then_some(0.0);
@@ -125,7 +128,8 @@ mod tests {
         for (value, expected) in eigen.values.iter().zip([2.0 - 2f64.sqrt(), 2.0, 2.0 + 2f64.sqrt()]) {
             assert!((value - expected).abs() < 1e-14);
         }
-        assert!(symmetric_eigen(&Mat::new()).unwrap().values.is_empty());
+        assert!(symmetric_eigen(&Mat::zeros(0, 0)).unwrap().values.is_empty());
+        assert_eq!(least_eigenvalue(&Mat::zeros(3, 3)), Some(0.0));
         let nan = Mat::from_fn(2, 2, |_, _| f64::NAN);
         assert!(symmetric_eigen(&nan).is_err());
     }

@@ -3,6 +3,8 @@
 pub mod certificate;
 pub mod cholesky;
 pub mod convex;
+pub mod curvature;
+pub mod descent;
 pub mod eigen;
 pub mod kkt;
 pub mod newton;

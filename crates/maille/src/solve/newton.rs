@@ -5,8 +5,10 @@
 //! passes the descent test by construction; the decrease must be sufficient (Armijo); a saddle is left along its most
 //! negative eigenvector as soon as the gradient is small, and the minimisation goes on.
 
-use super::eigen::{EigenFailure, symmetric_eigen};
-use faer::Mat;
+use super::{
+    curvature::{Curvature, Decomposed},
+    eigen::EigenFailure,
+};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Energy, gradient and Hessian at a point, with what the objective needs to bound a step from there.
@@ -15,10 +17,25 @@ pub struct Derivatives<G> {
     pub energy: f64,
     /// Gradient.
     pub gradient: Vec<f64>,
-    /// Hessian, symmetric.
-    pub hessian: Mat<f64>,
+    /// Hessian.
+    pub hessian: Curvature,
     /// The objective's own data for [`Objective::largest_step`].
     pub guard: G,
+}
+
+/// [`Derivatives`] with the Hessian decomposed.
+struct Here<G> {
+    energy: f64,
+    gradient: Vec<f64>,
+    curvature: Decomposed,
+    guard: G,
+}
+
+impl<G> Derivatives<G> {
+    fn decompose(self) -> Result<Here<G>, EigenFailure> {
+        let Derivatives { energy, gradient, hessian, guard } = self;
+        Ok(Here { energy, gradient, curvature: hessian.decompose()?, guard })
+    }
 }
 
 /// What is minimised.
@@ -29,12 +46,18 @@ pub trait Objective {
     type Guard;
     /// Energy at `x`.
     fn energy(&self, x: &Self::Point) -> f64;
+    /// Energy and gradient at `x`, with the data of the step bound.
+    fn slope(&self, x: &Self::Point) -> (f64, Vec<f64>, Self::Guard);
     /// Energy with derivatives at `x`.
     fn derivatives(&self, x: &Self::Point) -> Derivatives<Self::Guard>;
     /// Largest fraction of `step` (at most 1) that keeps the topology and the step cap.
     fn largest_step(&self, guard: &Self::Guard, step: &[f64]) -> f64;
     /// The point reached by `fraction` of `step`.
     fn moved(&self, x: &Self::Point, step: &[f64], fraction: f64) -> Self::Point;
+    /// Whether a step from `from` may end at `to`: rules that the step bound does not know.
+    fn allows(&self, _from: &Self::Point, _to: &Self::Point) -> bool {
+        true
+    }
     /// A small random step to leave a stall; `attempt` counts up.
     fn kick(&self, attempt: usize) -> Vec<f64>;
 }
@@ -74,6 +97,8 @@ pub struct Minimization<P> {
     pub point: P,
     /// How it ended.
     pub outcome: Outcome,
+    /// Energy of the last point.
+    pub energy: f64,
     /// Norm of the last gradient.
     pub gradient_norm: f64,
     /// Newton iterations.
@@ -89,30 +114,41 @@ const LEAST_FRACTION: f64 = 1e-9;
 /// Sufficient decrease (Armijo).
 const ARMIJO: f64 = 1e-4;
 
-/// Minimises `objective` from `start` until `cancel` or an end.
+impl<P> Minimization<P> {
+    /// At `start`, with nothing done.
+    pub(super) fn at(start: P) -> Self {
+        Minimization {
+            point: start,
+            outcome: Outcome::NotConverged,
+            energy: f64::NAN,
+            gradient_norm: f64::NAN,
+            iterations: 0,
+            escapes: 0,
+            kicks: 0,
+        }
+    }
+}
+
+/// Minimises `objective` from `start` until `cancel` or an end. `watch` sees every point with its energy, the start
+/// first; the energy falls from one to the next, kicks excepted.
 pub fn minimize<O: Objective>(
     objective: &O,
     start: O::Point,
     options: &NewtonOptions,
     cancel: &AtomicBool,
+    watch: &mut dyn FnMut(&O::Point, f64),
 ) -> Minimization<O::Point> {
-    let mut out = Minimization {
-        point: start,
-        outcome: Outcome::NotConverged,
-        gradient_norm: f64::NAN,
-        iterations: 0,
-        escapes: 0,
-        kicks: 0,
-    };
+    let mut out = Minimization::at(start);
     while out.iterations < options.max_iterations {
         if cancel.load(Ordering::Relaxed) {
             out.outcome = Outcome::Interrupted;
             return out;
         }
         let here = objective.derivatives(&out.point);
-        out.gradient_norm = norm(&here.gradient);
-        let eigen = match symmetric_eigen(&here.hessian) {
-            Ok(eigen) => eigen,
+        (out.energy, out.gradient_norm) = (here.energy, norm(&here.gradient));
+        watch(&out.point, here.energy);
+        let here = match here.decompose() {
+            Ok(here) => here,
             Err(failure) => {
                 out.outcome = Outcome::Eigen(failure);
                 return out;
@@ -120,11 +156,11 @@ pub fn minimize<O: Objective>(
         };
         out.iterations += 1;
         let next = if out.gradient_norm < options.gradient_tolerance {
-            if eigen.values[0] >= -options.saddle_tolerance {
+            if here.curvature.no_saddle(options.saddle_tolerance) {
                 out.outcome = Outcome::Minimum;
                 return out;
             }
-            match escape(objective, &out.point, &here, &eigen.lowest(), eigen.values[0]) {
+            match escape(objective, &out.point, &here) {
                 Some(point) => {
                     out.escapes += 1;
                     Some(point)
@@ -136,12 +172,12 @@ pub fn minimize<O: Objective>(
                 }
             }
         } else {
-            let step = eigen.descent_step(&here.gradient, options.curvature_floor);
-            descend(objective, &out.point, &here, &step)
-                .or_else(|| {
-                    descend(objective, &out.point, &here, &here.gradient.iter().map(|g| -g).collect::<Vec<_>>())
-                })
-                .or_else(|| escape(objective, &out.point, &here, &eigen.lowest(), eigen.values[0].min(0.0)))
+            let newton = here.curvature.descent_step(&here.gradient, options.curvature_floor);
+            let along = |step: &[f64]| descend(objective, &out.point, (here.energy, &here.gradient), &here.guard, step);
+            newton
+                .and_then(|step| along(&step))
+                .or_else(|| along(&here.gradient.iter().map(|g| -g).collect::<Vec<_>>()))
+                .or_else(|| escape(objective, &out.point, &here))
         };
         out.point = match next {
             Some(point) => point,
@@ -149,7 +185,8 @@ pub fn minimize<O: Objective>(
                 out.kicks += 1;
                 let step = objective.kick(out.kicks);
                 let fraction = objective.largest_step(&here.guard, &step);
-                objective.moved(&out.point, &step, fraction)
+                let kicked = objective.moved(&out.point, &step, fraction);
+                if objective.allows(&out.point, &kicked) { kicked } else { continue }
             }
             None => return out,
         };
@@ -157,13 +194,19 @@ pub fn minimize<O: Objective>(
     out
 }
 
-/// The first point along `step` that decreases enough.
-fn descend<O: Objective>(objective: &O, x: &O::Point, here: &Derivatives<O::Guard>, step: &[f64]) -> Option<O::Point> {
-    let slope: f64 = step.iter().zip(&here.gradient).map(|(s, g)| s * g).sum();
-    let mut fraction = objective.largest_step(&here.guard, step);
+/// The first point along `step` that decreases enough from `x`, of the energy and gradient `here`.
+pub(super) fn descend<O: Objective>(
+    objective: &O,
+    x: &O::Point,
+    here: (f64, &[f64]),
+    guard: &O::Guard,
+    step: &[f64],
+) -> Option<O::Point> {
+    let slope: f64 = step.iter().zip(here.1).map(|(s, g)| s * g).sum();
+    let mut fraction = objective.largest_step(guard, step);
     while slope < 0.0 && fraction > LEAST_FRACTION {
         let trial = objective.moved(x, step, fraction);
-        if objective.energy(&trial) <= here.energy + ARMIJO * fraction * slope {
+        if objective.energy(&trial) <= here.0 + ARMIJO * fraction * slope && objective.allows(x, &trial) {
             return Some(trial);
         }
         fraction *= 0.5;
@@ -171,15 +214,11 @@ fn descend<O: Objective>(objective: &O, x: &O::Point, here: &Derivatives<O::Guar
     None
 }
 
-/// The lowest of the points tried along ± the most negative eigenvector, if it lies below the saddle as far as the
-/// curvature `lowest` promises (a fraction of it).
-fn escape<O: Objective>(
-    objective: &O,
-    x: &O::Point,
-    here: &Derivatives<O::Guard>,
-    vector: &[f64],
-    lowest: f64,
-) -> Option<O::Point> {
+/// The lowest of the points tried along ± the most negative eigenvector, if it lies below the saddle as far as its
+/// curvature promises (a fraction of it).
+fn escape<O: Objective>(objective: &O, x: &O::Point, here: &Here<O::Guard>) -> Option<O::Point> {
+    let (lowest, vector) = here.curvature.lowest()?;
+    let lowest = lowest.min(0.0);
     let mut best: Option<(f64, O::Point)> = None;
     for sign in [1.0, -1.0] {
         let step: Vec<f64> = vector.iter().map(|v| sign * v).collect();
@@ -187,7 +226,8 @@ fn escape<O: Objective>(
         while fraction > 1e-6 {
             let trial = objective.moved(x, &step, fraction);
             let energy = objective.energy(&trial);
-            if energy < here.energy + 0.1 * lowest * fraction * fraction && best.as_ref().is_none_or(|b| energy < b.0) {
+            let low_enough = energy < here.energy + 0.1 * lowest * fraction * fraction;
+            if low_enough && best.as_ref().is_none_or(|b| energy < b.0) && objective.allows(x, &trial) {
                 best = Some((energy, trial));
                 break;
             }
@@ -197,13 +237,14 @@ fn escape<O: Objective>(
     best.map(|b| b.1)
 }
 
-fn norm(v: &[f64]) -> f64 {
+pub(super) fn norm(v: &[f64]) -> f64 {
     v.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use faer::Mat;
 
     /// E = (x² − 1)² + y²: a saddle at the origin, minima at x = ±1.
     struct DoubleWell;
@@ -214,14 +255,14 @@ mod tests {
         fn energy(&self, p: &[f64; 2]) -> f64 {
             (p[0] * p[0] - 1.0).powi(2) + p[1] * p[1]
         }
+        fn slope(&self, p: &[f64; 2]) -> (f64, Vec<f64>, ()) {
+            (self.energy(p), vec![4.0 * p[0] * (p[0] * p[0] - 1.0), 2.0 * p[1]], ())
+        }
         fn derivatives(&self, p: &[f64; 2]) -> Derivatives<()> {
             let hessian = [[12.0 * p[0] * p[0] - 4.0, 0.0], [0.0, 2.0]];
-            Derivatives {
-                energy: self.energy(p),
-                gradient: vec![4.0 * p[0] * (p[0] * p[0] - 1.0), 2.0 * p[1]],
-                hessian: Mat::from_fn(2, 2, |i, j| hessian[i][j]),
-                guard: (),
-            }
+            let (energy, gradient, guard) = self.slope(p);
+            let hessian = Curvature::dense(Mat::from_fn(2, 2, |i, j| hessian[i][j]));
+            Derivatives { energy, gradient, hessian, guard }
         }
         fn largest_step(&self, _: &(), _: &[f64]) -> f64 {
             1.0
@@ -244,7 +285,7 @@ mod tests {
 
     #[test]
     fn a_symmetric_start_leaves_its_saddle() {
-        let end = minimize(&DoubleWell, [0.0, 0.7], &OPTIONS, &AtomicBool::new(false));
+        let end = minimize(&DoubleWell, [0.0, 0.7], &OPTIONS, &AtomicBool::new(false), &mut |_, _| {});
         assert_eq!(end.outcome, Outcome::Minimum);
         assert!(end.escapes >= 1);
         assert!((end.point[0].abs() - 1.0).abs() < 1e-9 && end.point[1].abs() < 1e-9);
@@ -252,7 +293,7 @@ mod tests {
 
     #[test]
     fn a_cancelled_run_says_so() {
-        let end = minimize(&DoubleWell, [0.3, 0.7], &OPTIONS, &AtomicBool::new(true));
+        let end = minimize(&DoubleWell, [0.3, 0.7], &OPTIONS, &AtomicBool::new(true), &mut |_, _| {});
         assert_eq!((end.outcome, end.iterations), (Outcome::Interrupted, 0));
     }
 }

@@ -2,6 +2,7 @@
 
 pub mod crossing;
 pub mod near;
+pub mod side;
 
 use crate::{
     lattice::{Shift, shifts_within},
@@ -42,7 +43,12 @@ pub fn close_pairs(model: &Model, state: &State, margin: f64) -> Vec<RingPair> {
         for (j, second) in model.elements.iter().enumerate().skip(i) {
             let offset = state.poses[j].position - state.poses[i].position;
             let reach = first.reach + second.reach + 2.0 * thickest + margin;
-            for shift in shifts_within(&offset, &state.a1, &state.a2, reach) {
+            let shifts = match model.periodic {
+                true => shifts_within(&offset, &state.a1, &state.a2, reach),
+                false if offset.norm_squared() <= reach * reach => vec![[0, 0]],
+                false => continue,
+            };
+            for shift in shifts {
                 if i == j && shift <= [0, 0] {
                     continue;
                 }

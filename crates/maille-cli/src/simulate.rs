@@ -1,0 +1,310 @@
+//! `maille simulate`: a finite sheet, held at edges, pulled, under weight.
+
+use crate::{
+    exit::{self, wrong},
+    input::{Input, file_name},
+    interrupt,
+    numbers::positive,
+    output,
+};
+use maille::{
+    error::InvalidInput,
+    lattice::Cell,
+    limit::energy::EnergyOptions,
+    model::Model,
+    record::{FrameRecord, pose_records},
+    simulate::{Accepted, End, Setup, Simulation, elements_at, simulate},
+};
+use maille_geometry::Vec3;
+use maille_io::{
+    mesh::Tile,
+    record::{SIMULATION, SimulationOutcome, SimulationRecord, write_frames, write_simulation},
+};
+use miette::{Report, Result};
+use serde_json::json;
+use std::{
+    path::{Path, PathBuf},
+    process::ExitCode,
+    time::Instant,
+};
+
+/// A finite sheet: held at edges, pulled in steps, under weight
+///
+/// The sheet has no images: its edges are free but for what is fixed or pulled. Rings come to rest by the energy method,
+/// then the pull grows in equal steps until it is done or the sheet locks. Writes simulation.json (what was done, what
+/// came out) and frames.jsonl (the sheet at rest after each step).
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  maille simulate 1.1 --tile 4x4 --fix left --pull right=5,0,0      locks on the way
+  maille simulate 1.1 --tile 1x6 --fix top --gravity 0,-1,0         a strip that hangs
+  maille simulate 1.1 --tile 4x4 --gravity 0,0,-1 --floor -3        a sheet that falls on a floor
+  maille simulate 2 --tile 10x10 --fix left --pull right=0.5,0,0 --frames all-frames
+  maille export --from maille-out/1.1-simulate --format vtk --frames 50
+  maille render --from maille-out/1.1-simulate
+
+Places: left and right are the first and last elements along a1, bottom and top those along a2. Or an element: by its \
+name, in all cells (flat), or with its cell (flat@0,2). Fixed and pulled elements may turn.
+
+Exit codes: 0 the pull was done, or the sheet locked; 5 a step did not converge; 130 interrupted.")]
+pub struct Args {
+    /// A built-in design (see `maille designs`), a TOML file, or - for standard input
+    design: String,
+    /// Cells along a1 and a2
+    #[arg(long, value_name = "MxN", default_value = "4x4")]
+    tile: Tile,
+    /// Where elements are held: left, right, top, bottom or elements, as left,flat@0,2
+    #[arg(long, value_name = "PLACE,…", value_parser = parse_places)]
+    fix: Option<Places>,
+    /// Pull a place by a vector, in the file's unit; may be given for several places
+    #[arg(long, value_name = "PLACE=DX,DY,DZ", value_parser = parse_pull, allow_hyphen_values = true)]
+    pull: Vec<Pull>,
+    /// Weight of every element; 1 is a thousandth of the stiffness of a pull at R
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true)]
+    gravity: Option<Vec3>,
+    /// A floor at this height, in the file's unit
+    #[arg(long, value_name = "Z", allow_hyphen_values = true, value_parser = parse_number)]
+    floor: Option<f64>,
+    /// Steps of the pull
+    #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    steps: u32,
+    /// Folder of the result [default: maille-out/DESIGN-simulate]
+    #[arg(long, short)]
+    out: Option<PathBuf>,
+    /// Another folder with the same, but every state that the minimisation accepted as a frame
+    #[arg(long, value_name = "DIR")]
+    frames: Option<PathBuf>,
+    /// Minor radius of every ring that gives none, in the file's unit
+    #[arg(long, value_parser = positive)]
+    minor_radius: Option<f64>,
+    /// Weight of the contacts against the pulls, alpha/beta
+    #[arg(long, default_value_t = EnergyOptions::default().alpha, value_parser = positive)]
+    alpha: f64,
+    /// A pulled element that misses its place by more than this, in reference radii, means that the sheet has locked
+    #[arg(long, default_value_t = EnergyOptions::default().tau, value_parser = positive)]
+    tau: f64,
+    /// Newton iterations of one step at most
+    #[arg(long, default_value_t = 2000, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    max_iterations: u32,
+    /// Seed of everything random
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Print the outcome as one JSON document; docs/json.md has its keys
+    #[arg(long)]
+    json: bool,
+    /// No summary
+    #[arg(long, short, conflicts_with = "json")]
+    quiet: bool,
+}
+
+/// What a place is pulled by.
+#[derive(Clone, Debug, PartialEq)]
+struct Pull {
+    place: String,
+    by: Vec3,
+}
+
+/// Names of places.
+#[derive(Clone, Debug, PartialEq)]
+struct Places(Vec<String>);
+
+fn parse_number(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(x) if x.is_finite() => Ok(x),
+        _ => Err(format!("\"{}\" is no number", text.trim())),
+    }
+}
+
+fn parse_vector(text: &str) -> Result<Vec3, String> {
+    let parts = text.split(',').map(parse_number).collect::<Result<Vec<f64>, String>>();
+    match parts.as_deref() {
+        Ok(&[x, y, z]) => Ok(Vec3::new(x, y, z)),
+        _ => Err(format!("\"{text}\" is no vector; give three numbers, as 0,0,-1")),
+    }
+}
+
+/// `right=0.5,0,0`.
+fn parse_pull(text: &str) -> Result<Pull, String> {
+    let wrong = || format!("\"{text}\" is no pull; give a place and a vector, as right=0.5,0,0");
+    let (place, by) = text.split_once('=').ok_or_else(wrong)?;
+    let by = parse_vector(by).map_err(|_| wrong())?;
+    match place.trim() {
+        "" => Err(wrong()),
+        _ if by == Vec3::zeros() => Err(format!("\"{text}\" pulls nowhere; hold the place with --fix instead")),
+        place => Ok(Pull { place: place.into(), by }),
+    }
+}
+
+/// `left,flat@0,2`: a number after a comma belongs to the cell before it.
+fn parse_places(text: &str) -> Result<Places, String> {
+    let mut out: Vec<String> = Vec::new();
+    for part in text.split(',').map(str::trim) {
+        match out.last_mut() {
+            Some(last) if last.contains('@') && !last.contains(',') => *last += &format!(",{part}"),
+            _ if part.is_empty() => return Err(format!("\"{text}\" has an empty place; give a list, as left,right")),
+            _ => out.push(part.into()),
+        }
+    }
+    Ok(Places(out))
+}
+
+fn refused(option: &str, problem: InvalidInput) -> Report {
+    wrong(exit::USAGE, format!("{option}: {}", problem.problem), problem.help)
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<ExitCode> {
+    let input = Input::read(&args.design, args.minor_radius)?;
+    let [m, n] = args.tile.0.map(|k| i32::try_from(k).unwrap_or(i32::MAX));
+    let tile = Cell::new([[m, 0], [0, n]]).map_err(|e| refused("--tile", e))?;
+    let model = input.compile_sheet(&input.design, tile)?;
+    let setup = setup(args, &model)?;
+    let begun = Instant::now();
+    let mut all = Vec::new();
+    let mut watch = |x: &Accepted<'_>| {
+        if args.frames.is_some() {
+            let poses = pose_records(&model, x.state);
+            all.push(FrameRecord { run: x.run, share: x.share, energy: x.energy, poses });
+        }
+    };
+    let cancel = interrupt::flag()?;
+    let end = simulate(&model, &setup, &cancel, &mut watch).map_err(|e| refused(&format!("--{}", e.field), e))?;
+    let record = record(args, &input, &model, &end);
+    let stem = file_name(&input.design.name) + "-simulate";
+    let out = args.out.clone().unwrap_or_else(|| PathBuf::from("maille-out").join(stem));
+    // A run that failed at once has reached nothing: its last state is shown.
+    let last = || FrameRecord { run: 0, share: end.share, energy: end.energy, poses: pose_records(&model, &end.state) };
+    let rests = if end.path.is_empty() { vec![last()] } else { end.path.clone() };
+    write(&out, &record, &rests)?;
+    if let Some(folder) = &args.frames {
+        write(folder, &record, &all)?;
+    }
+    let wall_s = begun.elapsed().as_secs_f64();
+    if args.json {
+        output::print_json(&json!({
+            "design": input.design.name,
+            "tile": record.tile,
+            "elements": model.elements.len(),
+            "outcome": record.outcome,
+            "out": out.display().to_string(),
+            "frames": rests.len(),
+            "wall_s": wall_s,
+        }))?;
+    } else if !args.quiet {
+        summary(args, &model, &end, &out, rests.len(), wall_s);
+    }
+    Ok(ExitCode::from(match end.end {
+        End::Reached | End::Locked => exit::DONE,
+        End::NotConverged => exit::INCOMPLETE,
+        End::Interrupted => exit::INTERRUPTED,
+    }))
+}
+
+fn setup(args: &Args, model: &Model) -> Result<Setup> {
+    let at = |option: &str, place: &str| elements_at(model, place).map_err(|e| refused(option, e));
+    let mut fix = Vec::new();
+    for place in args.fix.iter().flat_map(|places| &places.0) {
+        for element in at("--fix", place)? {
+            if !fix.contains(&element) {
+                fix.push(element); // a corner belongs to two edges
+            }
+        }
+    }
+    let mut pull = Vec::new();
+    for one in &args.pull {
+        pull.extend(at("--pull", &one.place)?.into_iter().map(|e| (e, one.by / model.unit)));
+    }
+    let gravity = args.gravity.unwrap_or_else(Vec3::zeros);
+    if pull.is_empty() && gravity == Vec3::zeros() {
+        return Err(wrong(
+            exit::USAGE,
+            "nothing moves this sheet",
+            "pull an edge, as --fix left --pull right=0.5,0,0, or give a weight, as --fix top --gravity 0,-1,0",
+        ));
+    }
+    let options = EnergyOptions {
+        alpha: args.alpha,
+        tau: args.tau,
+        max_iterations: args.max_iterations as usize,
+        seed: args.seed,
+        ..EnergyOptions::default()
+    };
+    let floor = args.floor.map(|z| z / model.unit);
+    Ok(Setup { fix, pull, gravity, floor, steps: args.steps, options })
+}
+
+fn record(args: &Args, input: &Input, model: &Model, end: &Simulation) -> SimulationRecord {
+    let array = |v: &Vec3| [v.x, v.y, v.z];
+    let pulls: Vec<_> = args.pull.iter().map(|p| json!({ "place": p.place, "by": array(&p.by) })).collect();
+    SimulationRecord {
+        schema: 1,
+        version: env!("CARGO_PKG_VERSION").into(),
+        design: input.design.clone(),
+        tile: args.tile.to_string(),
+        setup: json!({
+            "fix": args.fix.as_ref().map_or(&[][..], |places| &places.0),
+            "pull": pulls,
+            "gravity": args.gravity.as_ref().map(array),
+            "floor": args.floor,
+            "steps": args.steps,
+            "alpha": args.alpha,
+            "tau": args.tau,
+            "max_iterations": args.max_iterations,
+            "seed": args.seed,
+        }),
+        outcome: SimulationOutcome {
+            end: end.end,
+            share: end.share,
+            smallest_gap: end.smallest_gap.map(|gap| gap * model.unit),
+            links_ok: end.links_ok,
+            iterations: end.iterations,
+            kicks: end.kicks,
+            note: end.note.clone(),
+        },
+    }
+}
+
+/// Frames first: a folder with simulation.json is whole.
+fn write(folder: &Path, record: &SimulationRecord, frames: &[FrameRecord]) -> Result<()> {
+    output::write(&folder.join(SIMULATION[1]), write_frames(frames).as_bytes())?;
+    output::write(&folder.join(SIMULATION[0]), write_simulation(record).as_bytes())
+}
+
+fn summary(args: &Args, model: &Model, end: &Simulation, out: &Path, frames: usize, wall_s: f64) {
+    let percent = 100.0 * end.share;
+    let what = match end.end {
+        End::Reached if args.pull.is_empty() => "at rest".into(),
+        End::Reached => "the whole pull was done".into(),
+        End::Locked => format!("locked at {percent:.1} % of the pull"),
+        End::NotConverged => format!("a step after {percent:.1} % of the pull did not converge"),
+        End::Interrupted => format!("interrupted after {percent:.1} % of the pull"),
+    };
+    output::say!("{}, {} cells, {} elements: {what}", model.name, args.tile, model.elements.len());
+    for pull in &args.pull {
+        let by = pull.by * end.share;
+        output::say!("  {} moved by {:.4}, {:.4}, {:.4}", pull.place, by.x, by.y, by.z);
+    }
+    if let Some(gap) = end.smallest_gap {
+        output::say!("  smallest gap {:.2e}; links {}", gap * model.unit, if end.links_ok { "kept" } else { "LOST" });
+    }
+    if let Some(note) = &end.note {
+        output::say!("  {note}");
+    }
+    output::say!("{}  {frames} frames, {} iterations, {wall_s:.1} s", out.display(), end.iterations);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_and_pulls_are_read() {
+        let places = |text: &str| parse_places(text).map(|p| p.0);
+        assert_eq!(places("left,flat@0,2,top").unwrap(), ["left", "flat@0,2", "top"]);
+        assert!(places("left,,top").is_err() && places("").is_err());
+        assert_eq!(parse_pull("right=0.5,0,-1").unwrap().by, Vec3::new(0.5, 0.0, -1.0));
+        for wrong in ["right", "right=1,2", "=1,0,0", "right=0,0,0", "right=a,0,0", "right=1,2,3,4"] {
+            assert!(parse_pull(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,184 @@
+//! Finite sheets: loads against finite differences, links, falling energy, closed forms.
+
+mod common;
+
+use common::{design, shaken};
+use maille::{
+    energy::{
+        Configuration, ContactOptions, MinimaMethod, SheetEnergy,
+        barrier::ContactLaw,
+        load::{Floor, Loads, PositionTarget},
+    },
+    lattice::Cell,
+    limit::energy::EnergyOptions,
+    model::Model,
+    simulate::{End, Setup, Simulation, elements_at, simulate},
+    solve::newton::Objective,
+};
+use maille_geometry::Vec3;
+use std::sync::atomic::AtomicBool;
+
+fn sheet(name: &str, tile: &str) -> Model {
+    Model::compile_sheet(&design(name, 0.1), tile.parse::<Cell>().unwrap()).unwrap()
+}
+
+fn setup(model: &Model, fix: &str, pull: Option<(&str, Vec3)>, gravity: Vec3) -> Setup {
+    let at = |place: &str| elements_at(model, place).unwrap();
+    Setup {
+        fix: if fix.is_empty() { Vec::new() } else { at(fix) },
+        pull: pull.map_or(Vec::new(), |(place, by)| at(place).into_iter().map(|e| (e, by)).collect()),
+        gravity,
+        floor: None,
+        steps: 4,
+        options: EnergyOptions::default(),
+    }
+}
+
+/// Runs, and checks what holds of every run: the energy falls from state to state, links are kept.
+fn run(model: &Model, setup: &Setup) -> Simulation {
+    let mut last = (u32::MAX, f64::INFINITY);
+    let mut seen = 0;
+    let mut rises = 0;
+    let end = simulate(model, setup, &AtomicBool::new(false), &mut |x| {
+        seen += 1;
+        if x.run == last.0 && x.energy > last.1 {
+            rises += 1;
+        }
+        last = (x.run, x.energy);
+    })
+    .unwrap();
+    assert!(rises <= end.kicks, "{rises} rises, {} kicks", end.kicks);
+    assert!(seen == end.iterations && seen > 3);
+    assert!(end.links_ok, "links");
+    end
+}
+
+#[test]
+fn edges_and_names_are_places() {
+    let model = sheet("1.1", "3x2");
+    let names = |place: &str| -> Vec<String> {
+        elements_at(&model, place).unwrap().iter().map(|e| model.elements[*e].name.clone()).collect()
+    };
+    let kinds: Vec<String> = design("1.1", 0.1).elements.iter().map(|e| e.name.clone()).collect();
+    let of = |kind: usize, cells: &[&str]| -> Vec<String> {
+        cells.iter().map(|cell| format!("{}@{cell}", kinds[kind])).collect()
+    };
+    assert_eq!(names("right"), of(1, &["2,0", "2,1"]));
+    assert_eq!(names("top"), of(2, &["0,1", "1,1", "2,1"]));
+    assert_eq!(names("left").len(), 4);
+    assert_eq!(names(&kinds[0]).len(), 6);
+    assert_eq!(names(&format!("{}@1,1", kinds[0])), of(0, &["1,1"]));
+    let wrong = elements_at(&model, "north").unwrap_err();
+    assert!(wrong.help.contains("left, right, top or bottom") && wrong.help.contains(&kinds[0]), "{wrong:?}");
+}
+
+#[test]
+fn a_finite_sheet_has_no_images() {
+    let model = sheet("1.1", "2x2");
+    assert!(model.links.iter().all(|l| l.pair.shift == [0, 0]));
+    // Twelve elements; of the sixteen links of the periodic cell those across the edges are missing.
+    assert_eq!((model.elements.len(), model.links.len()), (12, 12));
+}
+
+#[test]
+fn loads_match_finite_differences() {
+    let model = sheet("1.3", "2x1");
+    let contacts = ContactOptions {
+        law: ContactLaw::Barrier,
+        alpha: 30.0,
+        sample_offsets_rad: vec![],
+        minima: MinimaMethod::Enumeration,
+    };
+    let loads = Loads {
+        forces: vec![(0, Vec3::new(0.1, -0.2, -0.3)), (2, Vec3::new(0.0, 0.5, 0.0))],
+        targets: vec![PositionTarget { element: 3, position: Vec3::new(2.0, 1.0, -0.5), weight: 2.0 }],
+        held: vec![1],
+        floor: Some(Floor { height: -1.08, alpha: 30.0 }),
+    };
+    let energy = SheetEnergy { loads, ..SheetEnergy::new(&model, &contacts) };
+    let x = Configuration::start(shaken(&model, 0.03, 5));
+    let (value, gradient) = energy.gradient(&x);
+    assert!((value - energy.energy(&x)).abs() < 1e-12 * value.abs());
+    let hessian = energy.derivatives(&x).hessian.to_dense();
+    let size = gradient.iter().fold(0.0f64, |m, g| m.max(g.abs()));
+    let mut floor_turns = 0;
+    for k in 0..energy.unknowns() {
+        let mut unit = vec![0.0; energy.unknowns()];
+        unit[k] = 1.0;
+        if (6..9).contains(&k) {
+            assert!(gradient[k] == 0.0 && hessian[(k, k)] == 1.0, "a held unknown");
+            continue;
+        }
+        let at = |e: f64| energy.moved(&x, &unit, e);
+        let e = 1e-5;
+        let difference = (energy.energy(&at(e)) - energy.energy(&at(-e))) / (2.0 * e);
+        assert!((gradient[k] - difference).abs() < 1e-7 * size, "{k}: {} {difference}", gradient[k]);
+        let (plus, minus) = (energy.gradient(&at(e)).1, energy.gradient(&at(-e)).1);
+        for j in (0..energy.unknowns()).filter(|j| !(6..9).contains(j) && *j <= k) {
+            // The gradient is by a rotation vector at the moved pose: symmetrised, its difference is the Hessian.
+            let (mut other, mut sum) = (vec![0.0; energy.unknowns()], (plus[j] - minus[j]) / (2.0 * e));
+            other[j] = 1.0;
+            let there = |e: f64| energy.gradient(&energy.moved(&x, &other, e)).1[k];
+            sum += (there(e) - there(-e)) / (2.0 * e);
+            assert!((hessian[(k, j)] - 0.5 * sum).abs() < 1e-5 * hessian.norm_max(), "{k},{j}");
+        }
+        floor_turns += usize::from((3..6).contains(&k) && gradient[k].abs() > 1e-3);
+    }
+    assert!(floor_turns > 0, "the gyroscope presses on the floor off its centre");
+}
+
+#[test]
+fn a_pull_within_reach_is_reached_and_one_beyond_locks() {
+    let model = sheet("1.1", "2x2");
+    let easy = run(&model, &setup(&model, "left", Some(("right", Vec3::new(0.8, 0.0, 0.0))), Vec3::zeros()));
+    assert_eq!((easy.end, easy.share), (End::Reached, 1.0));
+    // Left and right are three links apart: 3.75 at the start, 3 · 1.8 at most.
+    let far = run(&model, &setup(&model, "left", Some(("right", Vec3::new(2.0, 0.0, 0.0))), Vec3::zeros()));
+    assert_eq!(far.end, End::Locked, "{:?}", far.note);
+    let reached = 2.0 * far.share;
+    assert!((reached - 1.65).abs() < 0.012, "{reached}: the halvings end at 2/4/256, τ is 0.002");
+    assert!(far.smallest_gap.unwrap() > -1e-3);
+}
+
+/// The strip hangs by its highest ring: to the lowest flat ring there are five links of 1.8 each.
+#[test]
+fn a_hanging_strip_stretches_to_its_chain() {
+    let model = sheet("1.1", "1x3");
+    let end = run(&model, &setup(&model, "top", None, Vec3::new(0.0, -1.0, 0.0)));
+    assert_eq!(end.end, End::Reached, "{:?}", end.note);
+    let top = elements_at(&model, "top").unwrap();
+    assert_eq!(top.len(), 1);
+    let length = end.state.poses[top[0]].position - end.state.poses[0].position;
+    assert!((length.norm() - 9.0).abs() < 2e-3, "{} should be 9.0", length.norm());
+    assert!(length.y > 8.99, "it hangs straight");
+}
+
+#[test]
+fn what_nothing_holds_is_refused_and_a_floor_holds_it() {
+    let model = sheet("1.1", "2x1");
+    let free = setup(&model, "", None, Vec3::new(0.0, 0.0, -1.0));
+    let refused = |setup: &Setup| simulate(&model, setup, &AtomicBool::new(false), &mut |_| {}).unwrap_err();
+    let problem = refused(&free);
+    assert!(problem.problem.contains("nothing holds") && problem.help.contains("floor"), "{problem:?}");
+    let sideways = Setup { gravity: Vec3::new(0.1, 0.0, -1.0), floor: Some(-3.0), ..free.clone() };
+    assert!(refused(&sideways).problem.contains("nothing holds"), "it would slide for ever");
+    let inside = Setup { floor: Some(-0.5), ..free.clone() };
+    assert_eq!(refused(&inside).field, "floor");
+
+    let end = run(&model, &Setup { floor: Some(-2.0), ..free });
+    assert_eq!(end.end, End::Reached, "{:?}", end.note);
+    let lowest = |ring: usize| {
+        let c = end.state.circle(&model, ring, [0, 0]);
+        c.center.z - c.radius * (1.0 - c.normal.z.powi(2)).max(0.0).sqrt() - 0.1
+    };
+    let lowest = (0..model.rings.len()).map(lowest).fold(f64::INFINITY, f64::min);
+    assert!(lowest > -2.01 && lowest < -1.99, "{lowest}: on the floor, which may be entered a little between points");
+}
+
+/// 270 unknowns: the sparse solver.
+#[test]
+fn a_larger_sheet_moves_by_the_same_rules() {
+    let model = sheet("1.1", "5x3");
+    let end = run(&model, &setup(&model, "left", Some(("right", Vec3::new(4.8, 0.0, 0.0))), Vec3::zeros()));
+    assert_eq!((end.end, end.share), (End::Reached, 1.0), "{:?}", end.note); // 11.25 + 4.95 is the most
+}
