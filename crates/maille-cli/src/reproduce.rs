@@ -31,7 +31,7 @@ use std::{
     sync::atomic::Ordering,
 };
 
-/// Chapter 6 of the thesis computed anew: its statements, figures and tables on one page
+/// Chapter 6 of the thesis computed anew, as one page
 ///
 /// Writes a folder with index.html (each statement beside what was measured), figures/, sheets/ (pictures of the designs),
 /// statements.json, and records/ with one record for each design, radius and method, as `maille characterize` writes

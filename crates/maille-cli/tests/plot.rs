@@ -38,7 +38,7 @@ fn every_kind_is_drawn_from_records() {
 
     let wrong = |arguments: &[&str]| {
         let (code, _, err) = maille(folder, arguments);
-        assert_eq!(code, Some(1), "{err}");
+        assert_eq!(code, Some(2), "{err}");
         err
     };
     assert!(wrong(&["plot", "a", "-o", "x.pdf"]).contains(".svg or .png"));
