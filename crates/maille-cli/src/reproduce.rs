@@ -217,7 +217,8 @@ fn plan(chosen: &[&'static str], quick: bool, out: &Path) -> Result<Vec<Planned>
             add(design.clone(), 10, "corners-rectangular", corners(), rectangular, directions, &[0.0]);
         }
         if name == SCALE.0 {
-            add(scaled(&design, SCALE.1), 10, "exact", exact(), own, turn(15.0), &[-0.25, 0.0]);
+            let name = design.name.clone() + SCALED;
+            add(Design { name, ..design.scaled(SCALE.1) }, 10, "exact", exact(), own, turn(15.0), &[-0.25, 0.0]);
         }
     }
     Ok(plan)
@@ -226,25 +227,6 @@ fn plan(chosen: &[&'static str], quick: bool, out: &Path) -> Result<Vec<Planned>
 fn read(name: &str) -> Result<Design> {
     let text = builtin(name).ok_or_else(|| miette!("design {name} is not built in"))?;
     Ok(DesignSource::new(format!("{name} (built in)"), text).read()?)
-}
-
-/// The design with every length times `factor`, under a name of its own.
-fn scaled(design: &Design, factor: f64) -> Design {
-    let mut out = design.clone();
-    out.name += SCALED;
-    out.reference_radius *= factor;
-    let grow = |v: &mut [f64; 3]| v.iter_mut().for_each(|x| *x *= factor);
-    grow(&mut out.lattice.a1);
-    grow(&mut out.lattice.a2);
-    for element in &mut out.elements {
-        grow(&mut element.center);
-        for ring in &mut element.rings {
-            ring.major_radius *= factor;
-            ring.minor_radius = ring.minor_radius.map(|r| r * factor);
-            grow(&mut ring.offset);
-        }
-    }
-    out
 }
 
 /// Pixels of a sheet's picture.

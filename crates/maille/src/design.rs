@@ -101,6 +101,25 @@ impl Design {
         Self { minor_radius: Some(minor_radius), ..self.clone() }
     }
 
+    /// The same design with every length multiplied by `factor`.
+    pub fn scaled(&self, factor: f64) -> Self {
+        let mut out = self.clone();
+        let scale = |v: &mut [f64; 3]| v.iter_mut().for_each(|x| *x *= factor);
+        out.minor_radius = out.minor_radius.map(|r| r * factor);
+        out.reference_radius *= factor;
+        scale(&mut out.lattice.a1);
+        scale(&mut out.lattice.a2);
+        for element in &mut out.elements {
+            scale(&mut element.center);
+            for ring in &mut element.rings {
+                ring.major_radius *= factor;
+                ring.minor_radius = ring.minor_radius.map(|r| r * factor);
+                scale(&mut ring.offset);
+            }
+        }
+        out
+    }
+
     /// Checks every field that can be judged without geometry between elements, and returns all that is wrong.
     ///
     /// Overlap and links need the compiled model: see `Model`.

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{design, model, scaled};
+use common::{design, model};
 use maille::{
     bound::ChainBound,
     characterize::{Finished, Method, characterize, tasks},
@@ -190,7 +190,7 @@ fn limits_are_invariant() {
         }
     };
     for factor in [1000.0, 0.001] {
-        near(l1(&[Model::compile(&scaled(&base, factor), Cell::PRIMITIVE).unwrap()], &options), 1e-9, "unit");
+        near(l1(&[Model::compile(&base.scaled(factor), Cell::PRIMITIVE).unwrap()], &options), 1e-9, "unit");
     }
     for cell in ["1,0;2,1", "2x1"] {
         near(l1(&[Model::compile(&base, cell.parse().unwrap()).unwrap()], &options), 1e-9, cell);

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{design, model, scaled};
+use common::{design, model};
 use maille::{
     characterize::{Finished, Method, Task, characterize, tasks},
     energy::target::Protocol,
@@ -104,7 +104,7 @@ fn limits_do_not_depend_on_the_unit() {
     let base = design("1.1", 0.1);
     let reference = rows(&Model::compile(&base, Cell::PRIMITIVE).unwrap(), &EnergyOptions::default(), &tasks);
     for factor in [1000.0, 0.001] {
-        let model = Model::compile(&scaled(&base, factor), Cell::PRIMITIVE).unwrap();
+        let model = Model::compile(&base.scaled(factor), Cell::PRIMITIVE).unwrap();
         for (a, b) in reference.iter().zip(rows(&model, &EnergyOptions::default(), &tasks)) {
             assert_near(b.row.l1.unwrap(), a.row.l1.unwrap(), 1e-6, "l1");
             assert_near(b.row.lambda2.unwrap(), a.row.lambda2.unwrap(), 1e-6, "lambda2");

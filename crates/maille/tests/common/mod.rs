@@ -17,25 +17,6 @@ pub fn model(name: &str, minor_radius: f64) -> Model {
     Model::compile(&design(name, minor_radius), Cell::PRIMITIVE).expect("built-in designs compile")
 }
 
-/// Every length of a design multiplied by `factor`.
-pub fn scaled(design: &Design, factor: f64) -> Design {
-    let mut out = design.clone();
-    let scale = |v: &mut [f64; 3]| v.iter_mut().for_each(|x| *x *= factor);
-    out.minor_radius = out.minor_radius.map(|r| r * factor);
-    out.reference_radius *= factor;
-    scale(&mut out.lattice.a1);
-    scale(&mut out.lattice.a2);
-    for element in &mut out.elements {
-        scale(&mut element.center);
-        for ring in &mut element.rings {
-            ring.major_radius *= factor;
-            ring.minor_radius = ring.minor_radius.map(|r| r * factor);
-            scale(&mut ring.offset);
-        }
-    }
-    out
-}
-
 /// A state near the start: poses and lattice moved at random by up to `size`.
 pub fn shaken(model: &Model, size: f64, seed: u64) -> State {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
