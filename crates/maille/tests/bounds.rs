@@ -1,7 +1,7 @@
 //! The proven bounds against closed forms, their invariances, and states that try to break them.
 
 use maille::{
-    bound::{Bound, BoundKind, ChainBound, LinkBound, best_bound},
+    bound::{Bound, BoundKind, ChainBound, LinkBound, best_bound, crossing_pairs_length},
     design::Design,
     energy::target::target_gradient,
     lattice::direction,
@@ -140,11 +140,13 @@ fn link_bound_improves_branched_and_doubled_weaves() {
             _ => assert_eq!(better, 0, "{name}"),
         }
     }
-    // Two rings of a doubled weave do not fit in one place: 2 (1 + √(0.8² − 0.1²)) for 3.6 along the threads.
-    let (chain, link) = bounds("5.1", 0.1, "1x1");
-    let Bound::Finite { l1, .. } = best_bound(&chain, Some(&link), 0.0, 0.0) else { panic!() };
-    assert!((l1 - (2.0 * (1.0 + 0.63_f64.sqrt()) / 2.7 - 1.0)).abs() < 1e-10, "{l1}");
-    assert!((chain.limit(0.0, 0.0).l1().unwrap() - (3.6 / 2.7 - 1.0)).abs() < 1e-14);
+    // Four rings of a doubled weave cross: 2 L for 2 (1 + 1 - 2r) along the threads, at any r/R up to 1/8.
+    for r in [0.1, 0.05, 0.02] {
+        let (chain, link) = bounds("5.1", r, "1x1");
+        let Bound::Finite { l1, .. } = best_bound(&chain, Some(&link), 0.0, 0.0) else { panic!() };
+        assert!((l1 - (2.0 * crossing_pairs_length(1.0, r).unwrap() / 2.7 - 1.0)).abs() < 1e-10, "{l1}");
+        assert!((chain.limit(0.0, 0.0).l1().unwrap() - ((4.0 - 4.0 * r) / 2.7 - 1.0)).abs() < 1e-14);
+    }
 }
 
 fn same(a: &Bound, b: &Bound, tolerance: f64) -> bool {

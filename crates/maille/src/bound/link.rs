@@ -5,14 +5,7 @@
 //! |g_k| ≤ L_k,  g_k = Σ_m w_m (c_m + Q_m o_m + F s_m),  Σ_m w_m = 0,  F = (1 + l1) D Dᵀ + (1 + l2) D⊥ D⊥ᵀ,
 //!
 //! the sum being over rings m of the tie, with their elements' c_m and Q_m, offsets o_m and shifts s_m. Each tie is an
-//! inequality that every state obeys:
-//!
-//! - A **link** of rings a, b: w = (1, −1), L = R_a + R_b − r_a − r_b (lemma of [`crate::bound`]).
-//! - A **strand pair**: rings a, a' of different elements, both linked with b. They cross b's disc at points p, p' with
-//!   |p − c_b| ≤ ρ = R_b − r_b − r_a, |p' − c_b| ≤ ρ' alike, and |p − p'| ≥ r_a + r_a', since tori do not overlap. For
-//!   m = (p + p')/2: |m − c_b|² = |p − c_b|²/2 + |p' − c_b|²/2 − |p − p'|²/4. As |c_a − p| ≤ R_a, this gives
-//!   w = (½, ½, −1) for (a, a', b) and L = √(ρ²/2 + ρ'²/2 − (r_a + r_a')²/4) + (R_a + R_a')/2: less than the mean of
-//!   both links, because two strands do not fit in one place. It matters where rings run in parallel (doubled rings).
+//! inequality that every state obeys: links, strand pairs and crossing pairs, see [`super::tie`].
 //!
 //! conv SO(3) is {Q: I + N(Q) ⪰ 0}, N(Q) being the symmetric 4×4 matrix with uᵀN(Q)u = ⟨Q, R(u)⟩ for the rotation R(u)
 //! of a unit quaternion u (Saunderson, Parrilo, Willsky, *Semidefinite descriptions of the convex hull of rotation
@@ -34,28 +27,11 @@
 use super::{
     Bound, ChainBound, axes,
     cone::{Cone, ConeProgram, eigenvalues, pack},
+    tie::{self, Tie},
 };
-use crate::{lattice::Shift, model::Model};
+use crate::model::Model;
 use maille_geometry::Vec3;
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix4};
-
-/// A ring in a tie.
-#[derive(Clone, Copy, Debug)]
-struct Term {
-    element: usize,
-    weight: f64,
-    /// Offset from the element's reference for this bound.
-    offset: Vec3,
-}
-
-/// |Σ w (c + Q o + F s)| ≤ length.
-#[derive(Clone, Debug)]
-struct Tie {
-    terms: Vec<Term>,
-    /// S = Σ w s in the reference lattice.
-    span: Vec3,
-    length: f64,
-}
 
 /// What the link bound found for one direction and one l2.
 #[derive(Clone, Debug, PartialEq)]
@@ -101,9 +77,8 @@ impl LinkBound {
             .iter()
             .map(|e| e.rings.clone().map(|r| model.rings[r].offset).sum::<Vec3>() / e.rings.len() as f64)
             .collect();
-        let mut ties = links(model);
-        let n_links = ties.len();
-        ties.extend(strand_pairs(model));
+        let n_links = model.links.len();
+        let mut ties = tie::all(model);
         let n_elements = model.elements.len();
         let mut turned = vec![false; n_elements];
         for tie in &mut ties {
@@ -283,61 +258,6 @@ impl Query<'_> {
         }
         out
     }
-}
-
-fn term(model: &Model, ring: usize, weight: f64) -> Term {
-    let ring = &model.rings[ring];
-    Term { element: ring.element, weight, offset: ring.offset }
-}
-
-fn links(model: &Model) -> Vec<Tie> {
-    model
-        .links
-        .iter()
-        .map(|link| {
-            let (a, b) = (link.pair.ring_a, link.pair.ring_b);
-            Tie {
-                terms: vec![term(model, a, 1.0), term(model, b, -1.0)],
-                span: -model.start.translation(link.pair.shift),
-                length: model.rings[a].major_radius + model.rings[b].major_radius - model.contact_distance(a, b),
-            }
-        })
-        .collect()
-}
-
-/// The strand pairs of every ring, as far as both strands may pull the same way.
-fn strand_pairs(model: &Model) -> Vec<Tie> {
-    let mut through: Vec<Vec<(usize, Shift)>> = vec![Vec::new(); model.rings.len()];
-    for link in &model.links {
-        let (a, b, [p, q]) = (link.pair.ring_a, link.pair.ring_b, link.pair.shift);
-        through[a].push((b, [p, q]));
-        through[b].push((a, [-p, -q]));
-    }
-    let mut out = Vec::new();
-    for (b, strands) in through.iter().enumerate() {
-        for (k, &(first, shift_1)) in strands.iter().enumerate() {
-            for &(second, shift_2) in &strands[..k] {
-                let (r1, r2, rb) = (&model.rings[first], &model.rings[second], &model.rings[b]);
-                if (r1.element, shift_1) == (r2.element, shift_2) {
-                    continue;
-                }
-                // Strands that lie far apart do not compete for a place; leaving them out is no error.
-                let (x1, x2) = (model.start.circle(model, first, shift_1), model.start.circle(model, second, shift_2));
-                if (x1.center - x2.center).norm() > 0.5 * (r1.major_radius + r2.major_radius) {
-                    continue;
-                }
-                let rho = [first, second].map(|a| rb.major_radius - model.contact_distance(a, b));
-                let apart = model.contact_distance(first, second);
-                let middle_sq = 0.5 * (rho[0] * rho[0] + rho[1] * rho[1]) - 0.25 * apart * apart;
-                out.push(Tie {
-                    terms: vec![term(model, first, 0.5), term(model, second, 0.5), term(model, b, -1.0)],
-                    span: 0.5 * (model.start.translation(shift_1) + model.start.translation(shift_2)),
-                    length: middle_sq.max(0.0).sqrt() + 0.5 * (r1.major_radius + r2.major_radius),
-                });
-            }
-        }
-    }
-    out
 }
 
 /// For each element whether its centre is an unknown: all but the first of every connected part.

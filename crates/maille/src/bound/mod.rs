@@ -23,10 +23,12 @@ mod chain;
 pub mod cone;
 mod image;
 mod link;
+mod tie;
 
 pub use chain::{BindingChain, ChainBound};
 pub use image::{ImageBound, NearImages};
 pub use link::{LinkBound, LinkSolution};
+pub use tie::crossing_pairs_length;
 
 use nalgebra::Vector2;
 use std::fmt;
