@@ -1,6 +1,6 @@
 //! The page: one HTML file with everything in it.
 
-use super::{Figure, Finding, Map, Verdict, ratio_label};
+use super::{Figure, Finding, Map, Verdict, ratio_label, statements::RULE};
 use base64::{Engine, prelude::BASE64_STANDARD};
 use maille::{
     design::Source,
@@ -63,6 +63,8 @@ pub fn page(words: &str, findings: &[Finding], sheets: &[Sheet], maps: &[Map], f
             <a href=\"#f6.4\">6.4–6.9 limits</a> <a href=\"#f6.10\">6.10 minor radius</a> <a href=\"#f6.11\">6.11 major radius</a> \
             <a href=\"#f6.12\">6.12 arrangement</a> <a href=\"#records\">Records</a></nav>\n";
     out += "<h2 id=\"statements\">What the thesis says, and what was measured</h2>\n";
+    let _ = writeln!(out, "<p class=\"note\">{RULE}</p>");
+    write_checks(&mut out, maps);
     for finding in findings {
         write_finding(&mut out, finding);
     }
@@ -112,6 +114,30 @@ pub fn page(words: &str, findings: &[Finding], sheets: &[Sheet], maps: &[Map], f
     write_records(&mut out, maps);
     out += "</body>\n</html>\n";
     out
+}
+
+/// What every run is checked for: links and overlap.
+fn write_checks(out: &mut String, maps: &[Map]) {
+    let checked = || maps.iter().flat_map(|map| map.rows.iter().filter_map(move |row| Some((map, row, row.links_ok?))));
+    let (runs, kept) = (checked().count(), checked().filter(|(_, _, ok)| *ok).count());
+    let _ = write!(out, "<p class=\"note\">{kept} of {runs} runs ended with the links that they began with.");
+    for (map, row, _) in checked().filter(|(_, _, ok)| !ok) {
+        let _ = write!(out, " Lost: {}, {}°, l₂ = {}.", escape(&map.label()), row.direction_deg, row.l2);
+    }
+    for method in ["exact", "energy"] {
+        let of_method = maps.iter().filter(|map| map.method == method);
+        let worst = of_method.map(|map| (worst_overlap(map), map.label())).max_by(|a, b| a.0.total_cmp(&b.0));
+        if let Some((overlap, label)) = worst {
+            let _ = write!(out, " Worst overlap of the {method} method: {overlap:.1e} R ({}).", escape(&label));
+        }
+    }
+    *out += " The table of <a href=\"#records\">records</a> has both for each record, limits.csv for each limit.</p>\n";
+}
+
+/// Deepest overlap at a limit, in R.
+fn worst_overlap(map: &Map) -> f64 {
+    let overlap = |row: &LimitRow| Some(row.max_overlap? / (row.minor_radius? / map.ratio));
+    map.rows.iter().filter_map(overlap).fold(0.0, f64::max)
 }
 
 fn write_finding(out: &mut String, finding: &Finding) {
@@ -215,22 +241,24 @@ fn write_records(out: &mut String, maps: &[Map]) {
              <th>worst overlap / R</th><th>links unchanged</th><th>global</th><th>local</th><th>threshold reached</th>\
              <th>no limit (proved)</th><th>not found</th></tr></thead><tbody>\n";
     for map in maps {
-        let found: Vec<&LimitRow> = map.rows.iter().filter(|row| row.l1.is_some()).collect();
+        let found = map.rows.iter().filter(|row| row.l1.is_some()).count();
         let count = |status: Status| map.rows.iter().filter(|row| row.status == status).count();
-        let overlap = found.iter().filter_map(|row| Some(row.max_overlap? / (row.minor_radius? / map.ratio)));
-        let worst = overlap.fold(0.0, f64::max);
-        let links = found.iter().filter(|row| row.links_ok == Some(true)).count();
+        let worst = worst_overlap(map);
+        let (links, runs) = map
+            .rows
+            .iter()
+            .filter_map(|row| row.links_ok)
+            .fold((0, 0), |(kept, runs), ok| (kept + usize::from(ok), runs + 1));
         let proved = count(Status::L2Unreachable) + count(Status::Unbounded);
         let _ = writeln!(
             out,
-            "<tr><td>{}</td><td>{}</td><td>{worst:.1e}</td><td>{links} of {}</td><td>{}</td><td>{}</td><td>{}</td><td>{proved}</td><td>{}</td></tr>",
+            "<tr><td>{}</td><td>{}</td><td>{worst:.1e}</td><td>{links} of {runs}</td><td>{}</td><td>{}</td><td>{}</td><td>{proved}</td><td>{}</td></tr>",
             escape(&map.label()),
             map.rows.len(),
-            found.len(),
             count(Status::Global),
             count(Status::Local),
             count(Status::ThresholdReached),
-            map.rows.len() - found.len() - proved,
+            map.rows.len() - found - proved,
         );
     }
     let mut radii: Vec<String> = maps.iter().map(|map| ratio_label(map.ratio)).collect();
