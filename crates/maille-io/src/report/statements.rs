@@ -5,7 +5,7 @@
 //! nothing: what does not change is neither larger nor blunter. Parts are judged apart; the worst counts. A part that
 //! only says that something is to be seen fails where no case shows it.
 
-use super::{EXACT_TIE, Map, apart, extreme, midway, ratio_label, spread, step};
+use super::{EXACT_TIE, Map, apart, extreme, midway, ratio_label, signed, spread, step};
 use serde::Serialize;
 
 /// What became of a statement.
@@ -140,7 +140,7 @@ fn degrees(list: &[f64]) -> String {
 }
 
 fn at(map: &Map, l2: f64) -> String {
-    format!("{}, l₂ = {l2}", map.label())
+    format!("{}, l₂ = {}", map.label(), signed(l2))
 }
 
 /// Maps of two radii of the same sheet and method, the thicker first.
@@ -251,11 +251,14 @@ pub fn compression_raises(maps: &[Map]) -> Finding {
     let mut usual = Cases { usual: true, ..Cases::default() };
     let mut named = Cases { some: true, ..Cases::default() };
     let mut evidence = Vec::new();
+    let mut lines = Vec::new();
     let [mut same_in_all, mut lower_in_all] = [0; 2];
     for map in maps.iter().filter(|map| map.is_plain()) {
         let compressed: Vec<f64> = map.l2().into_iter().filter(|l2| *l2 < 0.0).collect();
         let mut lowered = Vec::new();
         let mut stacked = 0;
+        // Directions, and the l2 at which just they are unchanged or lowered.
+        let mut groups: Vec<(String, Vec<String>)> = Vec::new();
         for l2 in compressed {
             let (mut same, mut lower) = (Vec::new(), Vec::new());
             for row in map.rows.iter().filter(|row| row.l2 == l2) {
@@ -273,14 +276,17 @@ pub fn compression_raises(maps: &[Map]) -> Finding {
                 }
             }
             (same_in_all, lower_in_all) = (same_in_all + same.len(), lower_in_all + lower.len());
-            for (list, word) in [(lower, "lower than"), (same, "as")] {
+            for (list, word) in [(lower, "lower than"), (same, "as")].iter().filter(|(list, _)| !list.is_empty()) {
                 // Each direction counts, and one line names them all.
-                if !list.is_empty() {
-                    usual.exceptions.extend(std::iter::repeat_n(String::new(), list.len() - 1));
-                    usual.exceptions.push(format!("{}: {word} at l₂ = 0 at {}", at(map, l2), degrees(&list)));
+                usual.exceptions.extend(std::iter::repeat_n(String::new(), list.len()));
+                let what = format!("{word} at l₂ = 0 at {}", degrees(list));
+                match groups.iter_mut().find(|(group, _)| *group == what) {
+                    Some((_, of_l2)) => of_l2.push(signed(l2)),
+                    None => groups.push((what, vec![signed(l2)])),
                 }
             }
         }
+        lines.extend(groups.iter().map(|(what, of_l2)| format!("{}, l₂ = {}: {what}", map.label(), of_l2.join(", "))));
         if stacked > 0 {
             lowered.sort_by(f64::total_cmp);
             lowered.dedup();
@@ -306,6 +312,7 @@ pub fn compression_raises(maps: &[Map]) -> Finding {
         vec![named, usual],
     );
     found.exceptions.retain(|text| !text.is_empty());
+    found.exceptions.extend(lines);
     found
 }
 
@@ -344,8 +351,10 @@ pub fn major_radius(maps: &[Map]) -> Finding {
                     let off = (fall_a - fall_b).abs() / fall_a.abs().max(fall_b.abs()).max(f64::MIN_POSITIVE);
                     rates.add(off <= SAME_RATE, || {
                         format!(
-                            "{}, l₂ from {l2_before} to {l2}: the difference falls by {fall_a:.3}, of {small} by {fall_b:.3}",
-                            a.label()
+                            "{}, l₂ from {} to {}: the difference falls by {fall_a:.3}, of {small} by {fall_b:.3}",
+                            a.label(),
+                            signed(l2_before),
+                            signed(l2),
                         )
                     });
                 }
@@ -460,7 +469,7 @@ pub fn steps(maps: &[Map]) -> Finding {
             map.rows.iter().filter(|row| row.l1.is_some() && of(row.l2)).map(|row| row.iterations as f64).collect();
         (!rows.is_empty()).then(|| rows.iter().sum::<f64>() / rows.len() as f64)
     };
-    let plain: Vec<&Map> = maps.iter().filter(|map| map.is_plain() && !map.design.ends_with(SCALED)).collect();
+    let plain: Vec<&Map> = maps.iter().filter(|map| map.is_plain()).collect();
     for map in plain.iter().filter(|map| DENSE.contains(&map.design.as_str())) {
         let alike = |other: &&&Map| {
             (other.ratio, &other.method) == (map.ratio, &map.method) && !DENSE.contains(&other.design.as_str())
@@ -586,7 +595,7 @@ pub fn shown(maps: &[Map]) -> Finding {
     let mut cases = Cases::default();
     let mut proved = 0;
     for map in maps.iter().filter(|map| map.is_plain() && map.method == "exact") {
-        if map.design.ends_with(SCALED) || map.design.ends_with('t') {
+        if map.design.ends_with('t') {
             continue;
         }
         let from = usize::from(!["1.1", "1.2"].contains(&map.design.as_str()));
