@@ -50,8 +50,8 @@ td{white-space:nowrap}th{vertical-align:bottom}th:first-child,td:first-child{tex
 details summary{cursor:pointer;color:#15498c}
 @media (max-width:700px){.two{grid-template-columns:1fr}body{padding:.6rem .7rem 3rem}thead{display:none}tbody,tr{display:block}
 tr{display:grid;grid-template-columns:1fr 1fr;gap:0 1rem;border-bottom:1px solid #ddd;padding:.4rem 0}
-td{border:0;padding:.05rem 0;display:flex;justify-content:space-between;gap:.5rem;white-space:normal}td::before{content:attr(data-of);color:#555}
-td:first-child{grid-column:1/-1;font-weight:600}}
+td{border:0;padding:.05rem 0;display:flex;justify-content:space-between;gap:.5rem}td::before{content:attr(data-of);color:#555;white-space:normal;text-align:left;line-height:1.3}
+td:first-child{grid-column:1/-1;display:block;font-weight:600}}
 ";
 
 /// Most exceptions that a statement lists on the page; `statements.json` has all.

@@ -172,9 +172,14 @@ pub fn least_along_interlocking(maps: &[Map]) -> Finding {
             // A curve without contrast has no least direction.
             let contrast = !min.iter().any(|d| max.contains(d));
             let all = map.interlocking_deg.iter().all(|w| min.iter().any(|d| apart(*d, *w) <= reach));
-            least.add(contrast && all, || format!("{}: least at {}", at(map, l2), degrees(&min)));
-            largest.add(contrast && max.iter().any(|d| near(*d, &between)), || {
-                format!("{}: largest at {}", at(map, l2), degrees(&max))
+            let alike = || format!("{}: alike in every direction", at(map, l2));
+            least.add(contrast && all, || match contrast {
+                true => format!("{}: least at {}", at(map, l2), degrees(&min)),
+                false => alike(),
+            });
+            largest.add(contrast && max.iter().any(|d| near(*d, &between)), || match contrast {
+                true => format!("{}: largest at {}", at(map, l2), degrees(&max)),
+                false => alike(),
             });
             if between.iter().any(|w| !max.iter().any(|d| apart(*d, *w) <= reach)) {
                 apart_from_all.push(map.design.clone());
