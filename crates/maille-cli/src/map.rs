@@ -11,7 +11,7 @@ use maille::{
     record::{LimitRow, StateRecord, Status},
 };
 use maille_io::{
-    plot::{PolarPlot, Quantity, parameter_words, polar_svg, svg_to_png},
+    plot::{Layout, PolarPlot, Quantity, parameter_words, polar_svg, svg_to_png},
     record::RecordFolder,
 };
 use miette::{IntoDiagnostic, Result, WrapErr};
@@ -166,7 +166,7 @@ impl OpenMap<'_> {
         collected.write()?;
         let (rows, _) = collected.finished();
         let words = parameter_words(&parameters);
-        let svg = polar_svg(&PolarPlot::from_rows(&input.design, &rows, map.quantity, &words));
+        let svg = polar_svg(&PolarPlot::from_rows(&input.design, &rows, map.quantity, &words), Layout::Beside);
         let png = svg_to_png(&svg, 2.0).into_diagnostic().wrap_err("cannot draw the plot")?;
         collected.folder.write_polar(&svg, &png)?;
         Ok(rows)

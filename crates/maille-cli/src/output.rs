@@ -12,6 +12,22 @@ pub fn is_standard(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
+const TEMPORARY: (&str, &str) = (".maille-", ".tmp");
+
+/// Removes what a killed run left half written in a folder, if there is one.
+pub fn remove_leftovers(folder: &Path) -> Result<()> {
+    let Ok(entries) = fs::read_dir(folder) else { return Ok(()) };
+    for entry in entries.flatten() {
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        if name.starts_with(TEMPORARY.0) && name.ends_with(TEMPORARY.1) {
+            let path = entry.path();
+            fs::remove_file(&path).into_diagnostic().wrap_err_with(|| format!("cannot remove {}", path.display()))?;
+        }
+    }
+    Ok(())
+}
+
 /// Writes under a temporary name in the same folder and renames: whatever happens, a file of this name is whole.
 pub fn replace(path: &Path, write: impl FnOnce(&mut BufWriter<&mut fs::File>) -> Result<()>) -> Result<()> {
     let context = || format!("cannot write {}", path.display());
@@ -27,7 +43,7 @@ pub fn replace(path: &Path, write: impl FnOnce(&mut BufWriter<&mut fs::File>) ->
         .into_diagnostic()
         .wrap_err_with(|| format!("cannot create the folder {}; name another", folder.display()))?;
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".maille-").suffix(".tmp");
+    builder.prefix(TEMPORARY.0).suffix(TEMPORARY.1);
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666)); // the umask applies, as to any new file
     let mut file = builder.tempfile_in(folder).into_diagnostic().wrap_err_with(context)?;

@@ -8,7 +8,10 @@ use crate::{
     records, table,
 };
 use maille_io::{
-    plot::{PolarPlot, Quantity, Spread, difference_svg, parameter_words, polar_svg, steps_svg, svg_to_png, times_svg},
+    plot::{
+        Layout, PolarPlot, Quantity, Spread, difference_svg, parameter_words, polar_svg, steps_svg, svg_to_png,
+        times_svg,
+    },
     record::NamedRecord,
     with_palette,
 };
@@ -161,11 +164,15 @@ fn svg(args: &Args, records: &[NamedRecord]) -> String {
         (Kind::Polar, [one]) => {
             let (run, rows) = (&one.record.run, &one.record.rows);
             let quantity = args.quantity.map_or_else(Quantity::default, Into::into);
-            polar_svg(&PolarPlot::from_rows(&run.design, rows, quantity, &parameter_words(&run.parameters)))
+            polar_svg(
+                &PolarPlot::from_rows(&run.design, rows, quantity, &parameter_words(&run.parameters)),
+                Layout::Beside,
+            )
         }
-        (Kind::Polar, several) => {
-            polar_svg(&PolarPlot::from_records(several, args.quantity.map_or_else(Quantity::default, Into::into)))
-        }
+        (Kind::Polar, several) => polar_svg(
+            &PolarPlot::from_records(several, args.quantity.map_or_else(Quantity::default, Into::into)),
+            Layout::Beside,
+        ),
         (Kind::Difference, records) => difference_svg(
             records,
             match args.quantity {
@@ -173,9 +180,10 @@ fn svg(args: &Args, records: &[NamedRecord]) -> String {
                 Some(Shown::Stretch | Shown::L1) => Spread::L1,
                 Some(Shown::Lambda1) | None => Spread::Lambda1,
             },
+            Layout::Beside,
         ),
-        (Kind::Steps, records) => steps_svg(records),
-        (Kind::Times, records) => times_svg(records),
+        (Kind::Steps, records) => steps_svg(records, Layout::Beside),
+        (Kind::Times, records) => times_svg(records, Layout::Beside),
     }
 }
 

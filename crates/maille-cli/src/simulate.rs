@@ -39,6 +39,7 @@ Examples:
   maille simulate 1.1 --tile 4x4 --fix left --pull right=5,0,0      locks on the way
   maille simulate 1.1 --tile 1x6 --fix top --gravity 0,-1,0         a strip that hangs
   maille simulate 1.1 --tile 4x4 --gravity 0,0,-1 --floor -3        a sheet that falls on a floor
+  maille simulate 1.1 --tile 1x6 --fix top --force flat@0,0=0,-5,0  a strip with a load on one ring
   maille simulate 2 --tile 10x10 --fix left --pull right=0.5,0,0 --frames all-frames
   maille export --from maille-out/1.1-simulate --format vtk --frames 50
   maille render --from maille-out/1.1-simulate
@@ -62,6 +63,9 @@ pub struct Args {
     /// Weight of every element; 1 is a thousandth of the stiffness of a pull at R
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true)]
     gravity: Option<Vec3>,
+    /// Constant force on a place besides, in the unit of --gravity; may be given for several places
+    #[arg(long, value_name = "PLACE=X,Y,Z", value_parser = parse_force, allow_hyphen_values = true)]
+    force: Vec<Pull>,
     /// A floor at this height, in the file's unit
     #[arg(long, value_name = "Z", allow_hyphen_values = true, value_parser = parse_number)]
     floor: Option<f64>,
@@ -97,7 +101,7 @@ pub struct Args {
     quiet: bool,
 }
 
-/// What a place is pulled by.
+/// A place and the vector by which it is pulled, or the force that acts there.
 #[derive(Clone, Debug, PartialEq)]
 struct Pull {
     place: String,
@@ -125,12 +129,21 @@ fn parse_vector(text: &str) -> Result<Vec3, String> {
 
 /// `right=0.5,0,0`.
 fn parse_pull(text: &str) -> Result<Pull, String> {
-    let wrong = || format!("\"{text}\" is no pull; give a place and a vector, as right=0.5,0,0");
+    at_place(text, "pull", "pulls nowhere; hold the place with --fix instead")
+}
+
+/// `flat@0,2=0,0,-1`.
+fn parse_force(text: &str) -> Result<Pull, String> {
+    at_place(text, "force", "is no force; leave it out")
+}
+
+fn at_place(text: &str, what: &str, nothing: &str) -> Result<Pull, String> {
+    let wrong = || format!("\"{text}\" is no {what}; give a place and a vector, as right=0.5,0,0");
     let (place, by) = text.split_once('=').ok_or_else(wrong)?;
     let by = parse_vector(by).map_err(|_| wrong())?;
     match place.trim() {
         "" => Err(wrong()),
-        _ if by == Vec3::zeros() => Err(format!("\"{text}\" pulls nowhere; hold the place with --fix instead")),
+        _ if by == Vec3::zeros() => Err(format!("\"{text}\" {nothing}")),
         place => Ok(Pull { place: place.into(), by }),
     }
 }
@@ -214,8 +227,12 @@ fn setup(args: &Args, model: &Model) -> Result<Setup> {
     for one in &args.pull {
         pull.extend(at("--pull", &one.place)?.into_iter().map(|e| (e, one.by / model.unit)));
     }
+    let mut forces = Vec::new();
+    for one in &args.force {
+        forces.extend(at("--force", &one.place)?.into_iter().map(|e| (e, one.by)));
+    }
     let gravity = args.gravity.unwrap_or_else(Vec3::zeros);
-    if pull.is_empty() && gravity == Vec3::zeros() {
+    if pull.is_empty() && forces.is_empty() && gravity == Vec3::zeros() {
         return Err(wrong(
             exit::USAGE,
             "nothing moves this sheet",
@@ -230,12 +247,13 @@ fn setup(args: &Args, model: &Model) -> Result<Setup> {
         ..EnergyOptions::default()
     };
     let floor = args.floor.map(|z| z / model.unit);
-    Ok(Setup { fix, pull, gravity, floor, steps: args.steps, options })
+    Ok(Setup { fix, pull, gravity, forces, floor, steps: args.steps, options })
 }
 
 fn record(args: &Args, input: &Input, model: &Model, end: &Simulation) -> SimulationRecord {
     let array = |v: &Vec3| [v.x, v.y, v.z];
     let pulls: Vec<_> = args.pull.iter().map(|p| json!({ "place": p.place, "by": array(&p.by) })).collect();
+    let forces: Vec<_> = args.force.iter().map(|p| json!({ "place": p.place, "force": array(&p.by) })).collect();
     SimulationRecord {
         schema: 1,
         version: env!("CARGO_PKG_VERSION").into(),
@@ -245,6 +263,7 @@ fn record(args: &Args, input: &Input, model: &Model, end: &Simulation) -> Simula
             "fix": args.fix.as_ref().map_or(&[][..], |places| &places.0),
             "pull": pulls,
             "gravity": args.gravity.as_ref().map(array),
+            "force": forces,
             "floor": args.floor,
             "steps": args.steps,
             "alpha": args.alpha,
@@ -304,7 +323,7 @@ mod tests {
         assert!(places("left,,top").is_err() && places("").is_err());
         assert_eq!(parse_pull("right=0.5,0,-1").unwrap().by, Vec3::new(0.5, 0.0, -1.0));
         for wrong in ["right", "right=1,2", "=1,0,0", "right=0,0,0", "right=a,0,0", "right=1,2,3,4"] {
-            assert!(parse_pull(wrong).is_err(), "{wrong}");
+            assert!(parse_pull(wrong).is_err() && parse_force(wrong).is_err(), "{wrong}");
         }
     }
 }

@@ -60,18 +60,8 @@ fn statements_1_to_5_and_8_as_measured() {
     let l2 = [-0.25, -0.125, 0.0];
     let mut maps: Vec<Map> =
         DESIGNS.iter().flat_map(|name| [0.1, 0.05].map(|ratio| limits(&design(name, ratio), &l2))).collect();
-    let mut scaled = design("1.1", 0.1);
-    scaled.name += SCALED;
-    for length in scaled.lattice.a1.iter_mut().chain(&mut scaled.lattice.a2) {
-        *length *= 7.3;
-    }
-    for element in &mut scaled.elements {
-        element.center = element.center.map(|x| 7.3 * x);
-        for ring in &mut element.rings {
-            ring.major_radius *= 7.3;
-        }
-    }
-    (scaled.reference_radius, scaled.minor_radius) = (7.3, Some(0.73));
+    let base = design("1.1", 0.1);
+    let scaled = Design { name: base.name.clone() + SCALED, ..base.scaled(7.3) };
     maps.push(limits(&scaled, &l2));
 
     // Interlocking directions come from the links.
@@ -86,47 +76,93 @@ fn statements_1_to_5_and_8_as_measured() {
     let diagonal = (2.3f64 / 1.4).atan().to_degrees();
     is("2", &[diagonal, 180.0 - diagonal]);
 
-    // Chains of two flat rings and a standing one are no longer than 2 (R1 + R2 − 2 r).
-    for (name, ratio, length) in [("1.1", 0.1, 3.6), ("1.1", 0.05, 3.8), ("1.2", 0.1, 2.6), ("1.2", 0.05, 2.8)] {
-        near(l1(&maps, name, ratio, 0.0, 0.0), length / 2.5 - 1.0);
-        near(l1(&maps, name, ratio, 90.0, 0.0), length / 2.5 - 1.0);
+    // Chains of two flat rings and a standing one are no longer than d = 2 (R1 + R2 − 2 r), for every l2. Between them both
+    // bind: in a square cell (1 + l1)² + (1 + l2)² = 2 (d/s)², in a triangular one at l2 = 0 (1 + l1)² = (4 (d/s)² − 1)/3.
+    for (name, ratio, d) in [
+        ("1.1", 0.1, 3.6),
+        ("1.1", 0.05, 3.8),
+        ("1.2", 0.1, 2.6),
+        ("1.2", 0.05, 2.8),
+        ("3.1", 0.1, 3.6),
+        ("3.1", 0.05, 3.8),
+        ("3.2", 0.1, 2.6),
+        ("3.2", 0.05, 2.8),
+    ] {
+        let reach: f64 = d / 2.5;
+        let triangular = name.starts_with('3');
+        let (along, between): (&[f64], &[f64]) =
+            if triangular { (&[0.0, 60.0, 120.0], &[30.0, 90.0, 150.0]) } else { (&[0.0, 90.0], &[45.0, 135.0]) };
+        for l2 in l2 {
+            along.iter().for_each(|at| near(l1(&maps, name, ratio, *at, l2), reach - 1.0));
+            if !triangular {
+                let both = (2.0 * reach * reach - (1.0 + l2).powi(2)).sqrt() - 1.0;
+                between.iter().for_each(|at| near(l1(&maps, name, ratio, *at, l2), both));
+            }
+        }
+        let largest = ((4.0 * reach * reach - 1.0) / 3.0).sqrt() - 1.0;
+        between.iter().filter(|_| triangular).for_each(|at| near(l1(&maps, name, ratio, *at, 0.0), largest));
     }
-    for (name, ratio, length) in [("3.1", 0.1, 3.6), ("3.1", 0.05, 3.8), ("3.2", 0.1, 2.6), ("3.2", 0.05, 2.8)] {
-        [0.0, 60.0, 120.0].iter().for_each(|d| near(l1(&maps, name, ratio, *d, 0.0), length / 2.5 - 1.0));
+    // Largest limits that no closed form gives: 3.x under compression, 1.3 and 2 for each l2.
+    for (name, ratio, at, of_l2) in [
+        ("3.1", 0.1, 30.0, [0.604566, 0.584058, 0.559316]),
+        ("3.1", 0.05, 30.0, [0.700718, 0.680870, 0.657468]),
+        ("3.2", 0.1, 30.0, [0.116903, 0.089028, 0.052996]),
+        ("3.2", 0.05, 30.0, [0.218072, 0.190515, 0.157238]),
+        ("1.3", 0.1, 45.0, [0.141914, 0.133313, 0.073873]),
+        ("1.3", 0.05, 45.0, [0.269019, 0.253992, 0.207449]),
+        ("2", 0.1, 0.0, [0.616369, 0.650292, 0.768381]),
+        ("2", 0.1, 60.0, [0.337253, 0.337212, 0.337165]),
+        ("2", 0.05, 0.0, [1.105146, 1.069030, 1.044155]),
+        ("2", 0.05, 60.0, [0.411557, 0.411518, 0.411474]),
+    ] {
+        for (l2, limit) in l2.into_iter().zip(of_l2) {
+            near(l1(&maps, name, ratio, at, l2), limit);
+        }
     }
-    // The largest less the least: along the diagonal both chains bind, 2 (L/s)² less (1 + l2)² is (1 + l1)².
-    let chain = |length: f64, l2: f64| (2.0 * (length / 2.5f64).powi(2) - (1.0f64 + l2).powi(2)).sqrt() - 1.0;
-    near(l1(&maps, "1.1", 0.1, 45.0, 0.0), chain(3.6, 0.0));
-    near(l1(&maps, "1.2", 0.1, 45.0, 0.0), chain(2.6, 0.0));
 
     let found = statements(&maps);
     let of = |number: u32| -> &Finding { found.iter().find(|finding| finding.number == number).unwrap() };
     let scores = |number: u32| of(number).evidence.join(" ");
     for (number, verdict) in [
-        (1, Verdict::Holds),
-        (2, Verdict::Holds),
+        (1, Verdict::HoldsWithExceptions),
+        (2, Verdict::HoldsWithExceptions),
         (3, Verdict::HoldsWithExceptions),
         (4, Verdict::Holds),
         (5, Verdict::Holds),
         (6, Verdict::NotMeasured),
-        (8, Verdict::Holds),
+        (8, Verdict::Fails),
     ] {
         assert_eq!(of(number).verdict, verdict, "{number}: {:?}", of(number).exceptions);
     }
-    // Of design 2 the thesis sees compression lower the limit near 0°: so it is at R/10, not at R/20.
-    for (l2, limit) in [(0.0, 0.768), (-0.125, 0.650), (-0.25, 0.616)] {
-        assert!((l1(&maps, "2", 0.1, 0.0, l2) - limit).abs() < 1e-3);
+    let says = |number: u32, words: &str| assert!(scores(number).contains(words), "{number}: {}", scores(number));
+    // 1: in 34 turns; the two links of 1.3 differ where its limits are not proven.
+    says(1, "along every interlocking direction in 33 of 34 cases. It is largest midway between two in 34 of 34 cases");
+    assert_eq!(of(1).exceptions, ["1.3, r = R/10, exact, l₂ = −0.125: least at 90°"]);
+    // 2: everywhere; of design 2 the thesis expects otherwise, through stacking, which does not come about.
+    says(2, "goes further in 210 of 210 cases");
+    says(2, "grows with it in 17 of 17 cases. Least gain in l₁: 0.0743");
+    assert!(of(2).exceptions[0].starts_with("2: the exception that the thesis names is not seen"));
+    // 3: along the links nothing changes. Near 0° design 2 is lowered at R/10 (above), not at R/20.
+    says(3, "raises the limit in 232 of 276 cases");
+    says(3, "leaves it as it is in 42, and lowers it in 2.");
+    for exception in [
+        "2, r = R/20, exact: the exception within ±15° is not seen",
+        "1.3, r = R/10, exact, l₂ = −0.125: lower than at l₂ = 0 at 0°, 90°",
+        "3.1, r = R/10, exact, l₂ = −0.25, −0.125: as at l₂ = 0 at 0°, 60°, 120°",
+    ] {
+        assert!(of(3).exceptions.iter().any(|text| text == exception), "{:?}", of(3).exceptions);
     }
-    assert!(l1(&maps, "2", 0.05, 0.0, -0.25) >= l1(&maps, "2", 0.05, 0.0, 0.0) - 1e-6);
-    assert!(of(3).exceptions.iter().any(|text| text.starts_with("2, r = R/20")), "{:?}", of(3).exceptions);
-    // 2's exception of statement 2 was not seen.
-    assert!(scores(2).contains("was not seen"));
+    // 4
+    says(4, "agree in 24 of 24 cases. The larger R has the larger limit in 144 of 144 cases");
+    says(4, "(within 10 %) in 8 of 8 cases");
+    // 5
+    says(5, "36 of 36 cases agree to 1e-9");
     // Where chains bind, the difference of (1 + l1)² falls by what (1 + l2)² grows, for either major radius.
     for (name, ratio) in [("1.1", 0.1), ("1.1", 0.05), ("1.2", 0.1), ("1.2", 0.05)] {
         let square = |d: f64, l2: f64| (1.0 + l1(&maps, name, ratio, d, l2)).powi(2);
         let fall = (square(45.0, -0.125) - square(0.0, -0.125)) - (square(45.0, 0.0) - square(0.0, 0.0));
         near(fall, 1.0 - 0.875f64.powi(2));
     }
-    // At l2 = 0 the minima of 1.2 are as sharp at either radius; under compression they are blunter with the thinner ring.
-    assert!(scores(8).contains("6 of 6 cases; 2 of them do not change"), "{}", scores(8));
+    // 8: 1.2 is blunter under compression, and has the same shape at l2 = 0.
+    says(8, "blunter in 4 of 6 cases. l₂ < 0: blunter 4, unchanged 0, sharper 0. l₂ = 0: blunter 0, unchanged 2");
 }

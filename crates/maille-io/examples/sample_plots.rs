@@ -6,7 +6,7 @@
 mod rows;
 
 use maille::record::{LimitRow, Status};
-use maille_io::plot::{Curve, CurveKind, PolarPlot, Quantity, polar_svg, svg_to_png};
+use maille_io::plot::{Curve, CurveKind, Layout, PolarPlot, Quantity, polar_svg, svg_to_png};
 use std::error::Error;
 use std::path::Path;
 
@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let dense: Vec<_> = (0..180).map(|d| (f64::from(d), bound(f64::from(d), 0.0).map(|b| b + 0.03))).collect();
             plot.curves.push(Curve::new(0, 0.0, CurveKind::Bound, &dense));
         }
-        let svg = polar_svg(&plot);
+        let svg = polar_svg(&plot, Layout::Beside);
         std::fs::write(Path::new(&folder).join(format!("{name}.svg")), &svg)?;
         std::fs::write(Path::new(&folder).join(format!("{name}.png")), svg_to_png(&svg, 2.0)?)?;
         std::fs::write(Path::new(&folder).join(format!("{name}-small.png")), svg_to_png(&svg, 0.35)?)?;

@@ -18,6 +18,7 @@ mod times;
 pub use compare::parameter_words;
 pub use curve::{Curve, CurveKind};
 pub use difference::{Spread, difference_svg};
+pub use frame::Layout;
 pub use png::{PlotError, svg_to_png};
 pub use polar::{PolarPlot, Quantity, Ray, RayKind, polar_svg};
 pub use steps::steps_svg;

@@ -58,9 +58,9 @@ impl Map {
         })
     }
 
-    /// The design's own cell, and no bias of the corners.
+    /// A design of the thesis in its own cell, and no bias of the corners.
     fn is_plain(&self) -> bool {
-        !self.rearranged && !self.corners
+        !self.rearranged && !self.corners && !self.design.ends_with(SCALED)
     }
 
     /// `1.1, r = R/10, exact`.
@@ -104,6 +104,11 @@ const ENERGY_TIE: f64 = 0.01;
 fn ratio_label(ratio: f64) -> String {
     let whole = (1.0 / ratio).round();
     if (whole * ratio - 1.0).abs() < 1e-9 { format!("r = R/{whole}") } else { format!("r = {ratio} R") }
+}
+
+/// With a minus sign, not a hyphen.
+fn signed(number: f64) -> String {
+    number.to_string().replace('-', "−")
 }
 
 /// Directions of the shortest chains of links: of those that can bind, the ones of fewest links.

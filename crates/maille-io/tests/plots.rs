@@ -5,7 +5,7 @@ mod rows;
 
 use maille::record::{LimitRow, Status};
 use maille_io::plot::{
-    Curve, CurveKind, PolarPlot, Quantity, Spread, difference_svg, polar_svg, steps_svg, svg_to_png, times_svg,
+    Curve, CurveKind, Layout, PolarPlot, Quantity, Spread, difference_svg, polar_svg, steps_svg, svg_to_png, times_svg,
 };
 use maille_io::record::NamedRecord;
 use rows::{design, record};
@@ -23,7 +23,7 @@ fn the_plot_says_what_it_shows() {
     assert_eq!(plot.caption[0], "r = 0.1 (r/R = 0.1)  ·  energy method  ·  cell 1 × 1  ·  τ = 0.01");
     assert!(plot.caption[1].starts_with("13 directions computed, 0° to 180°."));
     assert_eq!(plot.caption[2], "Gaps: 1 of 39 searches gave no limit (1 l2-not-reached).");
-    let svg = polar_svg(&plot);
+    let svg = polar_svg(&plot, Layout::Beside);
     for text in [
         "1.1 · Cartesian grid of rings",
         ">330°<",
@@ -50,7 +50,7 @@ fn each_quantity_has_its_centre() {
 #[test]
 fn a_missing_limit_opens_the_curve() {
     let paths = |rows: Vec<LimitRow>| {
-        let svg = polar_svg(&PolarPlot::from_rows(&design(), &rows, Quantity::L1, &[]));
+        let svg = polar_svg(&PolarPlot::from_rows(&design(), &rows, Quantity::L1, &[]), Layout::Beside);
         svg.lines()
             .filter(|line| line.starts_with("<path") && line.contains("fill=\"none\""))
             .map(str::to_owned)
@@ -68,7 +68,7 @@ fn a_missing_limit_opens_the_curve() {
 fn below_zero_the_axis_moves_its_origin() {
     let mut rows = turn(0.0, 1.0);
     rows[3].l1 = Some(-0.15);
-    let svg = polar_svg(&PolarPlot::from_rows(&design(), &rows, Quantity::L1, &[]));
+    let svg = polar_svg(&PolarPlot::from_rows(&design(), &rows, Quantity::L1, &[]), Layout::Beside);
     assert!(svg.contains("dotted circle 0.0: undeformed") && svg.contains("centre −0.2"));
 }
 
@@ -79,7 +79,7 @@ fn plots_without_limits_and_with_odd_texts_are_drawn() {
     let none: Vec<_> =
         turn(0.0, 1.0).into_iter().map(|row| LimitRow { l1: None, status: Status::Unbounded, ..row }).collect();
     for rows in [&[][..], &none] {
-        let svg = polar_svg(&PolarPlot::from_rows(&design, rows, Quantity::Stretch, &[]));
+        let svg = polar_svg(&PolarPlot::from_rows(&design, rows, Quantity::Stretch, &[]), Layout::Beside);
         assert!(svg.contains("R&amp;D &lt;sheet&gt;"));
         svg_to_png(&svg, 1.0).unwrap();
     }
@@ -90,13 +90,13 @@ fn a_bound_is_dashed_and_has_no_markers() {
     let mut plot = PolarPlot::from_rows(&design(), &[], Quantity::L1, &[]);
     let points: Vec<_> = (0..180).map(|d| (f64::from(d), Some(0.5))).collect();
     plot.curves.push(Curve::new(0, 0.0, CurveKind::Bound, &points));
-    let svg = polar_svg(&plot);
+    let svg = polar_svg(&plot, Layout::Beside);
     assert!(svg.contains("stroke-dasharray=\"5 4\"") && !svg.contains("fill=\"#222222\" stroke=\"#222222\""));
 }
 
 #[test]
 fn the_picture_has_the_size_asked_for_and_is_not_blank() {
-    let svg = polar_svg(&PolarPlot::from_rows(&design(), &turn(0.0, 1.0), Quantity::Stretch, &[]));
+    let svg = polar_svg(&PolarPlot::from_rows(&design(), &turn(0.0, 1.0), Quantity::Stretch, &[]), Layout::Beside);
     let size = |png: &[u8]| {
         let pixmap = resvg::tiny_skia::Pixmap::decode_png(png).unwrap();
         let dark = pixmap.pixels().iter().filter(|p| p.red() < 128).count();
@@ -175,7 +175,7 @@ fn several_records_differ_in_colour_and_in_line() {
     assert_eq!(apart, "r, method");
     assert_eq!(labels, &["r = 0.1, exact", "r = 0.1, energy", "r = 0.05, exact"]);
     assert_eq!(plot.curves.len(), 6);
-    let svg = polar_svg(&plot);
+    let svg = polar_svg(&plot, Layout::Beside);
     // One curve of each record has two gaps, at 30° and 210°.
     assert_eq!(lines(&svg).len(), 9);
     let mut styles: Vec<_> =
@@ -216,7 +216,7 @@ fn differences_are_largest_less_smallest_limit() {
     let records = &three()[..1];
     // l1 runs from 0.465 − 0 down to 0.465 − 0.125 at l2 = −0.125, and is 0.44 everywhere at 0.
     let places = |spread: Spread| {
-        let svg = difference_svg(records, spread);
+        let svg = difference_svg(records, spread, Layout::Beside);
         let d = attribute(lines(&svg)[0], "d").to_owned();
         let y = d[1..].split('L').map(|p| p.split(' ').nth(1).unwrap().parse::<f64>().unwrap()).collect::<Vec<_>>();
         (522.0 - y[0], 522.0 - y[1], svg)
@@ -235,15 +235,16 @@ fn differences_are_largest_less_smallest_limit() {
 #[test]
 fn steps_and_times_have_a_curve_for_each_record_and_l2() {
     let records = three();
-    for (svg, unit) in
-        [(steps_svg(&records), "Iterations, logarithmic"), (times_svg(&records), "in seconds, logarithmic")]
-    {
+    for (svg, unit) in [
+        (steps_svg(&records, Layout::Beside), "Iterations, logarithmic"),
+        (times_svg(&records, Layout::Beside), "in seconds, logarithmic"),
+    ] {
         assert_eq!(lines(&svg).len(), 6);
         assert!(svg.contains(unit) && svg.contains(">180°<") && svg.contains(">r = 0.05, exact<"));
         svg_to_png(&svg, 1.0).unwrap();
     }
-    assert!(times_svg(&records).contains("r = 0.1, energy 26.000 s"));
-    let one = steps_svg(&records[..1]);
+    assert!(times_svg(&records, Layout::Beside).contains("r = 0.1, energy 26.000 s"));
+    let one = steps_svg(&records[..1], Layout::Beside);
     assert_eq!(lines(&one).len(), 2);
     assert!(one.contains(">Iterations<") && one.contains("quadratic programs") && !one.contains("Newton"));
 }
@@ -252,8 +253,13 @@ fn steps_and_times_have_a_curve_for_each_record_and_l2() {
 fn every_kind_is_drawn_without_rows() {
     let empty = [record("a", design(), Vec::new()), record("b", design(), Vec::new())];
     for records in [&empty[..1], &empty[..]] {
-        let polar = polar_svg(&PolarPlot::from_records(records, Quantity::L1));
-        for svg in [polar, difference_svg(records, Spread::L1), steps_svg(records), times_svg(records)] {
+        let polar = polar_svg(&PolarPlot::from_records(records, Quantity::L1), Layout::Beside);
+        for svg in [
+            polar,
+            difference_svg(records, Spread::L1, Layout::Beside),
+            steps_svg(records, Layout::Beside),
+            times_svg(records, Layout::Beside),
+        ] {
             assert!(!svg.contains("NaN") && !svg.contains("inf"));
             svg_to_png(&svg, 1.0).unwrap();
         }

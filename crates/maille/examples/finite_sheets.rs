@@ -33,6 +33,7 @@ fn main() {
                 fix: left,
                 pull: right.into_iter().map(|e| (e, by)).collect(),
                 gravity: Vec3::zeros(),
+                forces: Vec::new(),
                 floor: None,
                 steps: 10,
                 options: EnergyOptions { max_iterations: 2000, ..EnergyOptions::default() },

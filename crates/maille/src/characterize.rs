@@ -126,6 +126,8 @@ fn report(
     let along = direction(task.direction_deg);
     let c = f.transpose() * f;
     let (mean, half) = ((c[(0, 0)] + c[(1, 1)]) / 2.0, ((c[(0, 0)] - c[(1, 1)]) / 2.0).hypot(c[(0, 1)]));
+    // A proof has no state, and a search that found none ends with its last one.
+    let ended = solved || matches!(outcome.status, Status::L2NotReached | Status::NotConverged);
     let gap = topology::smallest_gap(model, &outcome.state).map(|(gap, _)| gap * model.unit).filter(|_| solved);
     let number = |x: f64| earned.then_some(x);
     let l1 = number(along.dot(&(f * along)) - 1.0);
@@ -158,9 +160,7 @@ fn report(
         min_multiplier: certificate.map(|c| c.min_multiplier).filter(|m| m.is_finite()),
         min_curvature: certificate.and_then(|c| c.min_curvature).filter(|m| m.is_finite()),
         zero_modes: certificate.map(|c| c.zero_modes as u64),
-        links_ok: exact
-            .and_then(|e| e.links_ok)
-            .or_else(|| earned.then(|| topology::links_kept(model, &outcome.state))),
+        links_ok: exact.and_then(|e| e.links_ok).or_else(|| ended.then(|| topology::links_kept(model, &outcome.state))),
         n_starts: exact.map(|e| e.n_starts),
         n_distinct: exact.map(|e| e.n_distinct),
         own_image_force: exact.and_then(|e| e.own_image_force),

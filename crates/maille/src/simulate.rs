@@ -88,6 +88,8 @@ pub struct Setup {
     pub pull: Vec<(usize, Vec3)>,
     /// Weight of each element, in [`WEIGHT_UNIT`]s.
     pub gravity: Vec3,
+    /// Constant forces on single elements besides, in [`WEIGHT_UNIT`]s.
+    pub forces: Vec<(usize, Vec3)>,
     /// Height of a floor.
     pub floor: Option<f64>,
     /// Steps of the pull.
@@ -96,7 +98,7 @@ pub struct Setup {
     pub options: EnergyOptions,
 }
 
-/// A gravity of size 1 pulls each element with this force, in β R: so small that it makes little overlap.
+/// A gravity or force of size 1 pulls an element with this force, in β R: so small that it makes little overlap.
 pub const WEIGHT_UNIT: f64 = 1e-3;
 /// Under weight, α of the first minimisations, as parts of the last one's.
 const SOFTER: [f64; 3] = [1e-5, 1e-3, 0.03];
@@ -176,15 +178,22 @@ struct Rest {
 }
 
 impl Setup {
+    /// Whether no constant force acts.
+    fn is_weightless(&self) -> bool {
+        self.gravity == Vec3::zeros() && self.forces.is_empty()
+    }
+
     /// The loads when `share` of the pull is done.
     fn loads(&self, model: &Model, share: f64, alpha: f64) -> Loads {
-        let weight = self.gravity * WEIGHT_UNIT;
-        let forces = match weight == Vec3::zeros() {
-            true => Vec::new(),
-            false => (0..model.elements.len()).map(|e| (e, weight)).collect(),
-        };
-        // Targets so stiff that the weight of the sheet costs them half of the threshold.
-        let stiffness = weight.norm() * forces.len() as f64 / (self.options.tau * self.pull.len().max(1) as f64);
+        let weights = (0..model.elements.len()).map(|e| (e, self.gravity));
+        let forces: Vec<(usize, Vec3)> = weights
+            .chain(self.forces.iter().copied())
+            .filter(|(_, force)| *force != Vec3::zeros())
+            .map(|(e, force)| (e, force * WEIGHT_UNIT))
+            .collect();
+        // Targets so stiff that all forces together cost them half of the threshold.
+        let all: f64 = forces.iter().map(|(_, force)| force.norm()).sum();
+        let stiffness = all / (self.options.tau * self.pull.len().max(1) as f64);
         let target = |&(element, by): &(usize, Vec3)| PositionTarget {
             element,
             position: model.start.poses[element].position + by * share,
@@ -209,7 +218,11 @@ impl Setup {
                 ));
             }
         }
-        self.loads(model, 1.0, self.options.alpha).check(model)
+        let field = if self.gravity == Vec3::zeros() { "force" } else { "gravity" };
+        self.loads(model, 1.0, self.options.alpha).check(model).map_err(|problem| match problem.field.as_str() {
+            "gravity" => InvalidInput { field: field.into(), ..problem },
+            _ => problem,
+        })
     }
 }
 
@@ -217,7 +230,7 @@ impl Run<'_> {
     /// Comes to rest. A weight is small against α, so that elements would bounce along stiff walls for long: with soft
     /// contacts first they do not.
     fn relax(&mut self, share: f64, from: &State) -> Rest {
-        let softer: &[f64] = if self.setup.gravity == Vec3::zeros() { &[] } else { &SOFTER };
+        let softer: &[f64] = if self.setup.is_weightless() { &[] } else { &SOFTER };
         let mut from = from.clone();
         for factor in softer {
             from = self.minimise(share, &from, self.setup.options.alpha * factor).state;

@@ -28,6 +28,7 @@ fn setup(model: &Model, fix: &str, pull: Option<(&str, Vec3)>, gravity: Vec3) ->
         fix: if fix.is_empty() { Vec::new() } else { at(fix) },
         pull: pull.map_or(Vec::new(), |(place, by)| at(place).into_iter().map(|e| (e, by)).collect()),
         gravity,
+        forces: Vec::new(),
         floor: None,
         steps: 4,
         options: EnergyOptions::default(),
@@ -151,6 +152,24 @@ fn a_hanging_strip_stretches_to_its_chain() {
     let length = end.state.poses[top[0]].position - end.state.poses[0].position;
     assert!((length.norm() - 9.0).abs() < 2e-3, "{} should be 9.0", length.norm());
     assert!(length.y > 8.99, "it hangs straight");
+}
+
+/// A load on the lowest ring alone pulls the same chain straight, and weighs on nothing else.
+#[test]
+fn a_load_on_one_ring_hangs_by_its_chain() {
+    let model = sheet("1.1", "1x3");
+    let lowest = elements_at(&model, "flat@0,0").unwrap();
+    let loaded = |fix: &str| Setup {
+        forces: lowest.iter().map(|e| (*e, Vec3::new(0.0, -5.0, 0.0))).collect(),
+        ..setup(&model, fix, None, Vec3::zeros())
+    };
+    let refused = simulate(&model, &loaded(""), &AtomicBool::new(false), &mut |_| {}).unwrap_err();
+    assert_eq!(refused.field, "force");
+    let end = run(&model, &loaded("top"));
+    assert_eq!(end.end, End::Reached, "{:?}", end.note);
+    let top = elements_at(&model, "top").unwrap();
+    let length = end.state.poses[top[0]].position - end.state.poses[lowest[0]].position;
+    assert!((length.norm() - 9.0).abs() < 2e-3, "{} should be 9.0", length.norm());
 }
 
 #[test]

@@ -47,14 +47,15 @@ pub(super) struct Canvas {
 }
 
 impl Canvas {
-    pub(super) fn new(width: f64, height: f64, title: &str) -> Self {
-        let (w, h) = (short(width), short(height));
+    /// `top` is the least y that is shown.
+    pub(super) fn new(top: f64, width: f64, height: f64, title: &str) -> Self {
+        let (t, w, h) = (short(top), short(width), short(height));
         let mut out = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\" \
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 {t} {w} {h}\" \
              font-family=\"DejaVu Sans, Verdana, sans-serif\" role=\"img\">\n"
         );
         let _ = writeln!(out, "<title>{}</title>", escape(title));
-        let _ = writeln!(out, "<rect width=\"{w}\" height=\"{h}\" fill=\"#ffffff\"/>");
+        let _ = writeln!(out, "<rect y=\"{t}\" width=\"{w}\" height=\"{h}\" fill=\"#ffffff\"/>");
         Self { out }
     }
 

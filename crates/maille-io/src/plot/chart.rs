@@ -1,7 +1,7 @@
 //! A chart with two axes: curves over l2 or over the direction of the pull.
 
 use super::canvas::{Anchor, Canvas, Stroke, TextStyle};
-use super::frame::{Entry, Frame, GRID, INK, MARGIN, RIM, SOFT, TOP, style};
+use super::frame::{Entry, Frame, GRID, INK, Layout, MARGIN, RIM, SOFT, TOP, style};
 use super::look::{Look, MARKER};
 use super::scale::Axis;
 
@@ -34,8 +34,8 @@ pub(super) struct Chart {
 }
 
 impl Chart {
-    pub(super) fn svg(&self) -> String {
-        self.frame.svg(BOTTOM + 52.0, |canvas| {
+    pub(super) fn svg(&self, layout: Layout) -> String {
+        self.frame.svg(layout, BOTTOM + 52.0, |canvas| {
             self.draw_grid(canvas);
             for series in &self.series {
                 for run in series.points.split(|point| point.y.is_none()) {

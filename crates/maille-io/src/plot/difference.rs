@@ -2,7 +2,7 @@
 
 use super::chart::{Chart, Point, Series, hollow_note, sample};
 use super::compare::{captions, differences, l2_values, title};
-use super::frame::{Entry, Frame};
+use super::frame::{Entry, Frame, Layout};
 use super::look;
 use super::scale::Axis;
 use crate::record::NamedRecord;
@@ -35,7 +35,7 @@ impl Spread {
 }
 
 /// The plot of one record or several, as SVG.
-pub fn difference_svg(records: &[NamedRecord], spread: Spread) -> String {
+pub fn difference_svg(records: &[NamedRecord], spread: Spread, layout: Layout) -> String {
     let (apart, labels) = differences(records);
     let looks = look::of_records(records.len());
     let series: Vec<Series> = records
@@ -74,7 +74,7 @@ pub fn difference_svg(records: &[NamedRecord], spread: Spread) -> String {
         ],
         series,
     }
-    .svg()
+    .svg(layout)
 }
 
 /// Nothing where fewer than two directions have a limit; hollow where only some have.

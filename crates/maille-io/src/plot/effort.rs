@@ -2,7 +2,7 @@
 
 use super::chart::{Chart, Point, Series, sample};
 use super::compare::{captions, differences, l2_label, l2_values, title};
-use super::frame::{Entry, Frame, INK};
+use super::frame::{Entry, Frame, INK, Layout};
 use super::look::{self, Look};
 use super::scale::Axis;
 use crate::record::NamedRecord;
@@ -18,7 +18,7 @@ pub(super) struct Effort {
     pub(super) caption: Vec<String>,
 }
 
-pub(super) fn svg(records: &[NamedRecord], effort: Effort) -> String {
+pub(super) fn svg(records: &[NamedRecord], effort: Effort, layout: Layout) -> String {
     let (apart, labels) = differences(records);
     let rows = || records.iter().flat_map(|named| &named.record.rows);
     let values: Vec<f64> = rows().map(effort.of).collect();
@@ -74,5 +74,5 @@ pub(super) fn svg(records: &[NamedRecord], effort: Effort) -> String {
         y,
         series,
     }
-    .svg()
+    .svg(layout)
 }

@@ -3,7 +3,7 @@
 use super::canvas::{Anchor, Canvas, Stroke, TextStyle};
 use super::compare::{captions, differences, directions, heading, inputs, l2_label, l2_values, missing, title};
 use super::curve::{Curve, CurveKind};
-use super::frame::{Entry, Frame, GRID, INK, MARGIN, RIM, SOFT, TOP, style};
+use super::frame::{Entry, Frame, GRID, INK, Layout, MARGIN, RIM, SOFT, TOP, style};
 use super::look::{self, Look, MARKER};
 use super::scale::Scale;
 use crate::record::NamedRecord;
@@ -242,7 +242,7 @@ const RADIUS: f64 = 250.0;
 const CENTER: [f64; 2] = [MARGIN + 40.0 + RADIUS, TOP + RADIUS];
 
 /// The plot as SVG.
-pub fn polar_svg(input: &PolarPlot) -> String {
+pub fn polar_svg(input: &PolarPlot, layout: Layout) -> String {
     let scale = Scale::new(input.quantity.base(), input.curves.iter().flat_map(Curve::values), 6);
     let looks = input.looks();
     let frame = Frame {
@@ -254,7 +254,7 @@ pub fn polar_svg(input: &PolarPlot) -> String {
     // The widest line is furthest behind, of one width the largest l2.
     let mut back_to_front: Vec<_> = input.curves.iter().zip(&looks).collect();
     back_to_front.sort_by(|a, b| (a.0.record.cmp(&b.0.record)).then(b.0.l2.abs().total_cmp(&a.0.l2.abs())));
-    frame.svg(CENTER[1] + RADIUS + 22.0, |canvas| {
+    frame.svg(layout, CENTER[1] + RADIUS + 22.0, |canvas| {
         draw_grid(canvas, &scale, input.quantity.base());
         draw_rays(canvas, &input.rays);
         for (curve, look) in back_to_front.iter().filter(|(curve, _)| curve.kind != CurveKind::Check) {

@@ -1,10 +1,11 @@
 //! Iterations of the solver for each limit.
 
 use super::effort::{Effort, svg};
+use super::frame::Layout;
 use crate::record::NamedRecord;
 
 /// The plot of one record or several, as SVG.
-pub fn steps_svg(records: &[NamedRecord]) -> String {
+pub fn steps_svg(records: &[NamedRecord], layout: Layout) -> String {
     let of_method = |method: &str| records.iter().any(|n| n.record.rows.iter().any(|row| row.method == method));
     let mut caption = Vec::new();
     if of_method("exact") {
@@ -21,5 +22,6 @@ pub fn steps_svg(records: &[NamedRecord]) -> String {
             of: |row| row.iterations as f64,
             caption,
         },
+        layout,
     )
 }

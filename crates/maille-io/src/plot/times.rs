@@ -2,10 +2,11 @@
 
 use super::compare::differences;
 use super::effort::{Effort, svg};
+use super::frame::Layout;
 use crate::record::NamedRecord;
 
 /// The plot of one record or several, as SVG.
-pub fn times_svg(records: &[NamedRecord]) -> String {
+pub fn times_svg(records: &[NamedRecord], layout: Layout) -> String {
     let labels = differences(records).1;
     let total = |(named, label): (&NamedRecord, &String)| {
         let total: f64 = named.record.rows.iter().map(|row| row.wall_s).sum();
@@ -19,5 +20,6 @@ pub fn times_svg(records: &[NamedRecord]) -> String {
     svg(
         records,
         Effort { subtitle: "Wall time of each limit", axis: "Wall time in seconds", of: |row| row.wall_s, caption },
+        layout,
     )
 }

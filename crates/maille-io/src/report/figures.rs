@@ -1,9 +1,10 @@
 //! The figures of chapter 6, from records.
 
-use super::{Map, extreme, ratio_label, statements::SCALED};
+use super::{Map, extreme, ratio_label, signed};
 use crate::{
     plot::{
-        PolarPlot, Quantity, Ray, RayKind, Spread, difference_svg, parameter_words, polar_svg, steps_svg, times_svg,
+        Layout, PolarPlot, Quantity, Ray, RayKind, Spread, difference_svg, parameter_words, polar_svg, steps_svg,
+        times_svg,
     },
     record::NamedRecord,
     render::{Extent, RenderError, RenderOptions, Subject, View, render},
@@ -60,7 +61,7 @@ pub fn figures(records: &[NamedRecord], maps: &[Map]) -> Vec<Figure> {
                     number,
                     file: format!("{number}-{}", designs.join("-")),
                     title: format!("{words}: {}", designs.join(", ")),
-                    svg: difference_svg(&chosen, Spread::Lambda1),
+                    svg: difference_svg(&chosen, Spread::Lambda1, Layout::Below),
                 });
             }
         }
@@ -83,7 +84,7 @@ pub fn figures(records: &[NamedRecord], maps: &[Map]) -> Vec<Figure> {
                     "{design}, sheared and rectangular arrangement at l₂ = 0{}",
                     if corners { ", exact and with the corners of the cell (energy method, τ = 0.1)" } else { "" }
                 ),
-                svg: polar_svg(&PolarPlot::from_records(&chosen, Quantity::Lambda1)),
+                svg: polar_svg(&PolarPlot::from_records(&chosen, Quantity::Lambda1), Layout::Below),
             });
         }
     }
@@ -133,7 +134,7 @@ fn polar(number: &'static str, named: &NamedRecord, map: &Map, pairs: &[(&NamedR
                 plot.rays.extend(all.into_iter().map(ray(kind)));
             }
         }
-        plot.caption.push(format!("Largest and least limit are those at l₂ = {l2}."));
+        plot.caption.push(format!("Largest and least limit are those at l₂ = {}.", signed(l2)));
     }
     let cell = if map.rearranged { "-rectangular" } else { "" };
     let words = if map.rearranged { ", rectangular cell" } else { "" };
@@ -141,19 +142,17 @@ fn polar(number: &'static str, named: &NamedRecord, map: &Map, pairs: &[(&NamedR
         number,
         file: format!("{number}-{}-R{:.0}{cell}", map.design, 1.0 / map.ratio),
         title: format!("{}, {}{words}", map.design, ratio_label(map.ratio)),
-        svg: polar_svg(&plot),
+        svg: polar_svg(&plot, Layout::Below),
     }
 }
 
 /// Draws a figure of several records.
-type Draw = fn(&[NamedRecord]) -> String;
+type Draw = fn(&[NamedRecord], Layout) -> String;
 
 /// Figure 6.1: steps and times of the thesis's own method where there is one, l₂ = ±0.25.
 fn costs(pairs: &[(&NamedRecord, &Map)], out: &mut Vec<Figure>) {
     for method in ["exact", "energy"] {
-        let wanted = |map: &Map| {
-            map.is_plain() && map.method == method && (map.ratio - 0.1).abs() < 1e-9 && !map.design.ends_with(SCALED)
-        };
+        let wanted = |map: &Map| map.is_plain() && map.method == method && (map.ratio - 0.1).abs() < 1e-9;
         let mut chosen: Vec<NamedRecord> =
             pairs.iter().filter(|(_, map)| wanted(map)).map(|(named, _)| (*named).clone()).collect();
         for named in &mut chosen {
@@ -174,7 +173,7 @@ fn costs(pairs: &[(&NamedRecord, &Map)], out: &mut Vec<Figure>) {
                 number: "6.1",
                 file: format!("6.1-{kind}-{method}"),
                 title: format!("{title}, {method} method, r = R/10"),
-                svg: draw(&chosen),
+                svg: draw(&chosen, Layout::Below),
             });
         }
     }

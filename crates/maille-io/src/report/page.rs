@@ -1,6 +1,9 @@
 //! The page: one HTML file with everything in it.
 
-use super::{Figure, Finding, Map, Verdict, ratio_label};
+use super::{
+    Figure, Finding, Map, Verdict, ratio_label, signed,
+    statements::{RULE, SCALED},
+};
 use base64::{Engine, prelude::BASE64_STANDARD};
 use maille::{
     design::Source,
@@ -39,13 +42,16 @@ nav a{margin-right:.9rem;white-space:nowrap}a{color:#15498c}
 .figures{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,520px),1fr));gap:1rem}
 figure{margin:0;border:1px solid #e3e3e3;border-radius:6px;padding:.5rem;min-width:0}
 figcaption{font-weight:600;padding:.1rem .3rem .4rem}
-.scroll{overflow-x:auto}.scroll svg{display:block;width:100%;height:auto;min-width:500px}
+figure svg{display:block;width:100%;height:auto}
 .sheets{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,250px),1fr));gap:1rem}
 .sheets img{width:100%;height:auto;display:block}.sheets p{margin:.2rem .3rem;font-size:.92rem}
-table{border-collapse:collapse;font-size:.92rem}th,td{padding:.25rem .6rem;text-align:right;border-bottom:1px solid #e6e6e6;white-space:nowrap}
-th:first-child,td:first-child{text-align:left;position:sticky;left:0;background:#fff}
+table{border-collapse:collapse;font-size:.92rem;width:100%;margin-top:1rem}th,td{padding:.25rem .5rem;text-align:right;border-bottom:1px solid #e6e6e6}
+td{white-space:nowrap}th{vertical-align:bottom}th:first-child,td:first-child{text-align:left}
 details summary{cursor:pointer;color:#15498c}
-@media (max-width:700px){.two{grid-template-columns:1fr}body{padding:.6rem .7rem 3rem}}
+@media (max-width:700px){.two{grid-template-columns:1fr}body{padding:.6rem .7rem 3rem}thead{display:none}tbody,tr{display:block}
+tr{display:grid;grid-template-columns:1fr 1fr;gap:0 1rem;border-bottom:1px solid #ddd;padding:.4rem 0}
+td{border:0;padding:.05rem 0;display:flex;justify-content:space-between;gap:.5rem}td::before{content:attr(data-of);color:#555;white-space:normal;text-align:left;line-height:1.3}
+td:first-child{grid-column:1/-1;display:block;font-weight:600}}
 ";
 
 /// Most exceptions that a statement lists on the page; `statements.json` has all.
@@ -63,6 +69,8 @@ pub fn page(words: &str, findings: &[Finding], sheets: &[Sheet], maps: &[Map], f
             <a href=\"#f6.4\">6.4–6.9 limits</a> <a href=\"#f6.10\">6.10 minor radius</a> <a href=\"#f6.11\">6.11 major radius</a> \
             <a href=\"#f6.12\">6.12 arrangement</a> <a href=\"#records\">Records</a></nav>\n";
     out += "<h2 id=\"statements\">What the thesis says, and what was measured</h2>\n";
+    let _ = writeln!(out, "<p class=\"note\">{RULE}</p>");
+    write_checks(&mut out, maps);
     for finding in findings {
         write_finding(&mut out, finding);
     }
@@ -114,6 +122,30 @@ pub fn page(words: &str, findings: &[Finding], sheets: &[Sheet], maps: &[Map], f
     out
 }
 
+/// What every run is checked for: links and overlap.
+fn write_checks(out: &mut String, maps: &[Map]) {
+    let checked = || maps.iter().flat_map(|map| map.rows.iter().filter_map(move |row| Some((map, row, row.links_ok?))));
+    let (runs, kept) = (checked().count(), checked().filter(|(_, _, ok)| *ok).count());
+    let _ = write!(out, "<p class=\"note\">{kept} of {runs} runs ended with the links that they began with.");
+    for (map, row, _) in checked().filter(|(_, _, ok)| !ok) {
+        let _ = write!(out, " Lost: {}, {}°, l₂ = {}.", escape(&map.label()), row.direction_deg, signed(row.l2));
+    }
+    for method in ["exact", "energy"] {
+        let of_method = maps.iter().filter(|map| map.method == method);
+        let worst = of_method.map(|map| (worst_overlap(map), map.label())).max_by(|a, b| a.0.total_cmp(&b.0));
+        if let Some((overlap, label)) = worst {
+            let _ = write!(out, " Worst overlap of the {method} method: {overlap:.1e} R ({}).", escape(&label));
+        }
+    }
+    *out += " The table of <a href=\"#records\">records</a> has both for each record, limits.csv for each limit.</p>\n";
+}
+
+/// Deepest overlap at a limit, in R.
+fn worst_overlap(map: &Map) -> f64 {
+    let overlap = |row: &LimitRow| Some(row.max_overlap? / (row.minor_radius? / map.ratio));
+    map.rows.iter().filter_map(overlap).fold(0.0, f64::max)
+}
+
 fn write_finding(out: &mut String, finding: &Finding) {
     let class = match finding.verdict {
         Verdict::NotMeasured => "not-measured",
@@ -153,7 +185,7 @@ fn write_figures<'a>(out: &mut String, figures: impl Iterator<Item = &'a Figure>
     *out += "<div class=\"figures\">\n";
     for figure in figures {
         let (title, svg) = (escape(&figure.title), figure.svg.trim());
-        let _ = writeln!(out, "<figure><figcaption>{title}</figcaption><div class=\"scroll\">{svg}</div></figure>");
+        let _ = writeln!(out, "<figure><figcaption>{title}</figcaption>{svg}</figure>");
     }
     *out += "</div>\n";
 }
@@ -180,63 +212,85 @@ fn write_sheets(out: &mut String, sheets: &[Sheet]) {
 }
 
 fn write_costs(out: &mut String, maps: &[Map]) {
-    *out += "<div class=\"scroll\"><table><thead><tr><th>record</th>";
-    for l2 in ["−0.25", "0.25"] {
-        let _ = write!(out, "<th>l₂ = {l2}: ms a limit</th><th>steps</th><th>runs</th><th>steps a run</th>");
-    }
-    *out += "</tr></thead><tbody>\n";
+    let heads = [-0.25, 0.25].map(|l2| {
+        let l2 = signed(l2);
+        let of = |what: &str| format!("{what}, l₂ = {l2}");
+        ["ms a limit", "steps", "runs", "steps a run"].map(of)
+    });
+    write_heads(out, &heads.concat());
     for map in maps {
-        let cells: Vec<Option<String>> = [-0.25, 0.25].map(|l2| cost(map, l2)).into();
-        if cells.iter().all(Option::is_none) {
+        let costs = [-0.25, 0.25].map(|l2| cost(map, l2));
+        if costs.iter().all(Option::is_none) || map.design.ends_with(SCALED) {
             continue;
         }
-        let _ = write!(out, "<tr><td>{}</td>", escape(&map.label()));
-        for cell in cells {
-            *out += &cell.unwrap_or_else(|| "<td>–</td>".repeat(4));
-        }
-        *out += "</tr>\n";
+        let cells = costs.map(|cost| cost.unwrap_or_else(|| ["–"; 4].map(String::from)));
+        write_row(out, &map.label(), &heads.concat(), &cells.concat());
     }
-    *out += "</tbody></table></div>\n";
+    *out += "</tbody></table>\n";
 }
 
-fn cost(map: &Map, l2: f64) -> Option<String> {
+/// Opens a table of records; on a narrow screen the heads stand beside their cells.
+fn write_heads(out: &mut String, heads: &[String]) {
+    *out += "<table><thead><tr><th>record</th>";
+    for head in heads {
+        let _ = write!(out, "<th>{head}</th>");
+    }
+    *out += "</tr></thead><tbody>\n";
+}
+
+fn write_row(out: &mut String, label: &str, heads: &[String], cells: &[String]) {
+    let _ = write!(out, "<tr><td>{}</td>", escape(label));
+    for (head, cell) in heads.iter().zip(cells) {
+        let _ = write!(out, "<td data-of=\"{head}\">{cell}</td>");
+    }
+    *out += "</tr>\n";
+}
+
+fn cost(map: &Map, l2: f64) -> Option<[String; 4]> {
     let rows: Vec<&LimitRow> = map.rows.iter().filter(|row| row.l2 == l2 && row.l1.is_some()).collect();
     let n = Some(rows.len()).filter(|n| *n > 0)? as f64;
     let mean = |of: &dyn Fn(&LimitRow) -> f64| rows.iter().map(|row| of(row)).sum::<f64>() / n;
     let (steps, runs) = (mean(&|row| row.iterations as f64), mean(&|row| row.runs as f64));
     let ms = 1000.0 * mean(&|row| row.wall_s);
-    Some(format!("<td>{ms:.1}</td><td>{steps:.1}</td><td>{runs:.1}</td><td>{:.1}</td>", steps / runs.max(1.0)))
+    Some([ms, steps, runs, steps / runs.max(1.0)].map(|x| format!("{x:.1}")))
 }
 
 fn write_records(out: &mut String, maps: &[Map]) {
     *out += "<h2 id=\"records\">Records</h2>\n<p class=\"note\">Every limit was checked for overlap, and for the links that the \
              design starts with. Global: a proven bound is attained. Local: certified, bound not attained. No limit: proved \
-             that this l₂ is out of reach.</p>\n<div class=\"scroll\"><table><thead><tr><th>record</th><th>limits</th>\
-             <th>worst overlap / R</th><th>links unchanged</th><th>global</th><th>local</th><th>threshold reached</th>\
-             <th>no limit (proved)</th><th>not found</th></tr></thead><tbody>\n";
+             that this l₂ is out of reach.</p>\n";
+    let heads = [
+        "limits",
+        "worst overlap / R",
+        "links unchanged",
+        "global",
+        "local",
+        "threshold reached",
+        "no limit (proved)",
+        "not found",
+    ]
+    .map(String::from);
+    write_heads(out, &heads);
     for map in maps {
-        let found: Vec<&LimitRow> = map.rows.iter().filter(|row| row.l1.is_some()).collect();
+        let found = map.rows.iter().filter(|row| row.l1.is_some()).count();
         let count = |status: Status| map.rows.iter().filter(|row| row.status == status).count();
-        let overlap = found.iter().filter_map(|row| Some(row.max_overlap? / (row.minor_radius? / map.ratio)));
-        let worst = overlap.fold(0.0, f64::max);
-        let links = found.iter().filter(|row| row.links_ok == Some(true)).count();
+        let worst = worst_overlap(map);
+        let (links, runs) = map
+            .rows
+            .iter()
+            .filter_map(|row| row.links_ok)
+            .fold((0, 0), |(kept, runs), ok| (kept + usize::from(ok), runs + 1));
         let proved = count(Status::L2Unreachable) + count(Status::Unbounded);
-        let _ = writeln!(
-            out,
-            "<tr><td>{}</td><td>{}</td><td>{worst:.1e}</td><td>{links} of {}</td><td>{}</td><td>{}</td><td>{}</td><td>{proved}</td><td>{}</td></tr>",
-            escape(&map.label()),
-            map.rows.len(),
-            found.len(),
-            count(Status::Global),
-            count(Status::Local),
-            count(Status::ThresholdReached),
-            map.rows.len() - found.len() - proved,
-        );
+        let counts = [Status::Global, Status::Local, Status::ThresholdReached].map(|status| count(status).to_string());
+        let mut cells = vec![map.rows.len().to_string(), format!("{worst:.1e}"), format!("{links} of {runs}")];
+        cells.extend(counts);
+        cells.extend([proved, map.rows.len() - found - proved].map(|n| n.to_string()));
+        write_row(out, &map.label(), &heads, &cells);
     }
     let mut radii: Vec<String> = maps.iter().map(|map| ratio_label(map.ratio)).collect();
     radii.sort();
     radii.dedup();
-    let _ = writeln!(out, "</tbody></table></div>\n<p class=\"note\">Minor radii: {}.</p>", escape(&radii.join(", ")));
+    let _ = writeln!(out, "</tbody></table>\n<p class=\"note\">Minor radii: {}.</p>", escape(&radii.join(", ")));
 }
 
 fn escape(text: &str) -> String {
