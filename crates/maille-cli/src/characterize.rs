@@ -19,7 +19,7 @@ use maille::{
         energy::{EnergyOptions, Minimiser},
         exact::ExactOptions,
     },
-    record::Status,
+    record::{LimitRow, Status},
 };
 use miette::Result;
 use std::{path::PathBuf, process::ExitCode, time::Instant};
@@ -261,7 +261,8 @@ fn once(args: &Args) -> Result<ExitCode> {
     let pool = pool(args.threads)?;
     let (left, total) = (open.left(), open.total());
     let progress = Progress::new(left as u64, args.quiet);
-    let rows = open.run(&pool, &cancel, &|row| progress.step(format!("{}°, l2 = {}", row.direction_deg, row.l2)));
+    let found = |row: &LimitRow| progress.step(format!("{}°, l2 = {}", row.direction_deg, row.l2));
+    let rows = pool.install(|| open.run(&cancel, &found));
     progress.finish();
     let rows = rows?;
 

@@ -1,6 +1,6 @@
 //! Exit codes by cause, for scripts.
 
-use maille_io::{DesignError, mesh::MeshError, record::RecordError, render::RenderError};
+use maille_io::{DesignError, mesh::MeshError, record::RecordError, render::RenderError, study::StudyError};
 use miette::{Diagnostic, Report};
 use std::fmt;
 
@@ -65,5 +65,6 @@ pub fn code(report: &Report) -> u8 {
         Some(_) => return USAGE,
         None => {}
     }
-    if report.downcast_ref::<RenderError>().is_some() { USAGE } else { FAILED }
+    let of_arguments = report.downcast_ref::<RenderError>().is_some() || report.downcast_ref::<StudyError>().is_some();
+    if of_arguments { USAGE } else { FAILED }
 }

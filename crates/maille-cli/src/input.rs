@@ -12,7 +12,8 @@ pub struct Input {
     /// The design, with the minor radius of the command line.
     pub design: Design,
     source: DesignSource,
-    minor_radius: Option<f64>,
+    /// What was changed after reading, as it is to be named in errors.
+    changed: Option<String>,
 }
 
 impl Input {
@@ -46,13 +47,22 @@ impl Input {
         if let Some(r) = minor_radius {
             design = design.with_minor_radius(r);
         }
-        Ok(Input { design, source, minor_radius })
+        Ok(Input { design, source, changed: minor_radius.map(|r| format!("--minor-radius {r}")) })
+    }
+
+    /// The same design with another minor radius, and its elements `spacing` times as far apart.
+    pub fn varied(&self, minor_radius: Option<f64>, spacing: Option<f64>) -> Input {
+        let mut design = minor_radius.map_or_else(|| self.design.clone(), |r| self.design.with_minor_radius(r));
+        design = spacing.map_or(design.clone(), |factor| design.spaced(factor));
+        let words = [minor_radius.map(|r| format!("minor_radius = {r}")), spacing.map(|s| format!("spacing = {s}"))];
+        let words: Vec<String> = words.into_iter().flatten().collect();
+        Input { design, source: self.source.clone(), changed: (!words.is_empty()).then(|| words.join(", ")) }
     }
 
     /// A design that is no file.
     pub fn of(design: Design) -> Input {
         let source = DesignSource::new(format!("{} (made by the program)", design.name), write_design(&design));
-        Input { design, source, minor_radius: None }
+        Input { design, source, changed: None }
     }
 
     /// Compiles the design for `cell`; what is wrong is shown at its place in the file, or, where it comes from
@@ -67,8 +77,8 @@ impl Input {
     }
 
     fn explain(&self, problems: &[InvalidInput]) -> Report {
-        match self.minor_radius {
-            Some(r) => of_minor_radius(r, problems),
+        match &self.changed {
+            Some(changed) => of_change(changed, problems),
             None => Report::new(self.source.explain(problems)),
         }
     }
@@ -77,13 +87,13 @@ impl Input {
 /// Problems that are listed one by one.
 const MOST: usize = 6;
 
-fn of_minor_radius(r: f64, problems: &[InvalidInput]) -> Report {
+fn of_change(changed: &str, problems: &[InvalidInput]) -> Report {
     let mut list: Vec<String> = problems.iter().take(MOST).map(|p| format!("  {}: {}", p.field, p.problem)).collect();
     list.extend((problems.len() > MOST).then(|| format!("  … and {} more", problems.len() - MOST)));
     wrong(
         exit::DESIGN,
-        format!("with --minor-radius {r} the design cannot be used:\n{}", list.join("\n")),
-        "take a smaller --minor-radius, or allow_initial_overlap = true in the file where rings may start overlapped",
+        format!("with {changed} the design cannot be used:\n{}", list.join("\n")),
+        "take a smaller minor radius, or allow_initial_overlap = true in the file where rings may start overlapped",
     )
 }
 

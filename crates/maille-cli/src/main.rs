@@ -26,6 +26,7 @@ mod schema;
 mod simulate;
 mod source;
 mod summary;
+mod sweep;
 mod table;
 mod units;
 mod watch;
@@ -43,6 +44,7 @@ Examples:
   maille characterize 1.1                 its limits, as a table and a polar plot in maille-out/1.1/
   maille characterize my-weave.toml --directions 0:90:5 --l2 0
   maille replay maille-out/1.3            solve the rows without a limit again
+  maille sweep radius.toml                many designs, radii and spacings
   maille reproduce --quick                chapter 6 of the thesis, computed anew
   maille simulate 1.1 --fix left --pull right=5,0,0    a finite sheet
   maille new shirt --weave european-4-in-1 --wire 16swg --id 5/16in
@@ -71,6 +73,7 @@ enum Command {
     New(new::Args),
     Designs(designs::Args),
     Replay(replay::Args),
+    Sweep(sweep::Args),
     Reproduce(reproduce::Args),
     Simulate(Box<simulate::Args>),
     Export(export::Args),
@@ -92,6 +95,7 @@ fn main() -> ExitCode {
         Command::Check(args) => check::run(&args),
         Command::New(args) => done(new::run(&args)),
         Command::Replay(args) => replay::run(&args),
+        Command::Sweep(args) => sweep::run(&args),
         Command::Reproduce(args) => reproduce::run(&args),
         Command::Simulate(args) => simulate::run(&args),
         Command::Designs(args) => done(designs::run(&args)),

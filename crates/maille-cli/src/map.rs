@@ -1,8 +1,9 @@
-//! One map, from a design to its record: what `characterize` does, and `reproduce` many times.
+//! Maps, from a design to its record: `characterize` makes one, `reproduce` and `sweep` many.
 
 use crate::{
     exit::{self, wrong},
     input::Input,
+    progress::Progress,
 };
 use maille::{
     characterize::{Finished, Method, Task, characterize, tasks},
@@ -15,9 +16,10 @@ use maille_io::{
     record::RecordFolder,
 };
 use miette::{IntoDiagnostic, Result, WrapErr};
+use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::{
-    path::PathBuf,
+    path::{Path, PathBuf},
     sync::{
         Mutex,
         atomic::{AtomicBool, Ordering},
@@ -132,14 +134,14 @@ impl OpenMap<'_> {
         maille::topology::binding_vectors(&self.models[0]).is_empty()
     }
 
-    /// Finds the limits that are left, writes the record, and gives all its rows. `found` hears of each limit; after
-    /// `cancel` what is finished is written.
-    pub fn run(
-        self,
-        pool: &rayon::ThreadPool,
-        cancel: &AtomicBool,
-        found: &(dyn Fn(&LimitRow) + Sync),
-    ) -> Result<Vec<LimitRow>> {
+    /// The folder of the record.
+    pub fn folder(&self) -> &Path {
+        &self.map.out
+    }
+
+    /// Finds the limits that are left on the current thread pool, writes the record, and gives all its rows. `found`
+    /// hears of each limit; after `cancel` what is finished is written.
+    pub fn run(self, cancel: &AtomicBool, found: &(dyn Fn(&LimitRow) + Sync)) -> Result<Vec<LimitRow>> {
         let OpenMap { map, input, models, parameters, folder, all, rows, open } = self;
         let collected = Mutex::new(Collected { folder, rows, written: Instant::now(), failure: None });
         let receive = |finished: Finished| {
@@ -158,7 +160,7 @@ impl OpenMap<'_> {
         let wanted = |task: Task| open.contains(&task);
         let (directions, l2) = (&map.directions_deg, &map.l2);
         let minor_radius = input.design.minor_radius;
-        pool.install(|| characterize(&models, minor_radius, &map.method, directions, l2, &wanted, cancel, &receive));
+        characterize(&models, minor_radius, &map.method, directions, l2, &wanted, cancel, &receive);
         let mut collected = collected.into_inner().unwrap_or_else(|e| e.into_inner());
         if let Some(report) = collected.failure {
             return Err(report.wrap_err("the record could not be written; the run has stopped"));
@@ -171,6 +173,20 @@ impl OpenMap<'_> {
         collected.folder.write_polar(&svg, &png)?;
         Ok(rows)
     }
+}
+
+/// Runs maps side by side, so that no thread waits for the last limit of a map, and gives the rows of each.
+pub fn run_all(
+    open: Vec<(&str, OpenMap<'_>)>,
+    pool: &rayon::ThreadPool,
+    cancel: &AtomicBool,
+    progress: &Progress,
+) -> Result<Vec<Vec<LimitRow>>> {
+    let run = |(name, open): (&str, OpenMap<'_>)| {
+        let found = |row: &LimitRow| progress.step(format!("{name}: {}°, l2 = {}", row.direction_deg, row.l2));
+        open.run(cancel, &found)
+    };
+    pool.install(|| open.into_par_iter().with_max_len(1).map(run).collect())
 }
 
 /// Where a row belongs among the tasks.

@@ -1,57 +1,7 @@
-//! Lists and ranges of numbers on the command line.
+//! Numbers on the command line.
 
 use maille::lattice::Cell;
-
-/// Numbers of `--directions` or `--l2`, in the order given, without repetition.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Numbers(pub Vec<f64>);
-
-/// Most numbers in one list.
-const MOST: usize = 100_000;
-
-/// Reads `0,15,30` or `first:last:step` (last included where the step meets it).
-pub fn parse(text: &str) -> Result<Numbers, String> {
-    let number = |t: &str| match t.trim().parse::<f64>() {
-        Ok(x) if x.is_finite() => Ok(x + 0.0), // −0 is 0
-        _ => Err(format!("\"{}\" is no number; give a list as 0,15,30 or a range as 0:180:15", t.trim())),
-    };
-    let parts: Vec<&str> = text.split(':').collect();
-    let values = match parts[..] {
-        [first, last, step] => {
-            let (first, last, step) = (number(first)?, number(last)?, number(step)?);
-            if step == 0.0 || (last - first) / step < 0.0 {
-                return Err(format!(
-                    "a step of {step} never leads from {first} to {last}; turn its sign, or give a list"
-                ));
-            }
-            let count = ((last - first) / step + 1e-9).floor();
-            if count >= MOST as f64 {
-                return Err(format!("{count} numbers are too many; at most {MOST}: take a larger step"));
-            }
-            (0..=count as usize).map(|k| first + k as f64 * step).collect()
-        }
-        [_] => text.split(',').map(number).collect::<Result<Vec<f64>, String>>()?,
-        _ => return Err("give a list as 0,15,30 or a range as first:last:step".into()),
-    };
-    let mut out: Vec<f64> = Vec::with_capacity(values.len());
-    for value in values {
-        if !out.contains(&value) {
-            out.push(value);
-        }
-    }
-    Ok(Numbers(out))
-}
-
-/// As [`parse`], for l2: a stretch of 0 or less is no sheet.
-pub fn parse_l2(text: &str) -> Result<Numbers, String> {
-    let numbers = parse(text)?;
-    match numbers.0.iter().find(|l2| **l2 <= -1.0) {
-        Some(l2) => {
-            Err(format!("l2 = {l2} would press the sheet to nothing; give values above -1 (0 holds the width)"))
-        }
-        None => Ok(numbers),
-    }
-}
+pub use maille_io::numbers::{Numbers, parse, parse_l2};
 
 /// A positive finite number.
 pub fn positive(text: &str) -> Result<f64, String> {
@@ -64,21 +14,4 @@ pub fn positive(text: &str) -> Result<f64, String> {
 /// A cell, as 2x1 or "1,0;-1,2".
 pub fn parse_cell(text: &str) -> Result<Cell, String> {
     text.parse().map_err(|e: maille::error::InvalidInput| format!("{}; {}", e.problem, e.help))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn lists_and_ranges() {
-        assert_eq!(parse("0:180:45").unwrap().0, [0.0, 45.0, 90.0, 135.0, 180.0]);
-        assert_eq!(parse("0:1:0.1").unwrap().0.len(), 11);
-        assert_eq!(parse("10:0:-5").unwrap().0, [10.0, 5.0, 0.0]);
-        assert_eq!(parse("3, 1,3,-0").unwrap().0, [3.0, 1.0, 0.0]);
-        for wrong in ["", "a", "0:10:0", "0:10:-1", "0:10", "0:1e9:1e-9", "nan", "1,,2", "inf"] {
-            assert!(parse(wrong).is_err(), "{wrong}");
-        }
-        assert!(parse_l2("-1").is_err() && parse_l2("-0.25,0").is_ok());
-    }
 }

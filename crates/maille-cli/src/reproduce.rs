@@ -4,7 +4,7 @@ use crate::{
     exit::{self, wrong},
     input::Input,
     interrupt,
-    map::{CellChoice, Map, OpenMap, pool, unanswered},
+    map::{CellChoice, Map, pool, run_all, unanswered},
     output::{self, say},
     progress::Progress,
     records,
@@ -106,31 +106,23 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         return Err(wrong(exit::USAGE, format!("{} is a file; a folder is written", out.display()), help));
     }
     let plan = plan(&chosen, args.quick, &out)?;
-    let open: Vec<OpenMap<'_>> = plan.iter().map(|p| p.map.open(&p.input)).collect::<Result<_>>()?;
-    let (left, total) = (open.iter().map(OpenMap::left).sum::<usize>(), open.iter().map(OpenMap::total).sum::<usize>());
+    let open = plan.iter().map(|p| Ok((p.name.as_str(), p.map.open(&p.input)?))).collect::<Result<Vec<_>>>()?;
+    let (left, total) = open.iter().fold((0, 0), |(l, t), (_, map)| (l + map.left(), t + map.total()));
     if !args.quiet && left < total {
         eprintln!("{} of {total} limits are in {} already", total - left, out.display());
     }
     let cancel = interrupt::flag()?;
     let pool = pool(args.threads)?;
     let progress = Progress::new(left as u64, args.quiet);
-    let mut without = 0;
-    for (planned, open) in plan.iter().zip(open) {
-        let name = &planned.name;
-        let found = |row: &maille::record::LimitRow| {
-            progress.step(format!("{name}: {}°, l2 = {}", row.direction_deg, row.l2));
-        };
-        let rows = open.run(&pool, &cancel, &found)?;
-        without += rows.iter().filter(|row| unanswered(row)).count();
-        if cancel.load(Ordering::Relaxed) {
-            progress.finish();
-            if !args.quiet {
-                eprintln!("interrupted; the same command goes on from here");
-            }
-            return Ok(ExitCode::from(exit::INTERRUPTED));
-        }
-    }
+    let rows = run_all(open, &pool, &cancel, &progress);
     progress.finish();
+    let without = rows?.iter().flatten().filter(|row| unanswered(row)).count();
+    if cancel.load(Ordering::Relaxed) {
+        if !args.quiet {
+            eprintln!("interrupted; the same command goes on from here");
+        }
+        return Ok(ExitCode::from(exit::INTERRUPTED));
+    }
     let records = records::read(&plan.iter().map(|p| p.map.out.clone()).collect::<Vec<_>>())?;
     let findings = pool.install(|| write(&out, &chosen, args.quick, &records))?;
     if !args.quiet {

@@ -1,4 +1,4 @@
-//! Formats of maille: design files, records, tables, plots, meshes, pictures, the report on the thesis.
+//! Formats of maille: design files, studies, records, tables, plots, meshes, pictures, the report on the thesis.
 //!
 //! Everything here works on text, bytes and readers; only doors open paths. The one exception is
 //! [`record::RecordFolder`], which owns a folder because its writes must be atomic.
@@ -7,11 +7,13 @@ pub mod builtin;
 pub mod design_toml;
 pub mod mesh;
 mod nearest;
+pub mod numbers;
 mod palette;
 pub mod plot;
 pub mod record;
 pub mod render;
 pub mod report;
+pub mod study;
 pub mod table;
 pub mod weave;
 

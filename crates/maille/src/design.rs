@@ -101,6 +101,14 @@ impl Design {
         Self { minor_radius: Some(minor_radius), ..self.clone() }
     }
 
+    /// The same rings `factor` times as far apart: lattice vectors and centres of elements are multiplied.
+    pub fn spaced(&self, factor: f64) -> Self {
+        let mut out = self.clone();
+        let centers = out.elements.iter_mut().map(|element| &mut element.center);
+        centers.chain([&mut out.lattice.a1, &mut out.lattice.a2]).flatten().for_each(|x| *x *= factor);
+        out
+    }
+
     /// The same design with every length multiplied by `factor`.
     pub fn scaled(&self, factor: f64) -> Self {
         let mut out = self.clone();

@@ -1,0 +1,198 @@
+//! `maille sweep`: the maps of a study.
+
+use crate::{
+    exit::{self, wrong},
+    input::{Input, file_name},
+    interrupt,
+    map::{CellChoice, Map, OpenMap, pool, run_all, unanswered},
+    output::{self, say},
+    progress::Progress,
+    records,
+};
+use maille::{characterize::Method, limit::exact::ExactOptions};
+use maille_io::{
+    builtin,
+    plot::Quantity,
+    study::{Study, StudyDesign},
+    table::{Field, Table},
+};
+use miette::{IntoDiagnostic, Result, WrapErr};
+use std::{
+    path::{Path, PathBuf},
+    process::ExitCode,
+    sync::atomic::Ordering,
+    time::Instant,
+};
+
+/// Limits of many designs, radii and spacings
+///
+/// Writes a folder: records/ with one record for each design and its parameters, as `maille characterize` writes
+/// them, and limits.csv with the rows of all. All cores work until the last limit. A run that was stopped goes on where it
+/// was with the same command.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  maille sweep --example > radius.toml
+  maille sweep radius.toml
+  maille plot maille-out/radius/records/* --quantity stretch -o radius.svg
+  maille table maille-out/radius/records/* --where direction=45
+
+A study:
+  directions = \"0:180:15\"       # or [0, 45]; so with l2, minor_radius and spacing
+  l2 = [-0.125, 0]
+  cell = \"auto\"                 # as in `maille characterize`; starts and seed, too
+  [[designs]]
+  design = \"1.1\"                # built in, or a file beside the study
+  minor_radius = \"0.04:0.12:0.02\"
+  spacing = [0.95, 1]           # of the elements, in that of the design
+
+Exit codes: 0 every limit was found or proved not to be there, 5 the records are written but some limits were not \
+found or some designs could not be used, 130 interrupted.")]
+pub struct Args {
+    /// The study, a TOML file
+    #[arg(required_unless_present = "example")]
+    study: Option<PathBuf>,
+    /// Folder of all that is made [default: maille-out/STUDY]
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// Replace records of other inputs in that folder
+    #[arg(long)]
+    overwrite: bool,
+    /// Threads [default: all cores]; results do not depend on it
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+    /// Print a study to begin with
+    #[arg(long, exclusive = true)]
+    example: bool,
+    /// No progress and no summary
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+const EXAMPLE: &str = "\
+# How the limits of 1.1 and 3.1 change with the wire. All values in units of the in-plane ring's major radius.
+directions = \"0:90:15\"
+l2 = [-0.125, 0]
+
+[[designs]]
+design = \"1.1\"
+minor_radius = \"0.04:0.12:0.04\"
+
+[[designs]]
+design = \"3.1\"
+minor_radius = [0.05, 0.1]
+";
+
+/// One map of the study.
+struct Planned {
+    name: String,
+    input: Input,
+    map: Map,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<ExitCode> {
+    let Some(path) = &args.study else {
+        output::print(EXAMPLE.as_bytes())?;
+        return Ok(ExitCode::from(exit::DONE));
+    };
+    let study = read(path)?;
+    let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+    let out = args.out.clone().unwrap_or_else(|| Path::new("maille-out").join(file_name(&stem)));
+    let plan = plan(&study, path.parent().unwrap_or(Path::new("")), &out, args.overwrite)?;
+    let mut open: Vec<(&str, OpenMap<'_>)> = Vec::new();
+    let mut unused = Vec::new();
+    for planned in &plan {
+        match planned.map.open(&planned.input) {
+            Ok(map) => open.push((&planned.name, map)),
+            Err(report) if exit::code(&report) == exit::DESIGN => unused.push((&planned.name, report)),
+            Err(report) => return Err(report),
+        }
+    }
+    let (left, total) = open.iter().fold((0, 0), |(l, t), (_, map)| (l + map.left(), t + map.total()));
+    if !args.quiet && left < total {
+        eprintln!("{} of {total} limits are in {} already", total - left, out.display());
+    }
+    let used: Vec<PathBuf> = open.iter().map(|(_, map)| map.folder().to_owned()).collect();
+    let cancel = interrupt::flag()?;
+    let pool = pool(args.threads)?;
+    let progress = Progress::new(left as u64, args.quiet);
+    let begun = Instant::now();
+    let rows = run_all(open, &pool, &cancel, &progress);
+    progress.finish();
+    let rows = rows?;
+    if !used.is_empty() {
+        let records = records::read(&used)?;
+        output::write(&out.join("limits.csv"), Table::new(&records, Field::all(true)).csv().as_bytes())?;
+    }
+    let interrupted = cancel.load(Ordering::Relaxed);
+    let without = rows.iter().flatten().filter(|row| unanswered(row)).count();
+    if !args.quiet {
+        for (name, report) in &unused {
+            eprintln!("{name} could not be used:\n{report:?}");
+        }
+        let seconds = begun.elapsed().as_secs_f64();
+        say!(
+            "{total} limits in {} records, {left} of them now in {seconds:.1} s; {without} were not found",
+            used.len()
+        );
+        say!("all rows are in {}", out.join("limits.csv").display());
+        if interrupted {
+            eprintln!("interrupted; the same command goes on from here");
+        }
+    }
+    Ok(ExitCode::from(match () {
+        () if interrupted => exit::INTERRUPTED,
+        () if without > 0 || !unused.is_empty() => exit::INCOMPLETE,
+        () => exit::DONE,
+    }))
+}
+
+fn read(path: &Path) -> Result<Study> {
+    if path.is_dir() {
+        return Err(wrong(exit::USAGE, format!("{} is a folder, not a study", path.display()), "give a TOML file"));
+    }
+    let text = std::fs::read_to_string(path)
+        .into_diagnostic()
+        .wrap_err_with(|| format!("cannot read the study {}", path.display()))?;
+    Ok(Study::read(&path.display().to_string(), &text)?)
+}
+
+/// Every map of the study; a design without values of a parameter keeps its own.
+fn plan(study: &Study, folder: &Path, out: &Path, overwrite: bool) -> Result<Vec<Planned>> {
+    let mut plan: Vec<Planned> = Vec::new();
+    for StudyDesign { design, minor_radius, spacing } in &study.designs {
+        let file = folder.join(design);
+        let design = if builtin(design).is_some() { design.clone() } else { file.display().to_string() };
+        let input = Input::read(&design, None)?;
+        let some = |values: &[f64]| match values {
+            [] => vec![None],
+            _ => values.iter().copied().map(Some).collect::<Vec<_>>(),
+        };
+        for r in some(minor_radius) {
+            for s in some(spacing) {
+                let mut name = file_name(&input.design.name);
+                name.extend(r.map(|r| format!("-r{r}")));
+                name.extend(s.map(|s| format!("-s{s}")));
+                if plan.iter().any(|known| known.name == name) {
+                    let help = "name each design and value once";
+                    return Err(wrong(exit::USAGE, format!("{name} is in the study twice"), help));
+                }
+                let map = Map {
+                    method: Method::Exact(ExactOptions {
+                        starts: study.starts.unwrap_or(ExactOptions::default().starts),
+                        seed: study.seed,
+                    }),
+                    cell: study.cell.map_or(CellChoice::Auto, CellChoice::One),
+                    directions_deg: study.directions_deg.clone(),
+                    l2: study.l2.clone(),
+                    quantity: Quantity::Stretch,
+                    out: out.join("records").join(&name),
+                    overwrite,
+                };
+                plan.push(Planned { name, input: input.varied(r, s), map });
+            }
+        }
+    }
+    Ok(plan)
+}

@@ -1,0 +1,224 @@
+//! Studies: which maps of which designs, in one TOML file.
+
+use crate::numbers::{Numbers, parse, parse_l2};
+use maille::lattice::Cell;
+use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode, SourceSpan};
+use serde::Deserialize;
+use std::{fmt, ops::Range, sync::Arc};
+use toml::Spanned;
+
+/// What `maille sweep` computes: each design, at each of its radii and spacings, over all directions and l2.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Study {
+    /// Directions of the pull, degrees counter-clockwise from x.
+    pub directions_deg: Vec<f64>,
+    /// Stretch − 1 held across it.
+    pub l2: Vec<f64>,
+    /// The cell to solve; `None` where it is chosen by need.
+    pub cell: Option<Cell>,
+    /// Starts of a limit whose bound is not attained, where given.
+    pub starts: Option<usize>,
+    /// Seed of everything random.
+    pub seed: u64,
+    /// The designs.
+    pub designs: Vec<StudyDesign>,
+}
+
+/// A design of a study, with the values that its parameters take.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StudyDesign {
+    /// A built-in design, or a file, relative to the study's folder.
+    pub design: String,
+    /// Minor radii in the design's unit; empty: the design's own.
+    pub minor_radius: Vec<f64>,
+    /// Factors of all distances between elements; empty: as designed.
+    pub spacing: Vec<f64>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawStudy {
+    directions: Option<Spanned<List>>,
+    l2: Option<Spanned<List>>,
+    cell: Option<Spanned<String>>,
+    starts: Option<Spanned<i64>>,
+    seed: Option<Spanned<i64>>,
+    designs: Spanned<Vec<RawDesign>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawDesign {
+    design: Spanned<String>,
+    minor_radius: Option<Spanned<List>>,
+    spacing: Option<Spanned<List>>,
+}
+
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "this is no number, no list as [0.05, 0.1] and no range as \"0:180:15\"")]
+enum List {
+    One(f64),
+    Several(Vec<f64>),
+    Text(String),
+}
+
+impl List {
+    /// As it would stand on the command line, where the rules of lists are kept.
+    fn text(&self) -> String {
+        match self {
+            List::One(x) => x.to_string(),
+            List::Several(list) => list.iter().map(f64::to_string).collect::<Vec<_>>().join(","),
+            List::Text(text) => text.clone(),
+        }
+    }
+}
+
+const HELP: &str = "a study has directions, l2, cell, starts, seed, and [[designs]] with design, minor_radius, spacing; \
+                    `maille sweep --example` prints one";
+
+impl Study {
+    /// Reads a study; `source_name` is what errors show.
+    ///
+    /// ```
+    /// let study = maille_io::study::Study::read(
+    ///     "radius.toml",
+    ///     "directions = [0, 45]\n[[designs]]\ndesign = \"1.1\"\nminor_radius = \"0.05:0.1:0.05\"\n",
+    /// ).unwrap();
+    /// assert_eq!(study.designs[0].minor_radius, [0.05, 0.1]);
+    /// ```
+    pub fn read(source_name: &str, text: &str) -> Result<Study, StudyError> {
+        let source = NamedSource::new(source_name, Arc::from(text));
+        Self::parsed(text).map_err(|wrong| StudyError { source, wrong })
+    }
+
+    fn parsed(text: &str) -> Result<Study, Wrong> {
+        let raw: RawStudy = toml::from_str(text).map_err(|error| Wrong {
+            problem: error.message().to_owned(),
+            help: HELP.into(),
+            span: error.span().unwrap_or_default(),
+        })?;
+        if raw.designs.get_ref().is_empty() {
+            return Err(wrong(&raw.designs, "the study has no design", "add [[designs]] with design = \"1.1\""));
+        }
+        let list = |list: &Option<Spanned<List>>, usual: &str, read: fn(&str) -> Result<Numbers, String>| match list {
+            None => read(usual).map(|n| n.0).map_err(|problem| Wrong { problem, help: HELP.into(), span: 0..0 }),
+            Some(list) => read(&list.get_ref().text()).map(|n| n.0).map_err(|p| wrong(list, p, HELP)),
+        };
+        let cell = match &raw.cell {
+            Some(cell) if cell.get_ref() != "auto" => {
+                Some(cell.get_ref().parse().map_err(|e: maille::error::InvalidInput| wrong(cell, e.problem, e.help))?)
+            }
+            _ => None,
+        };
+        let whole = |number: &Option<Spanned<i64>>, least: i64| match number {
+            Some(n) if *n.get_ref() < least => {
+                Err(wrong(n, format!("{} is too small", n.get_ref()), format!("give a whole number from {least}")))
+            }
+            Some(n) => Ok(Some(n.get_ref().unsigned_abs())),
+            None => Ok(None),
+        };
+        let positive = |numbers: &Option<Spanned<List>>| match numbers {
+            None => Ok(Vec::new()),
+            Some(spanned) => {
+                let values = list(numbers, "", parse)?;
+                match values.iter().find(|x| **x <= 0.0) {
+                    Some(x) => Err(wrong(spanned, format!("{x} is not positive"), "give numbers above 0")),
+                    None => Ok(values),
+                }
+            }
+        };
+        let mut designs = Vec::new();
+        for design in raw.designs.get_ref() {
+            designs.push(StudyDesign {
+                design: design.design.get_ref().clone(),
+                minor_radius: positive(&design.minor_radius)?,
+                spacing: positive(&design.spacing)?,
+            });
+        }
+        Ok(Study {
+            directions_deg: list(&raw.directions, "0:180:15", parse)?,
+            l2: list(&raw.l2, "0", parse_l2)?,
+            cell,
+            starts: whole(&raw.starts, 1)?.map(|n| n as usize),
+            seed: whole(&raw.seed, 0)?.unwrap_or(1),
+            designs,
+        })
+    }
+}
+
+/// What is wrong with a study, shown at its place.
+#[derive(Debug)]
+pub struct StudyError {
+    source: NamedSource<Arc<str>>,
+    wrong: Wrong,
+}
+
+#[derive(Debug)]
+struct Wrong {
+    problem: String,
+    help: String,
+    span: Range<usize>,
+}
+
+fn wrong<T>(at: &Spanned<T>, problem: impl Into<String>, help: impl Into<String>) -> Wrong {
+    Wrong { problem: problem.into(), help: help.into(), span: at.span() }
+}
+
+impl fmt::Display for StudyError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.wrong.problem)
+    }
+}
+
+impl std::error::Error for StudyError {}
+
+impl Diagnostic for StudyError {
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        Some(Box::new(&self.wrong.help))
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        let span = SourceSpan::from(self.wrong.span.clone());
+        Some(Box::new(std::iter::once(LabeledSpan::new_with_span(None, span))))
+    }
+
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        Some(&self.source)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn defaults_and_forms_of_lists() {
+        let text =
+            "l2 = \"-0.25:0:0.125\"\n[[designs]]\ndesign = \"1.1\"\nspacing = 1\n[[designs]]\ndesign = \"a.toml\"\n";
+        let study = Study::read("s", text).unwrap();
+        assert_eq!((study.directions_deg.len(), study.l2.len(), study.cell, study.seed), (13, 3, None, 1));
+        assert_eq!(study.designs[0].spacing, [1.0]);
+        assert!(study.designs[1].minor_radius.is_empty());
+    }
+
+    #[test]
+    fn what_is_wrong_is_shown_at_its_place() {
+        let cases = [
+            ("directions = [0]", "missing field `designs`", None),
+            ("designs = []", "no design", Some("[]")),
+            ("angle = 3\n[[designs]]\ndesign = \"1.1\"", "unknown field `angle`", Some("angle")),
+            ("l2 = -1\n[[designs]]\ndesign = \"1.1\"", "press the sheet to nothing", Some("-1")),
+            ("cell = \"0x1\"\n[[designs]]\ndesign = \"1.1\"", "", Some("\"0x1\"")),
+            ("starts = 0\n[[designs]]\ndesign = \"1.1\"", "too small", Some("0")),
+            ("[[designs]]\ndesign = \"1.1\"\nspacing = [1.0, -2.0]", "-2 is not positive", Some("[1.0, -2.0]")),
+            ("[[designs]]\ndesign = \"1.1\"\nminor_radius = true", "no range", Some("true")),
+        ];
+        for (text, problem, place) in cases {
+            let error = Study::read("s", text).unwrap_err();
+            assert!(error.to_string().contains(problem), "{text}: {error}");
+            if let Some(place) = place {
+                assert_eq!(&text[error.wrong.span.clone()], place, "{text}");
+            }
+        }
+    }
+}
