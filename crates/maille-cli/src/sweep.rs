@@ -152,9 +152,14 @@ fn read(path: &Path) -> Result<Study> {
     if path.is_dir() {
         return Err(wrong(exit::USAGE, format!("{} is a folder, not a study", path.display()), "give a TOML file"));
     }
-    let text = std::fs::read_to_string(path)
-        .into_diagnostic()
-        .wrap_err_with(|| format!("cannot read the study {}", path.display()))?;
+    let text = match std::fs::read_to_string(path) {
+        Ok(text) => text,
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
+            let help = format!("write one with `maille sweep --example > {}`", path.display());
+            return Err(wrong(exit::USAGE, format!("there is no study {}", path.display()), help));
+        }
+        Err(e) => return Err(e).into_diagnostic().wrap_err_with(|| format!("cannot read {}", path.display())),
+    };
     Ok(Study::read(&path.display().to_string(), &text)?)
 }
 
