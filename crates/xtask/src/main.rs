@@ -2,6 +2,7 @@
 //!
 //! It depends on `serde_json` alone, so that the first command after a clone starts soon.
 
+mod bench;
 mod gallery;
 mod layers;
 mod paths;
@@ -25,6 +26,8 @@ cargo xtask COMMAND
   gallery  write docs/gallery: pictures, plots and numbers of every built-in design, by the program
            --quick         few directions, into maille-out/gallery
            --program PATH  this program; otherwise it is built
+  bench    every bench, and docs/performance.md from it; close other programs first
+           --from FILE     from what `cargo bench` has printed to FILE
 ";
 
 fn main() -> ExitCode {
@@ -46,6 +49,8 @@ fn main() -> ExitCode {
         ["gallery", "--quick"] => steps::gallery(&root, true, None),
         ["gallery", "--program", program] => steps::gallery(&root, false, Some(program)),
         ["gallery", "--quick", "--program", program] => steps::gallery(&root, true, Some(program)),
+        ["bench"] => steps::bench(&root, None),
+        ["bench", "--from", file] => steps::bench(&root, Some(file)),
         [] | ["help" | "--help" | "-h"] => {
             print!("{HELP}");
             return ExitCode::SUCCESS;

@@ -1,6 +1,6 @@
 //! The steps of `ci`, each announced and timed.
 
-use crate::{Finding, gallery, layers, paths};
+use crate::{Finding, bench, gallery, layers, paths};
 use std::{
     path::Path,
     process::{Command, Stdio},
@@ -53,6 +53,14 @@ pub fn paths(root: &Path) -> Result<(), Failed> {
 /// The gallery of the built-in designs, written anew.
 pub fn gallery(root: &Path, quick: bool, program: Option<&str>) -> Result<(), Failed> {
     gallery::write(root, quick, program).map_err(|problem| {
+        eprintln!("xtask: {problem}");
+        Failed
+    })
+}
+
+/// The benches, and the page of their figures.
+pub fn bench(root: &Path, saved: Option<&str>) -> Result<(), Failed> {
+    bench::write(root, saved).map_err(|problem| {
         eprintln!("xtask: {problem}");
         Failed
     })
