@@ -84,6 +84,7 @@ pub fn polish<P: Program>(program: &P, end: &SqpEnd<P::Point>) -> (P::Point, Cer
 /// Newton's method on the rows `active`, whose multipliers it improves; `x` moves while steps stay small.
 fn newton<P: Program>(program: &P, x: &mut P::Point, active: &mut Vec<Multiplier>) {
     let c = program.objective();
+    let mut last = f64::INFINITY;
     for _ in 0..10 {
         let rows = program.rows(x, BAND, Derivatives::Second(active));
         let chosen = matched(&rows, active);
@@ -96,9 +97,11 @@ fn newton<P: Program>(program: &P, x: &mut P::Point, active: &mut Vec<Multiplier
             break;
         }
         *x = program.moved(x, &step);
-        if size < 1e-13 {
+        // After a quadratic step of this size only rounding moves on.
+        if size < 1e-13 || size < 1e-9 && size > 0.1 * last {
             break;
         }
+        last = size;
     }
 }
 
