@@ -14,7 +14,7 @@ use crate::{
     model::Model,
     record::Status,
     solve::{
-        certificate::{Certificate, GAP_TOLERANCE, RESIDUAL_TOLERANCE},
+        certificate::{Certificate, GAP_TOLERANCE, RESIDUAL_TOLERANCE, measure_curvature},
         kkt::polish,
         rows::{Derivatives, Multiplier, violation},
         sqp::{Program, SqpOptions, maximize},
@@ -564,7 +564,8 @@ impl Search<'_> {
             pause_at *= 0.2;
             first_radius = (10.0 * pause_at).clamp(1e-3, 0.1);
         }
-        let solve = last.unwrap_or_else(|| unreachable!("at least one round"));
+        let mut solve: Solve = last.unwrap_or_else(|| unreachable!("at least one round"));
+        measure_curvature(program, &solve.x, &mut solve.certificate);
         (x, solve)
     }
 }

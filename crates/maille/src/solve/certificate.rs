@@ -24,7 +24,7 @@ pub struct Certificate {
     /// Least multiplier of a row that was taken as active.
     pub min_multiplier: f64,
     /// Least curvature of the Lagrangian on the null space of the loaded rows, zero modes left out; `None` where
-    /// nothing but zero modes is left.
+    /// nothing but zero modes is left, NaN where it was not measured.
     pub min_curvature: Option<f64>,
     /// Directions of that null space without curvature: elements that rattle.
     pub zero_modes: usize,
@@ -58,6 +58,11 @@ impl Certificate {
     /// Whether all but the gaps hold, and those nearly.
     pub(super) fn lacks_only_room(&self) -> bool {
         (-ALMOST..-GAP_TOLERANCE).contains(&self.smallest_gap) && self.is_critical()
+    }
+
+    /// The smaller, the better.
+    pub(super) fn score(&self) -> f64 {
+        (-self.smallest_gap).max(self.dual_residual).max(-self.min_multiplier)
     }
 
     fn is_critical(&self) -> bool {
@@ -146,8 +151,11 @@ pub(super) fn certify<P: Program>(program: &P, x: &P::Point, active: &[Multiplie
     }
 }
 
-/// Adds the curvature's figures to a certificate of the point `x`.
-pub(super) fn measure_curvature<P: Program>(program: &P, x: &P::Point, certificate: &mut Certificate) {
+/// Adds the curvature's figures to a certificate of the point `x`, unless it has them.
+pub fn measure_curvature<P: Program>(program: &P, x: &P::Point, certificate: &mut Certificate) {
+    if !certificate.min_curvature.is_some_and(f64::is_nan) {
+        return;
+    }
     let n = program.objective().len();
     let rows = program.rows(x, BAND, Derivatives::Second(&certificate.multipliers));
     let (chosen, multipliers): (Vec<&Row>, Vec<f64>) =
