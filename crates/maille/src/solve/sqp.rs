@@ -144,6 +144,8 @@ pub(super) fn elastic_program(
     reached.iter().zip(&solution.multipliers).for_each(|(&k, mu)| multipliers[k] = *mu);
     (solution.x[..n].to_vec(), multipliers, solution.x[n].max(0.0))
 }
+/// A correction reaches at most this many times the violation that it corrects.
+const FURTHEST: f64 = 100.0;
 /// Least curvature of the convexified model: it follows the step's size between these. Far from the limit it keeps
 /// free motions from being spent on tiny gains (which would carry contacts to the edge where their minima merge).
 const LEAST_FLOOR: f64 = 1e-4;
@@ -216,7 +218,8 @@ pub fn maximize<P: Program>(
             let there = program.rows(&trial, band(radius).min(0.2), Derivatives::First);
             let none = vec![0.0; n];
             let metric = stiff_where_loaded(n, &rows, &multipliers);
-            let (correction, _, _) = elastic_program(&there, &metric, &none, 1e3 * radius, radius);
+            let (correction, _, _) =
+                elastic_program(&there, &metric, &none, 1e3 * radius, radius.min(FURTHEST * worst));
             let guard = program.guard(&trial);
             let fraction = program.largest_step(&trial, &guard, &correction);
             let correction: Vec<f64> = correction.iter().map(|s| s * fraction).collect();
