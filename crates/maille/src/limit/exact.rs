@@ -14,7 +14,7 @@ use crate::{
     model::Model,
     record::Status,
     solve::{
-        certificate::{Certificate, GAP_TOLERANCE, RESIDUAL_TOLERANCE},
+        certificate::{Certificate, GAP_TOLERANCE, RESIDUAL_TOLERANCE, measure_curvature},
         kkt::polish,
         rows::{Derivatives, Multiplier, violation},
         sqp::{Program, SqpOptions, maximize},
@@ -103,7 +103,7 @@ const KICKS: usize = 6;
 /// The same in larger cells, where a solve is costly.
 const LARGER_CELL_KICKS: usize = 1;
 /// Rounds of maximising and polishing between kicks.
-const ROUNDS: usize = 6;
+const ROUNDS: usize = 10;
 /// A force between an element and its own image above this (per unit pull) calls for a larger cell.
 const OWN_IMAGE_FORCE: f64 = 1e-6;
 /// Further starts where none reached the wanted l2.
@@ -537,7 +537,7 @@ impl Search<'_> {
     fn climb(&mut self, program: &mut SheetProgram<'_>, start: Posed) -> (Posed, Solve) {
         let mut x = start;
         let mut known: Vec<Multiplier> = Vec::new();
-        let (mut pause_at, mut first_radius) = (1e-2, 0.1);
+        let (mut pause_at, mut first_radius) = (0.1, 0.1);
         let mut last = None;
         for round in 0..ROUNDS {
             let options = SqpOptions { pause_at, first_radius, ..SqpOptions::default() };
@@ -561,10 +561,11 @@ impl Search<'_> {
             if end.settled && round > 0 {
                 break;
             }
-            pause_at *= 0.03;
-            first_radius = (30.0 * pause_at).max(1e-3);
+            pause_at *= 0.2;
+            first_radius = (10.0 * pause_at).clamp(1e-3, 0.1);
         }
-        let solve = last.unwrap_or_else(|| unreachable!("at least one round"));
+        let mut solve: Solve = last.unwrap_or_else(|| unreachable!("at least one round"));
+        measure_curvature(program, &solve.x, &mut solve.certificate);
         (x, solve)
     }
 }

@@ -4,9 +4,10 @@
 //! second order where −Σ μ ∇²g is positive on the directions that keep the loaded rows.
 
 use super::{
-    eigen::{LeastNorm, block, symmetric_eigen},
+    eigen::{block, symmetric_eigen},
     qp::{self, QuadraticProgram, SparseRows},
     rows::{Derivatives, Multiplier, Row, lagrangian_hessian, multiplier_of},
+    saddle::least_squares_multipliers,
     sqp::Program,
 };
 use faer::Mat;
@@ -23,7 +24,7 @@ pub struct Certificate {
     /// Least multiplier of a row that was taken as active.
     pub min_multiplier: f64,
     /// Least curvature of the Lagrangian on the null space of the loaded rows, zero modes left out; `None` where
-    /// nothing but zero modes is left.
+    /// nothing but zero modes is left, NaN where it was not measured.
     pub min_curvature: Option<f64>,
     /// Directions of that null space without curvature: elements that rattle.
     pub zero_modes: usize,
@@ -35,8 +36,8 @@ pub struct Certificate {
 pub const GAP_TOLERANCE: f64 = 1e-12;
 /// Residuals of a certified limit.
 pub const RESIDUAL_TOLERANCE: f64 = 1e-9;
-/// Overlaps below this are cleared in one small step, see the polish.
-const ALMOST: f64 = 1e-8;
+/// Overlaps below this can be cleared by what carries nothing, see the polish.
+const ALMOST: f64 = 0.03;
 /// Curvature below which a direction counts as a zero mode, relative to the largest curvature.
 const ZERO_MODE: f64 = 1e-7;
 
@@ -46,6 +47,11 @@ pub(super) const BAND: f64 = 1e-2;
 impl Certificate {
     /// Whether every condition holds to its tolerance.
     pub fn holds(&self) -> bool {
+        self.holds_to_first_order() && self.min_curvature.is_none_or(|c| c > 0.0)
+    }
+
+    /// Whether all but the curvature holds.
+    pub(super) fn holds_to_first_order(&self) -> bool {
         self.smallest_gap >= -GAP_TOLERANCE && self.is_critical()
     }
 
@@ -54,11 +60,15 @@ impl Certificate {
         (-ALMOST..-GAP_TOLERANCE).contains(&self.smallest_gap) && self.is_critical()
     }
 
+    /// The smaller, the better.
+    pub(super) fn score(&self) -> f64 {
+        (-self.smallest_gap).max(self.dual_residual).max(-self.min_multiplier)
+    }
+
     fn is_critical(&self) -> bool {
         self.dual_residual <= RESIDUAL_TOLERANCE
             && self.complementarity <= RESIDUAL_TOLERANCE
             && self.min_multiplier >= -RESIDUAL_TOLERANCE
-            && self.min_curvature.is_none_or(|c| c > 0.0)
     }
 }
 
@@ -114,11 +124,11 @@ fn dual_residual(c: &[f64], rows: &[Row], multipliers: &[f64]) -> f64 {
     residual.iter().fold(0.0, |a, r| a.max(r.abs()))
 }
 
-/// The figures at a point with the multipliers of its active rows.
+/// The figures at a point with the multipliers of its active rows, but for the curvature, which costs far more than the
+/// others: see [`measure_curvature`].
 pub(super) fn certify<P: Program>(program: &P, x: &P::Point, active: &[Multiplier]) -> Certificate {
     let c = &program.objective()[..];
-    let n = c.len();
-    let rows = program.rows(x, BAND, Derivatives::Second(active));
+    let rows = program.rows(x, BAND, Derivatives::First);
     let chosen_rows: Vec<Row> = matched(&rows, active).iter().map(|(k, _)| rows[*k].clone()).collect();
     // Least squares first: exact to rounding. Where signs are wrong, the constrained ones.
     let mut multipliers = least_squares_multipliers(c, &chosen_rows);
@@ -130,41 +140,37 @@ pub(super) fn certify<P: Program>(program: &P, x: &P::Point, active: &[Multiplie
             multipliers = signed;
         }
     }
-    let loaded: Vec<&Row> =
-        chosen_rows.iter().zip(&multipliers).filter(|(_, mu)| **mu > 1e-8).map(|(r, _)| r).collect();
-    let mut hessian = lagrangian_hessian(n, &chosen_rows, &multipliers);
-    for v in program.hidden_curvature(x, &labelled(&chosen_rows, &multipliers)) {
+    Certificate {
+        smallest_gap: program.rows(x, 0.0, Derivatives::None).iter().map(|r| r.gap).fold(0.0, f64::min),
+        dual_residual: dual_residual(c, &chosen_rows, &multipliers),
+        complementarity: chosen_rows.iter().zip(&multipliers).map(|(r, mu)| (r.gap * mu).abs()).fold(0.0, f64::max),
+        min_multiplier: least(&multipliers),
+        min_curvature: Some(f64::NAN),
+        zero_modes: 0,
+        multipliers: labelled(&chosen_rows, &multipliers),
+    }
+}
+
+/// Adds the curvature's figures to a certificate of the point `x`, unless it has them.
+pub fn measure_curvature<P: Program>(program: &P, x: &P::Point, certificate: &mut Certificate) {
+    if !certificate.min_curvature.is_some_and(f64::is_nan) {
+        return;
+    }
+    let n = program.objective().len();
+    let rows = program.rows(x, BAND, Derivatives::Second(&certificate.multipliers));
+    let (chosen, multipliers): (Vec<&Row>, Vec<f64>) =
+        matched(&rows, &certificate.multipliers).into_iter().map(|(k, mu)| (&rows[k], mu)).unzip();
+    let mut hessian = lagrangian_hessian(n, chosen.iter().copied(), &multipliers);
+    for v in program.hidden_curvature(x, &certificate.multipliers) {
         for i in 0..n {
             for j in 0..n {
                 hessian[(i, j)] -= v[i] * v[j];
             }
         }
     }
-    let (min_curvature, zero_modes) = curvature(n, &hessian, &loaded);
-    Certificate {
-        smallest_gap: program.rows(x, 0.0, Derivatives::None).iter().map(|r| r.gap).fold(0.0, f64::min),
-        dual_residual: dual_residual(c, &chosen_rows, &multipliers),
-        complementarity: chosen_rows.iter().zip(&multipliers).map(|(r, mu)| (r.gap * mu).abs()).fold(0.0, f64::max),
-        min_multiplier: least(&multipliers),
-        min_curvature,
-        zero_modes,
-        multipliers: labelled(&chosen_rows, &multipliers),
-    }
-}
-
-/// Minimum-norm least-squares solution of Σ μ ∇g = −c.
-fn least_squares_multipliers(c: &[f64], rows: &[Row]) -> Vec<f64> {
-    let (n, m) = (c.len(), rows.len());
-    let mut system = Mat::zeros(n + m, n + m);
-    for (k, row) in rows.iter().enumerate() {
-        for (&column, &value) in row.columns.iter().zip(&row.gradient) {
-            system[(n + k, column)] = value;
-            system[(column, n + k)] = value;
-        }
-    }
-    let mut right: Vec<f64> = c.iter().map(|x| -x).collect();
-    right.resize(n + m, 0.0);
-    LeastNorm::new(&system).solve(&right, 1e-11)[n..].to_vec()
+    let loaded: Vec<&Row> =
+        chosen.into_iter().zip(&multipliers).filter(|(_, mu)| **mu > 1e-8).map(|(r, _)| r).collect();
+    (certificate.min_curvature, certificate.zero_modes) = curvature(n, &hessian, &loaded);
 }
 
 /// Least non-zero curvature of `h` on the null space of `loaded`, and the number of its zero modes.

@@ -1,17 +1,20 @@
 //! The Hessian of the model made positive.
 
-use super::{
-    eigen::{block, coupled, least_eigenvalue, symmetric_eigen},
-    rows::Row,
-};
+use super::{cholesky::Cholesky, eigen::least_eigenvalue, rows::Row};
 use faer::Mat;
 
+/// Shares of [`raised`]'s diagonal that are tried one after the other; with the last one the matrix is positive.
+const SHARES: [f64; 6] = [0.0, 0.0625, 0.125, 0.25, 0.5, 1.0];
+
 /// H made positive: first by adding σ Σ ∇g ∇gᵀ / |∇g|² over the loaded rows, which changes nothing on the directions
-/// that keep them, so that the model stays exact there; what is still negative is raised to `floor`.
+/// that keep them, so that the model stays exact there; then by `floor` and, where that is not enough, by a part of
+/// the diagonal that would make H dominant. That part follows the curvature of each unknown, and Cholesky's
+/// factorisation tells when it is enough: far cheaper than eigenvalues.
 pub fn convexified(mut h: Mat<f64>, rows: &[Row], multipliers: &[f64], floor: f64) -> Mat<f64> {
     let n = h.nrows();
-    let Some(least) = least_eigenvalue(&h) else { return Mat::identity(n, n) };
-    let sigma = 2.0 * (floor - least).max(0.0);
+    let off_diagonal = |i: usize| (0..n).filter(|&j| j != i).map(|j| h[(i, j)].abs()).sum::<f64>();
+    let lack: Vec<f64> = (0..n).map(|i| (off_diagonal(i) - h[(i, i)]).max(0.0)).collect();
+    let sigma = 2.0 * (floor - least_eigenvalue(&h)).max(0.0);
     if sigma > 0.0 {
         for (row, _) in rows.iter().zip(multipliers).filter(|(_, mu)| **mu > 1e-6) {
             let square: f64 = row.gradient.iter().map(|a| a * a).sum();
@@ -23,28 +26,28 @@ pub fn convexified(mut h: Mat<f64>, rows: &[Row], multipliers: &[f64], floor: f6
             }
         }
     }
-    raised(h, floor)
+    raised(h, &lack, floor)
 }
 
-/// `h` with its eigenvalues raised to `floor`.
-fn raised(h: Mat<f64>, floor: f64) -> Mat<f64> {
+/// `h` + `floor` + the least share of the diagonal `lack` that makes it positive.
+fn raised(mut h: Mat<f64>, lack: &[f64], floor: f64) -> Mat<f64> {
     let n = h.nrows();
-    let of = coupled(&h);
-    let mut positive = block(&h, &of);
-    let Ok(mut eigen) = symmetric_eigen(&positive) else { return Mat::identity(n, n) };
-    if eigen.values.first().is_some_and(|least| *least < floor) {
-        for (k, value) in eigen.values.iter().enumerate() {
-            let root = value.max(floor).sqrt();
-            eigen.vectors.col_mut(k).iter_mut().for_each(|v| *v *= root);
+    let mut factor = Cholesky::new(n);
+    let mut added = 0.0;
+    for share in SHARES {
+        for (i, lack) in lack.iter().enumerate() {
+            h[(i, i)] += (share - added) * lack;
         }
-        positive = &eigen.vectors * eigen.vectors.transpose();
-    }
-    let mut out = Mat::zeros(n, n);
-    (0..n).for_each(|i| out[(i, i)] = floor);
-    for (q, &j) in of.iter().enumerate() {
-        for (p, &i) in of.iter().enumerate() {
-            out[(i, j)] = positive[(p, q)];
+        added = share;
+        let matrix = factor.matrix_mut();
+        for (column, of) in matrix.chunks_exact_mut(n).zip(h.col_iter()) {
+            column.iter_mut().zip(of.iter()).for_each(|(a, b)| *a = *b);
+        }
+        (0..n).for_each(|i| matrix[i * n + i] += 0.5 * floor);
+        if factor.factor() {
+            break;
         }
     }
-    out
+    (0..n).for_each(|i| h[(i, i)] += floor);
+    h
 }

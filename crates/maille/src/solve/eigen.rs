@@ -44,22 +44,53 @@ pub fn symmetric_eigen(h: &Mat<f64>) -> Result<Eigen, EigenFailure> {
     Ok(Eigen { values, vectors })
 }
 
-/// Least eigenvalue of the symmetric matrix `h`, unchecked; `None` where the decomposition fails.
-pub fn least_eigenvalue(h: &Mat<f64>) -> Option<f64> {
-    let of = coupled(h);
-    if of.is_empty() {
-        return Some(0.0);
-    }
-    let values = block(h, &of).self_adjoint_eigenvalues(Side::Lower).ok()?;
-    // Unknowns that nothing couples have the eigenvalue 0.
-    let zero = (of.len() < h.ncols()).then_some(0.0);
-    values.into_iter().chain(zero).reduce(f64::min).filter(|least| least.is_finite())
-}
+/// Steps of Lanczos's method.
+const LANCZOS_STEPS: usize = 16;
 
-/// Indices of the unknowns that the symmetric matrix `h` couples with anything, themselves included. Elements that carry
-/// nothing have none: decompositions leave them out.
-pub fn coupled(h: &Mat<f64>) -> Vec<usize> {
-    (0..h.ncols()).filter(|&j| h.col(j).iter().any(|v| *v != 0.0)).collect()
+/// About the least eigenvalue of the symmetric matrix `h`, from above: that of h on a Krylov space.
+pub fn least_eigenvalue(h: &Mat<f64>) -> f64 {
+    let n = h.ncols();
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
+    // A start that is orthogonal to no vector in particular.
+    let mut v: Vec<f64> = (0..n).map(|k| (1.0 + k as f64).sin()).collect();
+    let mut before = vec![0.0; n];
+    let (mut norm, mut coupling) = (dot(&v, &v).sqrt(), 0.0);
+    let mut tridiagonal: Vec<(f64, f64)> = Vec::with_capacity(LANCZOS_STEPS);
+    for _ in 0..LANCZOS_STEPS.min(n) {
+        if norm <= 1e-12 {
+            break;
+        }
+        v.iter_mut().for_each(|x| *x /= norm);
+        let mut next: Vec<f64> = before.iter().map(|x| -coupling * x).collect();
+        for (column, &x) in h.col_iter().zip(&v) {
+            if x != 0.0 {
+                next.iter_mut().zip(column.iter()).for_each(|(a, b)| *a += b * x);
+            }
+        }
+        let along = dot(&next, &v);
+        next.iter_mut().zip(&v).for_each(|(a, b)| *a -= along * b);
+        tridiagonal.push((along, coupling));
+        (before, v) = (v, next);
+        norm = dot(&v, &v).sqrt();
+        coupling = norm;
+    }
+    // Bisection by the signs of the pivots of T − x.
+    let size = tridiagonal.iter().map(|(a, b)| a.abs() + 2.0 * b).fold(0.0, f64::max);
+    let (mut low, mut high) = (-size, size);
+    while high - low > 1e-3 * size {
+        let middle = 0.5 * (low + high);
+        let mut pivot = 1.0;
+        let negative = tridiagonal.iter().any(|(a, b)| {
+            pivot = a - middle - b * b / pivot;
+            pivot <= 0.0
+        });
+        if negative {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    low
 }
 
 /// The rows and columns `of` of a matrix.
@@ -89,34 +120,6 @@ impl Eigen {
     }
 }
 
-/// Minimum-norm least-squares solutions of a symmetric system.
-pub(super) struct LeastNorm {
-    /// The unknowns that the system couples; the others are 0.
-    coupled: Vec<usize>,
-    eigen: Option<Eigen>,
-}
-
-impl LeastNorm {
-    pub(super) fn new(system: &Mat<f64>) -> Self {
-        let coupled = coupled(system);
-        let eigen = symmetric_eigen(&block(system, &coupled)).ok();
-        LeastNorm { coupled, eigen }
-    }
-
-    /// The solution where eigenvalues below `cut` times the largest count as zero.
-    pub(super) fn solve(&self, right: &[f64], cut: f64) -> Vec<f64> {
-        let Some(eigen) = &self.eigen else { return vec![f64::NAN; right.len()] };
-        let largest = eigen.values.iter().fold(0.0f64, |a, v| a.max(v.abs()));
-        let mut out = vec![0.0; right.len()];
-        for (k, value) in eigen.values.iter().enumerate().filter(|(_, v)| v.abs() > cut * largest) {
-            let v = || eigen.vectors.col(k).iter().zip(&self.coupled);
-            let along: f64 = v().map(|(v, &i)| v * right[i]).sum::<f64>() / value;
-            v().for_each(|(v, &i)| out[i] += along * v);
-        }
-        out
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -129,7 +132,8 @@ mod tests {
             assert!((value - expected).abs() < 1e-14);
         }
         assert!(symmetric_eigen(&Mat::zeros(0, 0)).unwrap().values.is_empty());
-        assert_eq!(least_eigenvalue(&Mat::zeros(3, 3)), Some(0.0));
+        assert_eq!(least_eigenvalue(&Mat::zeros(3, 3)), 0.0);
+        assert!((least_eigenvalue(&h) - (2.0 - 2f64.sqrt())).abs() < 0.01);
         let nan = Mat::from_fn(2, 2, |_, _| f64::NAN);
         assert!(symmetric_eigen(&nan).is_err());
     }

@@ -3,58 +3,74 @@
 //! Rows can be dependent and elements can rattle, so the equations are solved in the least-squares sense, minimum norm.
 
 use super::{
-    certificate::{BAND, Certificate, GAP_TOLERANCE, certify, labelled, matched},
-    eigen::LeastNorm,
+    certificate::{BAND, Certificate, GAP_TOLERANCE, certify, labelled, matched, measure_curvature},
     rows::{Derivatives, Multiplier, Row, lagrangian_hessian, multiplier_of, violation},
-    sqp::{Program, SqpEnd, elastic_program},
+    saddle,
+    sqp::{Program, SqpEnd, elastic_program, stiff_where_loaded},
 };
-use faer::Mat;
 
 /// The value may fall by this much in that step.
 const MOST_LOSS: f64 = 1e-10;
+/// Shares of the largest multiplier above which a row counts as loaded: with the first, chains that are stretched side by
+/// side all count; with the second, what only touches does not.
+const LOADED: [f64; 2] = [1e-5, 1e-3];
+/// Times that overlaps are cleared in a row.
+const CLEARINGS: usize = 6;
 /// Largest step of the polish in one unknown.
 const MOST_STEP: f64 = 0.05;
-/// Newton on the active rows of `end`, with rows taken in and let go until gaps and multipliers have their signs.
+/// Curvature that is added to hold motions without curvature of their own.
+const HOLDS: [f64; 5] = [1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
+
+/// Newton on the rows of `end` that are loaded, by either measure of that; the better point with its certificate,
+/// whose curvature is measured if all else holds.
 pub fn polish<P: Program>(program: &P, end: &SqpEnd<P::Point>) -> (P::Point, Certificate) {
-    let c = program.objective();
-    let mut x = end.point.clone();
     let most = end.multipliers.iter().map(|m| m.value).fold(0.0, f64::max);
-    let mut active: Vec<Multiplier> = end.multipliers.iter().copied().filter(|m| m.value > 1e-5 * most).collect();
+    let mut best: Option<(P::Point, Certificate)> = None;
+    for share in LOADED {
+        let active = end.multipliers.iter().copied().filter(|m| m.value > share * most).collect();
+        let found = polished(program, end.point.clone(), active);
+        if best.as_ref().is_none_or(|b| found.1.score() < b.1.score()) {
+            best = Some(found);
+        }
+        if best.as_ref().is_some_and(|b| b.1.holds()) {
+            break;
+        }
+    }
+    best.unwrap_or_else(|| {
+        let certificate = certify(program, &end.point, &end.multipliers);
+        (end.point.clone(), certificate)
+    })
+}
+
+/// Newton on the rows `active`, with rows taken in and let go until gaps and multipliers have their signs.
+fn polished<P: Program>(program: &P, mut x: P::Point, mut active: Vec<Multiplier>) -> (P::Point, Certificate) {
     let mut best: Option<(P::Point, Certificate)> = None;
     for _ in 0..12 {
-        let mut rows = program.rows(&x, BAND, Derivatives::Second(&active));
-        for _ in 0..10 {
-            let chosen = matched(&rows, &active);
-            let chosen_rows: Vec<Row> = chosen.iter().map(|(k, _)| rows[*k].clone()).collect();
-            let known: Vec<f64> = chosen.iter().map(|(_, mu)| *mu).collect();
-            let (step, multipliers) = newton_step(&c, &chosen_rows, &known);
-            let size = step.iter().fold(0.0f64, |a, s| a.max(s.abs()));
-            if !size.is_finite() || size > MOST_STEP {
-                break;
-            }
-            active = labelled(&chosen_rows, &multipliers);
-            let guard = program.guard(&x);
-            if size < 1e-15 || program.largest_step(&x, &guard, &step) < 1.0 {
-                break;
-            }
-            x = program.moved(&x, &step);
-            rows = program.rows(&x, BAND, Derivatives::Second(&active));
-            if size < 1e-13 {
-                break;
-            }
-        }
+        newton(program, &mut x, &mut active);
         let mut certificate = certify(program, &x, &active);
-        if certificate.lacks_only_room()
-            && let Some(cleared) = cleared(program, &x)
-        {
+        for _ in 0..CLEARINGS {
+            if !certificate.lacks_only_room() {
+                break;
+            }
+            let Some(cleared) = cleared(program, &x, &active) else { break };
+            let (mut settled, mut carrying) = (cleared.clone(), active.clone());
+            newton(program, &mut settled, &mut carrying);
+            let again = certify(program, &settled, &carrying);
+            if again.smallest_gap > 0.5 * certificate.smallest_gap {
+                (x, active, certificate) = (settled, carrying, again);
+                continue;
+            }
             let again = certify(program, &cleared, &active);
-            if again.holds() && program.value(&cleared) > program.value(&x) - MOST_LOSS {
+            if again.holds_to_first_order() && program.value(&cleared) > program.value(&x) - MOST_LOSS {
                 (x, certificate) = (cleared, again);
             }
+            break;
+        }
+        if certificate.holds_to_first_order() {
+            measure_curvature(program, &x, &mut certificate);
         }
         let done = certificate.holds();
-        let score = |c: &Certificate| (-c.smallest_gap).max(c.dual_residual).max(-c.min_multiplier);
-        if best.as_ref().is_none_or(|b| score(&certificate) < score(&b.1)) {
+        if best.as_ref().is_none_or(|b| certificate.score() < b.1.score()) {
             active = certificate.multipliers.clone();
             best = Some((x.clone(), certificate));
         }
@@ -63,14 +79,13 @@ pub fn polish<P: Program>(program: &P, end: &SqpEnd<P::Point>) -> (P::Point, Cer
         }
         // Take in what is violated, or let the most negative multiplier go.
         let before = active.len();
-        let violated: Vec<&Row> =
-            rows.iter().filter(|r| r.gap < -GAP_TOLERANCE && multiplier_of(r, &active) == 0.0).collect();
-        active.extend(violated.iter().map(|r| Multiplier {
-            key: r.key,
-            angle: r.angle,
-            minimum: r.minimum,
-            value: 1e-300,
-        }));
+        let rows = program.rows(&x, BAND, Derivatives::None);
+        let violated = rows.iter().filter(|r| r.gap < -GAP_TOLERANCE && multiplier_of(r, &active) == 0.0);
+        active.extend(
+            violated
+                .map(|r| Multiplier { key: r.key, angle: r.angle, minimum: r.minimum, value: 1e-300 })
+                .collect::<Vec<_>>(),
+        );
         if active.len() == before {
             match active.iter().enumerate().min_by(|a, b| a.1.value.total_cmp(&b.1.value)) {
                 Some((k, m)) if m.value < 0.0 => drop(active.swap_remove(k)),
@@ -78,55 +93,64 @@ pub fn polish<P: Program>(program: &P, end: &SqpEnd<P::Point>) -> (P::Point, Cer
             }
         }
     }
-    best.unwrap_or_else(|| (end.point.clone(), certify(program, &end.point, &end.multipliers)))
+    best.unwrap_or_else(|| {
+        let certificate = certify(program, &x, &active);
+        (x, certificate)
+    })
+}
+
+/// Newton's method on the rows `active`, whose multipliers it improves; `x` moves while steps stay small.
+fn newton<P: Program>(program: &P, x: &mut P::Point, active: &mut Vec<Multiplier>) {
+    let c = program.objective();
+    let mut last = f64::INFINITY;
+    for _ in 0..10 {
+        let rows = program.rows(x, BAND, Derivatives::Second(active));
+        let chosen = matched(&rows, active);
+        let chosen_rows: Vec<Row> = chosen.iter().map(|(k, _)| rows[*k].clone()).collect();
+        let known: Vec<f64> = chosen.iter().map(|(_, mu)| *mu).collect();
+        let Some((step, multipliers)) = newton_step(&c, &chosen_rows, &known) else { break };
+        let size = step.iter().fold(0.0f64, |a, s| a.max(s.abs()));
+        *active = labelled(&chosen_rows, &multipliers);
+        if size < 1e-15 || program.largest_step(x, &program.guard(x), &step) < 1.0 {
+            break;
+        }
+        *x = program.moved(x, &step);
+        // After a quadratic step of this size only rounding moves on.
+        if size < 1e-13 || size < 1e-9 && size > 0.1 * last {
+            break;
+        }
+        last = size;
+    }
 }
 
 /// `x` moved by the smallest step that clears its overlaps, in units of the worst of them, where rounding does not count.
 ///
-/// A ring that rattles often touches at the limit and carries nothing. Its row is not among the active ones, and its
-/// overlap, of the second order in Newton's step, goes away as fast as the ring can give way: by less than 1e-8.
-fn cleared<P: Program>(program: &P, x: &P::Point) -> Option<P::Point> {
+/// A ring that rattles often touches at the limit and carries nothing. Its row is not among the active ones, so that
+/// Newton's step leaves an overlap there. It goes away as far as the ring can give way; what carries stays nearly.
+fn cleared<P: Program>(program: &P, x: &P::Point, active: &[Multiplier]) -> Option<P::Point> {
     const MOST: f64 = 1e3;
-    let mut rows = program.rows(x, BAND, Derivatives::First);
-    let worst = violation(&rows);
+    let worst = violation(&program.rows(x, 0.0, Derivatives::None));
+    let mut rows = program.rows(x, BAND + 4.0 * worst, Derivatives::First);
+    let n = program.objective().len();
+    let loads: Vec<f64> = rows.iter().map(|row| multiplier_of(row, active)).collect();
+    let metric = stiff_where_loaded(n, &rows, &loads);
+    let most = MOST.min(MOST_STEP / worst);
     rows.retain_mut(|row| {
         row.gap /= worst;
-        row.gap < 10.0 * MOST
+        row.gap < 10.0 * most
     });
-    let n = program.objective().len();
-    let (step, _, _) = elastic_program(&rows, &Mat::identity(n, n), &vec![0.0; n], 1e2 * MOST, MOST);
+    let (step, _, _) = elastic_program(&rows, &metric, &vec![0.0; n], 1e2 * MOST, most);
     let step: Vec<f64> = step.iter().map(|d| d * worst).collect();
     let allowed = program.largest_step(x, &program.guard(x), &step) >= 1.0;
     allowed.then(|| program.moved(x, &step))
 }
 
-/// d and μ of [H −Aᵀ; A 0][d; μ] = [c; −g], minimum norm; H = −Σ μ ∇²g with the known multipliers.
-fn newton_step(c: &[f64], rows: &[Row], known: &[f64]) -> (Vec<f64>, Vec<f64>) {
-    let (n, m) = (c.len(), rows.len());
-    let h = lagrangian_hessian(n, rows, known);
-    // Symmetric with −μ as the unknown.
-    let mut system = Mat::zeros(n + m, n + m);
-    for i in 0..n {
-        for j in 0..n {
-            system[(i, j)] = 0.5 * (h[(i, j)] + h[(j, i)]);
-        }
-    }
-    let mut right = c.to_vec();
-    for (k, row) in rows.iter().enumerate() {
-        for (&column, &value) in row.columns.iter().zip(&row.gradient) {
-            system[(n + k, column)] = value;
-            system[(column, n + k)] = value;
-        }
-        right.push(-row.gap);
-    }
-    // Motions that hardly matter get huge steps from tiny residuals: leave out as many as it takes.
-    let system = LeastNorm::new(&system);
-    let mut solution = vec![f64::NAN; n + m];
-    for cut in [1e-10, 1e-8, 1e-6, 1e-5, 1e-4, 1e-3] {
-        solution = system.solve(&right, cut);
-        if solution[..n].iter().all(|d| d.abs() <= MOST_STEP) {
-            break;
-        }
-    }
-    (solution[..n].to_vec(), solution[n..].iter().map(|x| -x).collect())
+/// Step and multipliers of Newton's method on c + Σ μ ∇g = 0, g = 0 with the known multipliers in H = −Σ μ ∇²g.
+fn newton_step(c: &[f64], rows: &[Row], known: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
+    let h = lagrangian_hessian(c.len(), rows, known);
+    // Motions that hardly matter get huge steps from tiny residuals: hold them as much as it takes.
+    HOLDS
+        .iter()
+        .filter_map(|&hold| saddle::solve(&h, rows, c, hold))
+        .find(|(step, _)| step.iter().all(|d| d.abs() <= MOST_STEP))
 }

@@ -78,9 +78,9 @@ pub fn multiplier_at(key: u64, angle: f64, minimum: bool, known: &[Multiplier]) 
 }
 
 /// −Σ μ ∇²g over all unknowns; the rows with μ ≠ 0 must have Hessians.
-pub fn lagrangian_hessian(n: usize, rows: &[Row], multipliers: &[f64]) -> Mat<f64> {
+pub fn lagrangian_hessian<'r>(n: usize, rows: impl IntoIterator<Item = &'r Row>, multipliers: &[f64]) -> Mat<f64> {
     let mut h = Mat::zeros(n, n);
-    for (row, mu) in rows.iter().zip(multipliers).filter(|(_, mu)| **mu != 0.0) {
+    for (row, mu) in rows.into_iter().zip(multipliers).filter(|(_, mu)| **mu != 0.0) {
         let k = row.columns.len();
         assert_eq!(row.hessian.len(), k * k, "a loaded row without its Hessian");
         for (p, &i) in row.columns.iter().enumerate() {

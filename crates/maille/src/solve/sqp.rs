@@ -51,7 +51,7 @@ pub struct SqpOptions {
     pub tolerance: f64,
     /// Stop as soon as the violation is below 1e-13 and the value above this.
     pub enough: f64,
-    /// Pause when a full step is shorter than this and promises less than a thousandth of it: time to try the polish.
+    /// Pause when a full step is shorter than this and promises less than a hundredth of it: time to try the polish.
     pub pause_at: f64,
 }
 
@@ -86,6 +86,24 @@ pub struct SqpEnd<P> {
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+fn times(h: &Mat<f64>, x: &[f64]) -> Vec<f64> {
+    let mut out = vec![0.0; x.len()];
+    for (column, &x) in h.col_iter().zip(x) {
+        out.iter_mut().zip(column.iter()).for_each(|(a, b)| *a += b * x);
+    }
+    out
+}
+
+/// A metric for corrections: what carries nothing gives way first.
+pub(super) fn stiff_where_loaded(n: usize, rows: &[Row], multipliers: &[f64]) -> Mat<f64> {
+    let mut metric = Mat::zeros(n, n);
+    (0..n).for_each(|i| metric[(i, i)] = 0.01);
+    for (row, _) in rows.iter().zip(multipliers).filter(|(_, mu)| **mu > 1e-6) {
+        row.columns.iter().for_each(|&i| metric[(i, i)] = 1.0);
+    }
+    metric
 }
 
 /// Solves min ½ dᵀ H d + linear·d + weight · t under gap + ∇g·d + t ≥ 0, t ≥ 0, |d| ≤ radius: the step d, the rows'
@@ -126,11 +144,16 @@ pub(super) fn elastic_program(
     reached.iter().zip(&solution.multipliers).for_each(|(&k, mu)| multipliers[k] = *mu);
     (solution.x[..n].to_vec(), multipliers, solution.x[n].max(0.0))
 }
+/// A correction reaches at most this many times the violation that it corrects.
+const FURTHEST: f64 = 100.0;
 /// Least curvature of the convexified model: it follows the step's size between these. Far from the limit it keeps
 /// free motions from being spent on tiny gains (which would carry contacts to the edge where their minima merge).
 const LEAST_FLOOR: f64 = 1e-4;
 /// See [`LEAST_FLOOR`].
 const MOST_FLOOR: f64 = 0.1;
+/// With more unknowns than these both shrink: the same strain then moves more of them, and the
+/// curvature of the limit is spread over all.
+const FEW: f64 = 20.0;
 
 /// Maximises `program` from `start`; `known` are multipliers of an earlier iteration, if there was one.
 pub fn maximize<P: Program>(
@@ -146,7 +169,8 @@ pub fn maximize<P: Program>(
     let mut radius = options.first_radius;
     let mut penalty = options.penalty;
     let band = |radius: f64| 0.1 + 2.0 * radius;
-    let mut floor = MOST_FLOOR;
+    let share = (FEW / n as f64).min(1.0);
+    let mut floor = share * MOST_FLOOR;
     let mut end = SqpEnd { point: start, multipliers: known, iterations: 0, settled: false, violation: f64::INFINITY };
     let mut reach = band(radius);
     let mut rows = program.rows(&end.point, reach, Derivatives::Second(&end.multipliers));
@@ -167,13 +191,13 @@ pub fn maximize<P: Program>(
         let size = step.iter().fold(0.0f64, |a, s| a.max(s.abs()));
         let promised = dot(&c, &step) + penalty * (end.violation - left);
         end.multipliers = keep(&multipliers);
-        floor = size.clamp(LEAST_FLOOR, MOST_FLOOR);
+        floor = share * size.clamp(LEAST_FLOOR, MOST_FLOOR);
         penalty = penalty.max(2.0 * multipliers.iter().sum::<f64>().min(1e4));
         if promised < options.tolerance || size < 1e-12 {
             end.settled = true;
             break;
         }
-        if size < options.pause_at && promised < 1e-3 * options.pause_at {
+        if size < options.pause_at && promised < 1e-2 * options.pause_at {
             break;
         }
         let guard = program.guard(&end.point);
@@ -187,10 +211,15 @@ pub fn maximize<P: Program>(
         let mut trial = program.moved(&end.point, &step);
         let (mut reached, mut worst) = judge(&trial);
         let wanted = promised * fraction;
+        let bent = times(&h, &step);
+        // What the curved rows take away again, by the model.
+        let expected = wanted - 0.5 * dot(&bent, &step);
         if merit - reached < 0.5 * wanted && worst > 0.0 {
             let there = program.rows(&trial, band(radius).min(0.2), Derivatives::First);
             let none = vec![0.0; n];
-            let (correction, _, _) = elastic_program(&there, &Mat::identity(n, n), &none, 1e3 * radius, radius);
+            let metric = stiff_where_loaded(n, &rows, &multipliers);
+            let (correction, _, _) =
+                elastic_program(&there, &metric, &none, 1e3 * radius, radius.min(FURTHEST * worst));
             let guard = program.guard(&trial);
             let fraction = program.largest_step(&trial, &guard, &correction);
             let correction: Vec<f64> = correction.iter().map(|s| s * fraction).collect();
@@ -200,7 +229,7 @@ pub fn maximize<P: Program>(
                 (trial, reached, worst) = (corrected, better, left);
             }
         }
-        let ratio = (merit - reached) / wanted;
+        let ratio = (merit - reached) / expected.max(0.1 * wanted);
         if ratio > 0.05 || (promised < 1e-9 && merit - reached > -1e-14) {
             end.point = trial;
             end.violation = worst;

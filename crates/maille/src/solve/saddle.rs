@@ -1,0 +1,113 @@
+//! Optimality conditions of equality-constrained quadratic programs, where rows may be dependent and motions may have no
+//! curvature: the solution of least norm.
+//!
+//! Proximal method of multipliers: [H + δ₁ −Aᵀ; A δ₂] is solved again and again for what is left of the right-hand side.
+//! Each time a motion of curvature λ keeps δ₁/(λ + δ₁) of its error; what neither H nor A sees is never moved, and
+//! multipliers stay combinations of the rows. One Cholesky factorisation of H + δ₁ + AᵀA/δ₂ serves all.
+
+use super::{cholesky::Cholesky, rows::Row};
+use faer::Mat;
+
+/// δ₂.
+const DUAL: f64 = 1e-6;
+/// Repetitions at most.
+const REPETITIONS: usize = 12;
+
+/// A d for rows A.
+fn along(rows: &[Row], d: &[f64]) -> Vec<f64> {
+    let dot = |row: &Row| row.columns.iter().zip(&row.gradient).map(|(&i, a)| a * d[i]).sum();
+    rows.iter().map(dot).collect()
+}
+
+/// out += Aᵀ mu.
+pub(super) fn add_combination(rows: &[Row], mu: &[f64], out: &mut [f64]) {
+    for (row, mu) in rows.iter().zip(mu) {
+        row.columns.iter().zip(&row.gradient).for_each(|(&i, a)| out[i] += a * mu);
+    }
+}
+
+fn largest(v: &[f64]) -> f64 {
+    v.iter().fold(0.0f64, |a, x| a.max(x.abs()))
+}
+
+/// d and μ with H d − Aᵀ μ = c and A d = −gap, least norm; `None` where H + `primal` is not positive on the motions that
+/// keep the rows. `primal` is δ₁.
+pub(super) fn solve(h: &Mat<f64>, rows: &[Row], c: &[f64], primal: f64) -> Option<(Vec<f64>, Vec<f64>)> {
+    let (n, m) = (c.len(), rows.len());
+    let mut system = Cholesky::new(n);
+    let matrix = system.matrix_mut();
+    for (column, of) in matrix.chunks_exact_mut(n).zip(h.col_iter()) {
+        column.iter_mut().zip(of.iter()).for_each(|(a, b)| *a = *b);
+    }
+    for row in rows {
+        for (&j, &b) in row.columns.iter().zip(&row.gradient) {
+            for (&i, &a) in row.columns.iter().zip(&row.gradient) {
+                matrix[j * n + i] += a * b / DUAL;
+            }
+        }
+    }
+    (0..n).for_each(|i| matrix[i * n + i] += primal);
+    if !system.factor() {
+        return None;
+    }
+    let (mut d, mut mu) = (vec![0.0; n], vec![0.0; m]);
+    let mut last = f64::INFINITY;
+    for _ in 0..REPETITIONS {
+        // What is left: p = c − H d + Aᵀ μ, q = −gap − A d.
+        let mut left = c.to_vec();
+        for (column, &x) in h.col_iter().zip(&d) {
+            if x != 0.0 {
+                left.iter_mut().zip(column.iter()).for_each(|(a, b)| *a -= b * x);
+            }
+        }
+        add_combination(rows, &mu, &mut left);
+        let short: Vec<f64> = along(rows, &d).iter().zip(rows).map(|(a, row)| -row.gap - a).collect();
+        let size = largest(&left).max(largest(&short));
+        if size < 1e-16 || size > 0.5 * last {
+            break;
+        }
+        last = size;
+        // (H + δ₁) Δd − Aᵀ Δμ = p, A Δd + δ₂ Δμ = q.
+        let push: Vec<f64> = short.iter().map(|q| q / DUAL).collect();
+        add_combination(rows, &push, &mut left);
+        system.solve(&mut left);
+        let reached = along(rows, &left);
+        for k in 0..m {
+            mu[k] += push[k] - reached[k] / DUAL;
+        }
+        d.iter_mut().zip(&left).for_each(|(d, step)| *d += step);
+    }
+    Some((d, mu))
+}
+
+/// μ of least norm among those with the least |c + Aᵀ μ|: the same method on A Aᵀ.
+pub(super) fn least_squares_multipliers(c: &[f64], rows: &[Row]) -> Vec<f64> {
+    let (n, m) = (c.len(), rows.len());
+    let mut system = Cholesky::new(m);
+    let matrix = system.matrix_mut();
+    let mut dense = vec![0.0; n];
+    for (k, row) in rows.iter().enumerate() {
+        row.columns.iter().zip(&row.gradient).for_each(|(&i, a)| dense[i] += a);
+        matrix[k * m..(k + 1) * m].copy_from_slice(&along(rows, &dense));
+        row.columns.iter().for_each(|&i| dense[i] = 0.0);
+        matrix[k * m + k] += 1e-9;
+    }
+    let mut mu = vec![0.0; m];
+    if !system.factor() {
+        return vec![f64::NAN; m];
+    }
+    let mut last = f64::INFINITY;
+    for _ in 0..REPETITIONS {
+        let mut left = c.to_vec();
+        add_combination(rows, &mu, &mut left);
+        let mut step: Vec<f64> = along(rows, &left).iter().map(|x| -x).collect();
+        let size = largest(&step);
+        if size < 1e-17 || size > 0.5 * last {
+            break;
+        }
+        last = size;
+        system.solve(&mut step);
+        mu.iter_mut().zip(&step).for_each(|(mu, step)| *mu += step);
+    }
+    mu
+}
