@@ -24,7 +24,7 @@ impl SheetProgram<'_> {
         for pair in topology::close_pairs(model, state, 0.0) {
             let a = state.circle(model, pair.ring_a, [0, 0]);
             let b = state.circle(model, pair.ring_b, pair.shift);
-            let touching = model.contact_distance(pair.ring_a, pair.ring_b);
+            let touching = self.required(x, model.contact_distance(pair.ring_a, pair.ring_b));
             let between = b.center - a.center;
             let height = between.dot(&a.normal);
             let apart = (between - a.normal.into_inner() * height).norm();
@@ -58,7 +58,7 @@ impl SheetProgram<'_> {
             if force < 1e-9 {
                 continue;
             }
-            let weight = (force * model.contact_distance(pair.ring_a, pair.ring_b)).sqrt();
+            let weight = (force * self.required(x, model.contact_distance(pair.ring_a, pair.ring_b))).sqrt();
             let map = self.pair_map(&pair, &self.all_turns(state));
             let mut term = vec![0.0; n];
             for (&column, motion) in map.columns.iter().zip(&map.motions) {

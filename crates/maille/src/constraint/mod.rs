@@ -1,8 +1,9 @@
-//! The sheet as a constrained program: maximise one strain parameter over poses, every gap non-negative.
+//! The sheet as a constrained program: maximise one parameter over poses, every gap non-negative.
 //!
 //! Unknowns of a step: a translation and a turn for every element (the first element's translation is fixed, because
 //! a common translation changes nothing; the turn of a single ring about its own axis is left out for the same
-//! reason), then the free strain parameters p. The lattice is affine in p: a_k = base_k + Σ p_m rate_mk.
+//! reason), then the free parameters p. The lattice is affine in p: a_k = base_k + Σ p_m rate_mk. So is the core distance
+//! s that two rings must keep: s = (r_a + r_b)(1 + Σ p_m thicken_m) + Σ p_m widen_m.
 
 mod flat;
 mod pair;
@@ -24,15 +25,26 @@ use crate::{
 use maille_geometry::{Vec3, point_circle_distance};
 use std::{cell::OnceCell, collections::BTreeSet, rc::Rc};
 
-/// One free strain parameter: how fast it moves the lattice vectors, and its weight in the objective.
-#[derive(Clone, Debug)]
+/// One free parameter: how fast it moves the lattice vectors or thickens the wire, and its weight in the objective.
+#[derive(Clone, Debug, Default)]
 pub struct Parameter {
     /// Rates of a1 and a2.
     pub rate: [Vec3; 2],
+    /// Growth of all minor radii, as a share of them.
+    pub thicken: f64,
+    /// Growth of the gap that all rings must keep.
+    pub widen: f64,
     /// Weight in the maximised sum.
     pub weight: f64,
     /// The parameter may not exceed this.
     pub most: Option<f64>,
+}
+
+impl Parameter {
+    /// Rate of the distance that rings which touch at `touching` must keep.
+    fn keeps(&self, touching: f64) -> f64 {
+        self.thicken * touching + self.widen
+    }
 }
 
 /// A family of lattices, and what of it is maximised.
@@ -128,6 +140,12 @@ impl<'a> SheetProgram<'a> {
             .collect()
     }
 
+    /// The core distance that rings which touch at `touching` must keep at `x`.
+    fn required(&self, x: &Posed, touching: f64) -> f64 {
+        let parameters = self.pull.parameters.iter().zip(&x.p);
+        touching + parameters.map(|(parameter, p)| p * parameter.keeps(touching)).sum::<f64>()
+    }
+
     /// The near pairs of `x`.
     fn near<'x>(&self, x: &'x Posed) -> &'x Rc<[NearPair]> {
         let margin = (MARGIN * self.model.largest_radius).max(WIDEST_BAND);
@@ -185,11 +203,12 @@ impl Program for SheetProgram<'_> {
     fn rows(&self, x: &Posed, band: f64, derivatives: Derivatives<'_>) -> Vec<Row> {
         let mut rows = self.bound_rows(x);
         let near = self.near(x);
-        let within = near.iter().filter(|near| near.within(band));
+        let required = |near: &NearPair| self.required(x, near.touching);
+        let within = near.iter().filter(|near| near.within(band + required(near) - near.touching));
         if matches!(derivatives, Derivatives::None) {
             for near in within {
                 let key = pair_key(&near.pair);
-                rows.extend(near.minima().iter().map(|m| Row::value(key, m.angle_b_rad, m.distance - near.touching)));
+                rows.extend(near.minima().iter().map(|m| Row::value(key, m.angle_b_rad, m.distance - required(near))));
             }
             return rows;
         }

@@ -72,7 +72,7 @@ impl SheetProgram<'_> {
         }
         for (m, parameter) in self.pull.parameters.iter().enumerate() {
             let rate = parameter.rate[0] * f64::from(pair.shift[0]) + parameter.rate[1] * f64::from(pair.shift[1]);
-            if rate != Vec3::zeros() {
+            if rate != Vec3::zeros() || parameter.keeps(1.0) != 0.0 {
                 map.add(self.first_parameter + m, 0, &rate, 1.0);
             }
         }
@@ -107,6 +107,16 @@ impl SheetProgram<'_> {
         let reference_b = state.poses[self.model.rings[pair.ring_b].element].position + state.translation(pair.shift);
         let frame = PairFrame::new(&near.a, &reference_a, &near.b, &reference_b);
         let map = self.pair_map(pair, turns);
+        let required = self.required(x, near.touching);
+        let gradient = |grad: &Grad| {
+            let mut out = map.gradient(grad);
+            for (entry, column) in
+                out.iter_mut().zip(&map.columns).filter(|(_, column)| **column >= self.first_parameter)
+            {
+                *entry -= self.pull.parameters[column - self.first_parameter].keeps(near.touching);
+            }
+            out
+        };
         let loaded = |angle: f64, minimum: bool| match derivatives {
             Derivatives::Second(multipliers) => multiplier_at(key, angle, minimum, multipliers) != 0.0,
             _ => false,
@@ -115,9 +125,9 @@ impl SheetProgram<'_> {
             rows.push(Row {
                 minimum,
                 columns: map.columns.clone(),
-                gradient: map.gradient(grad),
+                gradient: gradient(grad),
                 hessian: hess.map_or_else(Vec::new, |h| map.hessian(h)),
-                ..Row::value(key, angle, distance - near.touching)
+                ..Row::value(key, angle, distance - required)
             });
         };
         if self.flat.contains(&key) {
@@ -130,7 +140,7 @@ impl SheetProgram<'_> {
             }
             return;
         }
-        for m in near.minima().iter().filter(|m| m.distance - near.touching <= band) {
+        for m in near.minima().iter().filter(|m| m.distance - required <= band) {
             let (_, grad) = frame.distance_gradient(m.angle_b_rad);
             let hess = loaded(m.angle_b_rad, true).then(|| {
                 let root = frame.jet(m.angle_b_rad);
@@ -139,7 +149,7 @@ impl SheetProgram<'_> {
             add(m.angle_b_rad, true, m.distance, &grad, hess.as_ref());
             let [[aa, ab], [_, bb]] = m.hessian;
             let least = 0.5 * (aa + bb) - (0.5 * (aa - bb)).hypot(ab);
-            if least < FLAT && m.distance - near.touching < NEAR {
+            if least < FLAT && m.distance - required < NEAR {
                 for offset in BESIDE_RAD {
                     let angle = m.angle_b_rad + offset;
                     let (distance, grad) = frame.distance_gradient(angle);

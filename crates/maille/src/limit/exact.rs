@@ -5,28 +5,25 @@
 //! crossed on the way, and no small motion raises l1, to second order. What it does not claim: that no distant state
 //! is better (only an attained bound proves that), nor that a path without overlap leads there from the start.
 
-use super::{ExactFigures, LimitOutcome};
+use super::{
+    ExactFigures, LimitOutcome,
+    climb::{ROUNDS, Solve, climb, shaken_from},
+};
 use crate::{
     bound::{Bound, ChainBound, ImageBound, LinkBound, NearImages, best_bound},
-    constraint::{Contact, Parameter, Posed, Pull, SheetProgram},
+    constraint::{Parameter, Pull, SheetProgram},
     energy::target::target_gradient,
     lattice::direction,
     model::Model,
     record::Status,
     solve::{
-        certificate::{Certificate, GAP_TOLERANCE, RESIDUAL_TOLERANCE, measure_curvature},
-        kkt::polish,
-        rows::{Derivatives, Multiplier, violation},
-        sqp::{Program, SqpOptions, maximize},
+        certificate::{GAP_TOLERANCE, RESIDUAL_TOLERANCE},
+        sqp::{SqpOptions, maximize},
     },
     state::{Pose, State},
-    topology::{
-        self,
-        crossing::{Motion, StepBound},
-    },
 };
 use maille_geometry::Vec3;
-use rand::{RngExt, SeedableRng};
+use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 use std::{
@@ -102,8 +99,6 @@ const SHAKES: [f64; 6] = [0.03, 0.1, 0.3, 0.05, 0.2, 0.02];
 const KICKS: usize = 6;
 /// The same in larger cells, where a solve is costly.
 const LARGER_CELL_KICKS: usize = 1;
-/// Rounds of maximising and polishing between kicks.
-const ROUNDS: usize = 10;
 /// A force between an element and its own image above this (per unit pull) calls for a larger cell.
 const OWN_IMAGE_FORCE: f64 = 1e-6;
 /// Further starts where none reached the wanted l2.
@@ -121,15 +116,6 @@ pub struct ExactMethod<'a> {
     link: LinkBound,
     /// Found where a limit is not reached.
     image: OnceLock<ImageBound>,
-}
-
-/// A solve from one start.
-struct Solve {
-    x: Posed,
-    certificate: Certificate,
-    contacts: Vec<Contact>,
-    links_ok: bool,
-    certified: bool,
 }
 
 /// The lattice family of one pull, with F = (1 + l1) D Dᵀ + (1 + l2) D⊥ D⊥ᵀ.
@@ -156,15 +142,16 @@ impl Family {
 
     /// l2 held, l1 maximised.
     fn pull(&self, l2: f64) -> Pull {
-        let l1 = Parameter { rate: self.rates(false), weight: 1.0, most: None };
+        let l1 = Parameter { rate: self.rates(false), weight: 1.0, ..Parameter::default() };
         Pull { base: self.lattice(0.0, l2), parameters: vec![l1] }
     }
 
     /// From l2 = `from` towards `to`, l1 free.
     fn approach(&self, from: f64, to: f64) -> Pull {
         let sign = (to - from).signum();
-        let l1 = Parameter { rate: self.rates(false), weight: 0.0, most: None };
-        let l2 = Parameter { rate: self.rates(true).map(|v| v * sign), weight: 1.0, most: Some((to - from).abs()) };
+        let l1 = Parameter { rate: self.rates(false), ..Parameter::default() };
+        let most = Some((to - from).abs());
+        let l2 = Parameter { rate: self.rates(true).map(|v| v * sign), weight: 1.0, most, ..Parameter::default() };
         Pull { base: self.lattice(0.0, from), parameters: vec![l1, l2] }
     }
 }
@@ -464,20 +451,6 @@ fn tiled(model: &Model, state: &State) -> State {
     State { poses: poses.collect(), a1, a2 }
 }
 
-/// `state` with its elements moved and turned by up to `size`, less where circles could meet.
-fn shaken_from(model: &Model, state: &State, size: f64, rng: &mut ChaCha8Rng) -> State {
-    let mut vector = || Vec3::from_fn(|_, _| size * rng.random_range(-1.0..1.0));
-    let elements = state.poses.iter().map(|_| (vector(), vector())).collect();
-    let motion = Motion { elements, lattice: [Vec3::zeros(); 2] };
-    let fraction = StepBound::new(model, state).largest_fraction(model, &motion, f64::INFINITY);
-    let moved = state
-        .poses
-        .iter()
-        .zip(&motion.elements)
-        .map(|(p, (shift, turn))| p.moved(&(shift * fraction), &(turn * fraction)));
-    State { poses: moved.collect(), ..state.clone() }
-}
-
 struct Search<'a> {
     model: &'a Model,
     seed: u64,
@@ -509,67 +482,11 @@ impl Search<'_> {
         }
         let pull = self.family.pull(self.l2);
         let mut program = SheetProgram::new(model, &pull);
-        let mut x = program.posed(at.state, vec![at.l1]);
+        let x = program.posed(at.state, vec![at.l1]);
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed ^ self.runs);
-        let mut best: Option<Solve> = None;
         let kicks = if model.cell.copies() > 1 { LARGER_CELL_KICKS } else { KICKS };
-        for kick in 0..=kicks {
-            if kick > 0 {
-                let size = 0.003 * kick as f64;
-                x = program.posed(shaken_from(model, &x.state, size, &mut rng), x.p.clone());
-            }
-            let (end, solve) = self.climb(&mut program, x);
-            if solve.certified {
-                return Some(solve);
-            }
-            x = end;
-            if best.as_ref().is_none_or(|b| solve.x.p[0] > b.x.p[0]) && feasible(&program, &solve.x) {
-                best = Some(solve);
-            }
-            if self.cancel.load(Ordering::Relaxed) {
-                break;
-            }
-        }
-        best
+        let found = climb(model, &mut program, x, kicks, &mut rng, self.cancel);
+        self.iterations += found.iterations;
+        found.best
     }
-
-    /// Maximises and polishes in turns, until a certificate holds or nothing more is promised.
-    fn climb(&mut self, program: &mut SheetProgram<'_>, start: Posed) -> (Posed, Solve) {
-        let mut x = start;
-        let mut known: Vec<Multiplier> = Vec::new();
-        let (mut pause_at, mut first_radius) = (0.1, 0.1);
-        let mut last = None;
-        for round in 0..ROUNDS {
-            let options = SqpOptions { pause_at, first_radius, ..SqpOptions::default() };
-            let end = maximize(program, x, known, &options, self.cancel);
-            self.iterations += end.iterations as u64;
-            let (polished, certificate) = polish(program, &end);
-            let links_ok = topology::links_kept(self.model, &polished.state);
-            let certified = certificate.holds() && links_ok;
-            let contacts = program.contacts(&polished, &certificate.multipliers);
-            let solve = Solve { x: polished, certificate, contacts, links_ok, certified };
-            (x, known) = (end.point, end.multipliers);
-            last = Some(solve);
-            if certified {
-                break;
-            }
-            if program.take_flat_pairs(&x) {
-                known.clear();
-                (pause_at, first_radius) = (1e-2, 0.03);
-                continue;
-            }
-            if end.settled && round > 0 {
-                break;
-            }
-            pause_at *= 0.2;
-            first_radius = (10.0 * pause_at).clamp(1e-3, 0.1);
-        }
-        let mut solve: Solve = last.unwrap_or_else(|| unreachable!("at least one round"));
-        measure_curvature(program, &solve.x, &mut solve.certificate);
-        (x, solve)
-    }
-}
-
-fn feasible(program: &SheetProgram<'_>, x: &Posed) -> bool {
-    violation(&program.rows(x, 0.0, Derivatives::None)) < 1e-9
 }

@@ -1,7 +1,9 @@
-//! The limit of one pull, by the thesis's energy method or by the exact one.
+//! The limit of one pull, by the thesis's energy method or by the exact one; and extremes that are no pulls.
 
+mod climb;
 pub mod energy;
 pub mod exact;
+pub mod extreme;
 
 use crate::{
     bound::{BindingChain, BoundKind},
