@@ -9,6 +9,7 @@ mod designs;
 mod docs;
 mod exit;
 mod export;
+mod extreme;
 mod input;
 mod inspect;
 mod interrupt;
@@ -46,6 +47,7 @@ Examples:
   maille replay maille-out/1.3            solve the rows without a limit again
   maille sweep radius.toml                many designs, radii and spacings
   maille reproduce --quick                chapter 6 of the thesis, computed anew
+  maille tightest european-4-in-1         the thickest wire
   maille simulate 1.1 --fix left --pull right=5,0,0    a finite sheet
   maille new shirt --weave european-4-in-1 --wire 16swg --id 5/16in
   maille check my-weave.toml              is the file right, do rings overlap?
@@ -74,6 +76,8 @@ enum Command {
     Designs(designs::Args),
     Replay(replay::Args),
     Sweep(sweep::Args),
+    Tightest(extreme::TightestArgs),
+    Roomiest(extreme::RoomiestArgs),
     Reproduce(reproduce::Args),
     Simulate(Box<simulate::Args>),
     Export(export::Args),
@@ -96,6 +100,8 @@ fn main() -> ExitCode {
         Command::New(args) => done(new::run(&args)),
         Command::Replay(args) => replay::run(&args),
         Command::Sweep(args) => sweep::run(&args),
+        Command::Tightest(args) => extreme::tightest(&args),
+        Command::Roomiest(args) => extreme::roomiest(&args),
         Command::Reproduce(args) => reproduce::run(&args),
         Command::Simulate(args) => simulate::run(&args),
         Command::Designs(args) => done(designs::run(&args)),

@@ -1,6 +1,6 @@
 //! The state: all that changes. Poses of the elements and the deformed lattice.
 
-use crate::{lattice::Shift, model::Model};
+use crate::{design::Design, lattice::Shift, model::Model};
 use maille_geometry::{Circle, Vec3};
 use nalgebra::{Matrix2, Unit, UnitQuaternion};
 
@@ -60,5 +60,20 @@ impl State {
     pub fn deformation_gradient(&self, model: &Model) -> Matrix2<f64> {
         let deformed = Matrix2::new(self.a1.x, self.a2.x, self.a1.y, self.a2.y);
         deformed * model.reference_inverse
+    }
+
+    /// `design` as it stands in this state of its own cell: centres, normals, offsets and lattice in the design's unit.
+    pub fn design(&self, design: &Design, model: &Model) -> Design {
+        let mut out = design.clone();
+        out.lattice.a1 = (self.a1 * model.unit).into();
+        out.lattice.a2 = (self.a2 * model.unit).into();
+        for (element, pose) in out.elements.iter_mut().zip(&self.poses) {
+            element.center = (pose.position * model.unit).into();
+            for ring in &mut element.rings {
+                ring.normal = (pose.rotation * Vec3::from(ring.normal)).into();
+                ring.offset = (pose.rotation * Vec3::from(ring.offset)).into();
+            }
+        }
+        out
     }
 }

@@ -1,0 +1,252 @@
+//! `maille tightest` and `maille roomiest`: the thickest wire of a weave, and its state with the most room.
+
+use crate::{
+    exit::{self, wrong},
+    input::Input,
+    interrupt,
+    map::pool,
+    numbers::positive,
+    output::{self, say},
+};
+use maille::{
+    lattice::Cell,
+    limit::extreme::{Extreme, ExtremeOptions, ExtremeOutcome, extreme},
+    model::Model,
+    record::{Status, pose_records},
+};
+use maille_io::write_design;
+use miette::Result;
+use serde_json::json;
+use std::{path::PathBuf, process::ExitCode, time::Instant};
+
+/// The thickest wire with which a weave exists
+///
+/// All minor radii are made as large as can be, over all poses and the lattice. The locked state is certified as a limit is:
+/// no small motion allows a thicker wire. That no distant state does is not proved; more --starts search further.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  maille tightest european-4-in-1
+  maille tightest 1.1 --lattice fixed          with the spacing of the design
+  maille tightest 2 --starts 50 --save tight-2.toml
+  maille render tight-2.toml --tile 6x6
+
+Exit codes: 0 certified, 5 no certified state was found, 130 interrupted.")]
+pub struct TightestArgs {
+    #[command(flatten)]
+    common: Common,
+}
+
+/// The state of a weave with the widest gaps
+///
+/// The smallest gap between any two rings is made as large as can be, over all poses: how to print a sheet in place so
+/// that its rings do not fuse.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  maille roomiest european-4-in-1
+  maille roomiest 3.1 --lattice free --save roomy.toml
+  maille export roomy.toml --tile 8x8          to print
+
+Exit codes: 0 certified, 5 no certified state was found, 130 interrupted.")]
+pub struct RoomiestArgs {
+    #[command(flatten)]
+    common: Common,
+}
+
+#[derive(clap::Args)]
+struct Common {
+    /// A built-in design (see `maille designs`), a TOML file, or - for standard input
+    design: String,
+    /// Minor radius of every ring that gives none, in the file's unit
+    #[arg(long, value_parser = positive)]
+    minor_radius: Option<f64>,
+    /// Whether the lattice may change [default: free for tightest, fixed for roomiest]
+    #[arg(long, value_enum)]
+    lattice: Option<Lattice>,
+    /// Starts: the design's state, then shaken ones
+    #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    starts: u32,
+    /// Seed of the shaking
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Write the state as a design file
+    #[arg(long, value_name = "FILE")]
+    save: Option<PathBuf>,
+    /// Threads [default: all cores]; results do not depend on it
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+    /// Print one JSON document; docs/json.md has its keys
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Lattice {
+    Free,
+    Fixed,
+}
+
+/// A saved design is thinner by this share: what its rounding could make overlap.
+const SPARED: f64 = 1e-9;
+
+/// Runs `tightest`.
+pub fn tightest(args: &TightestArgs) -> Result<ExitCode> {
+    run(&args.common, Extreme::ThickestWire)
+}
+
+/// Runs `roomiest`.
+pub fn roomiest(args: &RoomiestArgs) -> Result<ExitCode> {
+    run(&args.common, Extreme::WidestGap)
+}
+
+fn run(args: &Common, what: Extreme) -> Result<ExitCode> {
+    let input = Input::read(&args.design, args.minor_radius)?;
+    let model = input.compile(&input.design, Cell::PRIMITIVE)?;
+    if model.links.is_empty() {
+        let help = "`maille inspect` shows links; rings that hold each other bound the wire, and nothing else does";
+        return Err(wrong(exit::DESIGN, "no rings of this design are linked", help));
+    }
+    let lattice_free = args.lattice.map_or(what == Extreme::ThickestWire, |lattice| lattice == Lattice::Free);
+    let options = ExtremeOptions { lattice_free, starts: args.starts as usize, seed: args.seed };
+    let cancel = interrupt::flag()?;
+    let begun = Instant::now();
+    let found = pool(args.threads)?.install(|| extreme(&model, what, &options, &cancel));
+    let answer = Answer { input: &input, model: &model, what, lattice_free, found: &found };
+    if args.json {
+        output::print_json(&answer.json(begun.elapsed().as_secs_f64()))?;
+    } else {
+        answer.print(begun.elapsed().as_secs_f64());
+    }
+    if let (Some(file), Some(_)) = (&args.save, found.value) {
+        output::write(file, write_design(&answer.design()).as_bytes())?;
+        eprintln!("{}", file.display());
+    }
+    Ok(ExitCode::from(match found.status {
+        Status::Local => exit::DONE,
+        Status::Interrupted => exit::INTERRUPTED,
+        _ => exit::INCOMPLETE,
+    }))
+}
+
+struct Answer<'a> {
+    input: &'a Input,
+    model: &'a Model,
+    what: Extreme,
+    lattice_free: bool,
+    found: &'a ExtremeOutcome,
+}
+
+/// A ring's size in the design's unit.
+struct Size {
+    major_radius: f64,
+    minor_radius: f64,
+}
+
+impl Size {
+    /// Makers' aspect ratio: inner diameter / wire diameter.
+    fn aspect_ratio(&self) -> f64 {
+        (self.major_radius - self.minor_radius) / self.minor_radius
+    }
+}
+
+impl Answer<'_> {
+    /// Different sizes of rings with the wire that was found.
+    fn sizes(&self) -> Vec<Size> {
+        let factor = if self.what == Extreme::ThickestWire { self.found.value.unwrap_or(f64::NAN) } else { 1.0 };
+        let mut out: Vec<Size> = Vec::new();
+        for ring in &self.model.rings {
+            let [major_radius, minor_radius] =
+                [ring.major_radius, ring.minor_radius * factor].map(|x| x * self.model.unit);
+            if !out.iter().any(|s| (s.major_radius, s.minor_radius) == (major_radius, minor_radius)) {
+                out.push(Size { major_radius, minor_radius });
+            }
+        }
+        out
+    }
+
+    /// The state as a design.
+    fn design(&self) -> maille::design::Design {
+        let mut out = self.found.state.design(&self.input.design, self.model);
+        let (words, factor) = match self.what {
+            Extreme::ThickestWire => ("tightest", self.found.value.unwrap_or(1.0) * (1.0 - SPARED)),
+            Extreme::WidestGap => ("roomiest", 1.0),
+        };
+        out.name = format!("{} {words}", out.name);
+        out.minor_radius = out.minor_radius.map(|r| r * factor);
+        let rings = out.elements.iter_mut().flat_map(|element| &mut element.rings);
+        rings.for_each(|ring| ring.minor_radius = ring.minor_radius.map(|r| r * factor));
+        out
+    }
+
+    fn gap(&self) -> Option<f64> {
+        self.found.value.filter(|_| self.what == Extreme::WidestGap).map(|gap| gap * self.model.unit)
+    }
+
+    fn print(&self, wall_s: f64) {
+        let found = self.found;
+        let unit = self.input.design.unit.as_deref().map(|unit| format!(" {unit}")).unwrap_or_default();
+        let lattice = if self.lattice_free { "free" } else { "fixed" };
+        let title = if self.what == Extreme::ThickestWire { "thickest wire" } else { "widest gaps" };
+        say!("{}, {title}, lattice {lattice}: {}", self.input.design.name, found.status.name());
+        if found.value.is_none() {
+            say!("  no start led to a state without overlap; try more --starts, or --lattice free");
+            return;
+        }
+        if let Some(gap) = self.gap() {
+            say!("  smallest gap    {gap:.9}{unit}");
+        }
+        for size in self.sizes() {
+            let Size { major_radius, minor_radius } = size;
+            say!("  minor radius    {minor_radius:.9}{unit} at major radius {major_radius}{unit}");
+            say!("  aspect ratio    {:.6} = inner diameter / wire diameter", size.aspect_ratio());
+        }
+        for (name, a) in [("a1", found.state.a1), ("a2", found.state.a2)].map(|(n, a)| (n, a * self.model.unit)) {
+            say!("  {name}              {:.6}, {:.6}{unit}", a.x, a.y);
+        }
+        let kept = if found.links_ok { "kept" } else { "LOST" };
+        say!("  {} starts led to {} certified values; links {kept}; {wall_s:.1} s", found.n_starts, found.n_distinct);
+        if let Some(c) = &found.certificate {
+            let curvature = c.min_curvature.map_or("none free".into(), |x| format!("least curvature {x:.2e}"));
+            say!("  smallest gap {:.1e}, residual {:.1e}, {curvature}", c.smallest_gap, c.dual_residual);
+        }
+    }
+
+    fn json(&self, wall_s: f64) -> serde_json::Value {
+        let found = self.found;
+        let finite = |x: f64| x.is_finite().then_some(x);
+        let sizes = self.sizes().into_iter().map(|size| {
+            json!({
+                "major_radius": size.major_radius,
+                "minor_radius": finite(size.minor_radius),
+                "aspect_ratio": finite(size.aspect_ratio()),
+            })
+        });
+        let vector = |a: maille_geometry::Vec3| -> [f64; 3] { (a * self.model.unit).into() };
+        let certificate = found.certificate.as_ref().map(|c| {
+            json!({
+                "smallest_gap": finite(c.smallest_gap * self.model.unit),
+                "dual_residual": finite(c.dual_residual),
+                "complementarity": finite(c.complementarity),
+                "min_multiplier": finite(c.min_multiplier),
+                "min_curvature": c.min_curvature.and_then(finite),
+                "zero_modes": c.zero_modes,
+            })
+        });
+        json!({
+            "design": self.input.design.name,
+            "status": found.status.name(),
+            "lattice": if self.lattice_free { "free" } else { "fixed" },
+            "gap": self.gap(),
+            "sizes": sizes.collect::<Vec<_>>(),
+            "a1": vector(found.state.a1),
+            "a2": vector(found.state.a2),
+            "poses": pose_records(self.model, &found.state),
+            "certificate": certificate,
+            "links_ok": found.links_ok,
+            "n_starts": found.n_starts,
+            "n_distinct": found.n_distinct,
+            "wall_s": wall_s,
+        })
+    }
+}
