@@ -249,6 +249,40 @@ fn steps_and_times_have_a_curve_for_each_record_and_l2() {
     assert!(one.contains(">Iterations<") && one.contains("quadratic programs") && !one.contains("Newton"));
 }
 
+/// Value of an attribute of an SVG element.
+fn number(element: &str, name: &str) -> f64 {
+    let (_, rest) = element.split_once(&format!(" {name}=\"")).unwrap();
+    rest.split_once('"').unwrap().0.parse().unwrap()
+}
+
+/// On a page the legend stands below the data, without a heading, and nothing leaves the picture.
+#[test]
+fn a_narrow_plot_has_its_legend_below() {
+    let records = three();
+    let polar = |layout| polar_svg(&PolarPlot::from_records(&records, Quantity::L1), layout);
+    let difference = |layout| difference_svg(&records, Spread::L1, layout);
+    let draw: [&dyn Fn(Layout) -> String; 3] = [&polar, &difference, &|layout| steps_svg(&records, layout)];
+    for draw in draw {
+        let (beside, below) = (draw(Layout::Beside), draw(Layout::Below));
+        assert!(number(&below, "width") < number(&beside, "width"));
+        assert_eq!(lines(&below).len(), lines(&beside).len());
+        let label = |svg: &str| {
+            let text = svg.lines().find(|line| line.contains(">r = 0.05, exact<")).unwrap();
+            number(text, "y")
+        };
+        assert!(label(&below) > label(&beside) + 300.0);
+        let (top, width, height) = (number(&below, "y"), number(&below, "width"), number(&below, "height"));
+        for text in below.lines().filter(|line| line.starts_with("<text")) {
+            let (x, y, size) = (number(text, "x"), number(text, "y"), number(text, "font-size"));
+            assert!(y > top + 8.0 && y < top + height - 2.0, "{text}");
+            let letters = text.split_once('>').unwrap().1.trim_end_matches("</text>").chars().count() as f64;
+            let share = if text.contains("middle") { 0.5 } else { 1.0 };
+            assert!(x + share * 0.58 * size * letters < width, "{text}");
+        }
+        svg_to_png(&below, 1.0).unwrap();
+    }
+}
+
 #[test]
 fn every_kind_is_drawn_without_rows() {
     let empty = [record("a", design(), Vec::new()), record("b", design(), Vec::new())];
