@@ -51,3 +51,23 @@ fn raised(mut h: Mat<f64>, lack: &[f64], floor: f64) -> Mat<f64> {
     (0..n).for_each(|i| h[(i, i)] += floor);
     h
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solve::eigen::symmetric_eigen;
+
+    /// Positive in any case; on the motions that keep a loaded row the curvature is H's, where that is positive.
+    #[test]
+    fn positive_and_exact_where_rows_are_kept() {
+        let h = Mat::from_fn(3, 3, |i, j| [[-2.0, 0.5, 0.0], [0.5, 1.0, 0.0], [0.0, 0.0, 0.0]][i][j]);
+        let row = Row { columns: vec![0], gradient: vec![3.0], ..Row::value(0, 0.0, 0.0) };
+        let floor = 1e-3;
+        let model = convexified(h.clone(), &[row], &[1.0], floor);
+        assert!(symmetric_eigen(&model).unwrap().values[0] > 0.5 * floor);
+        assert!((model[(1, 1)] - (1.0 + floor)).abs() < 1e-15 && (model[(2, 2)] - floor).abs() < 1e-15);
+        // Without the row the negative curvature has to be made up for.
+        let model = convexified(h, &[], &[], floor);
+        assert!(symmetric_eigen(&model).unwrap().values[0] > 0.5 * floor);
+    }
+}

@@ -111,3 +111,33 @@ pub(super) fn least_squares_multipliers(c: &[f64], rows: &[Row]) -> Vec<f64> {
     }
     mu
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(columns: &[usize], gradient: &[f64], gap: f64) -> Row {
+        Row { columns: columns.to_vec(), gradient: gradient.to_vec(), ..Row::value(0, 0.0, gap) }
+    }
+
+    /// Curvature along x only, the same row along y twice, nothing along z: x = 1, y = −½, z stays, the multipliers share.
+    #[test]
+    fn dependent_rows_share_and_idle_motions_stay() {
+        let h = Mat::from_fn(3, 3, |i, j| f64::from(u8::from(i == 0 && j == 0)));
+        let rows = [row(&[1], &[1.0], 0.5), row(&[1], &[1.0], 0.5)];
+        let (d, mu) = solve(&h, &rows, &[1.0, -2.0, 0.0], 1e-6).unwrap();
+        let near = |a: f64, b: f64| (a - b).abs() < 1e-12;
+        assert!(near(d[0], 1.0) && near(d[1], -0.5) && d[2] == 0.0, "{d:?}");
+        assert!(near(mu[0], 1.0) && near(mu[1], 1.0), "{mu:?}");
+        let mu = least_squares_multipliers(&[0.0, -2.0, 0.0], &rows);
+        assert!(near(mu[0], 1.0) && near(mu[1], 1.0), "{mu:?}");
+    }
+
+    /// Where the motions that keep the rows have negative curvature there is no minimum.
+    #[test]
+    fn a_saddle_is_refused() {
+        let h = Mat::from_fn(2, 2, |i, j| if i == j { 1.0 - 2.0 * i as f64 } else { 0.0 });
+        assert!(solve(&h, &[row(&[0], &[1.0], 0.0)], &[0.0, 0.0], 1e-6).is_none());
+        assert!(solve(&h, &[row(&[1], &[1.0], 0.0)], &[0.0, 0.0], 1e-6).is_some());
+    }
+}
