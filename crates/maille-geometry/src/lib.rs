@@ -18,13 +18,17 @@
 //! Lengths carry the caller's unit, angles are radians. Radii must be positive and finite and normals of unit length;
 //! debug builds assert it in [`Circle::new`].
 
+mod batch;
 mod bounds;
 mod circle;
+mod count;
 mod floor;
 mod grid;
+mod lane;
 mod linking;
 mod minima;
 mod polynomial;
+mod quick;
 mod relative;
 mod search;
 mod torus;
@@ -38,6 +42,7 @@ pub type Vec3 = nalgebra::Vector3<f64>;
 /// are parallel. It is the only tolerance of this crate that decides between answers.
 pub const ROUNDING: f64 = 1e-14;
 
+pub use batch::{Approach, Approaches, Instructions, circle_distance_approaches, circle_distance_approaches_with};
 pub use circle::{Circle, PointOnCircle, point_circle_distance};
 pub use floor::circle_distance_floor;
 pub use linking::{interlocks, linking_number};

@@ -1,7 +1,8 @@
 //! The local minima of the distance between two circles: what they are, and how they are handed over.
 
+use crate::grid::Direction;
 use crate::relative::Relative;
-use crate::{Circle, Vec3, search};
+use crate::{Circle, Vec3, quick, search};
 
 /// The most minima that a pair can have, if they are isolated.
 ///
@@ -40,8 +41,6 @@ pub struct Minimum {
     pub point_a: Vec3,
     /// The point on circle B.
     pub point_b: Vec3,
-    /// Angle of `point_a` in the [frame](Circle::frame) of A, in `(−π, π]`.
-    pub angle_a_rad: f64,
     /// Angle of `point_b` in the [frame](Circle::frame) of B, in `(−π, π]`.
     pub angle_b_rad: f64,
     /// `(g_α, g_β)`, length². Zero but for the rounding of the angle: the residual of the search.
@@ -56,25 +55,10 @@ impl Minimum {
         distance: f64::INFINITY,
         point_a: Vec3::new(0.0, 0.0, 0.0),
         point_b: Vec3::new(0.0, 0.0, 0.0),
-        angle_a_rad: 0.0,
         angle_b_rad: 0.0,
         gradient: [0.0; 2],
         hessian: [[0.0; 2]; 2],
     };
-
-    /// The same minimum of the pair (B, A).
-    pub fn swapped(&self) -> Self {
-        let [[aa, ab], [ba, bb]] = self.hessian;
-        Self {
-            distance: self.distance,
-            point_a: self.point_b,
-            point_b: self.point_a,
-            angle_a_rad: self.angle_b_rad,
-            angle_b_rad: self.angle_a_rad,
-            gradient: [self.gradient[1], self.gradient[0]],
-            hessian: [[bb, ba], [ab, aa]],
-        }
-    }
 }
 
 /// All local minima of the distance between two circles, ascending; at least one, at most [`MAX_MINIMA`].
@@ -108,12 +92,21 @@ impl Minima {
     /// The minima at these angles of the moving circle (at least one, at most [`MAX_MINIMA`]), put in order.
     /// `swapped` says that the moving circle is A.
     pub(crate) fn at_angles(pair: &Relative<'_>, angles_rad: &[f64], continuum: bool, swapped: bool) -> Self {
+        Self::at(pair, angles_rad.iter().map(|&angle_rad| Direction::at(angle_rad)), continuum, swapped)
+    }
+
+    /// [`Self::at_angles`] by cosines and sines.
+    pub(crate) fn at(
+        pair: &Relative<'_>,
+        directions: impl ExactSizeIterator<Item = Direction>,
+        continuum: bool,
+        swapped: bool,
+    ) -> Self {
         let mut found = [Minimum::NONE; MAX_MINIMA];
-        for (slot, &angle_rad) in found.iter_mut().zip(angles_rad) {
-            let minimum = pair.minimum(angle_rad);
-            *slot = if swapped { minimum.swapped() } else { minimum };
+        let count = directions.len();
+        for (slot, Direction { cos, sin }) in found.iter_mut().zip(directions) {
+            *slot = pair.minimum(cos, sin, swapped);
         }
-        let count = angles_rad.len();
         found[..count].sort_unstable_by(|p, q| p.distance.total_cmp(&q.distance));
         let kind = match pair.kind() {
             PairKind::Coaxial => PairKind::Coaxial,
@@ -148,6 +141,9 @@ pub fn circle_distance_minima(a: &Circle, b: &Circle) -> Minima {
     // Along the smaller circle `h` is the smoother: it comes near the other's axis only far from the other circle.
     let swapped = a.radius < b.radius;
     let pair = if swapped { Relative::new(b, a) } else { Relative::new(a, b) };
+    if let Some((angles, count)) = quick::minima(&pair.reduced()) {
+        return Minima::at(&pair, angles[..count].iter().copied(), false, swapped);
+    }
     let found = search::minima(&pair);
     Minima::at_angles(&pair, found.as_slice(), found.continuum, swapped)
 }
