@@ -7,9 +7,10 @@
 //! No closures in the kernels: what is not inlined into the function of an instruction set cannot use it.
 
 use crate::count::TABLE;
+use crate::grid::Direction;
 use crate::lane::{Lane, Register};
-use crate::quick::{Angle, Found, SLOTS, minima_of_lanes};
-use crate::relative::Reduced;
+use crate::quick::{self, Angle, Found, SLOTS, minima_of_lanes};
+use crate::relative::{Reduced, Relative};
 use crate::{Circle, MAX_MINIMA, Vec3, circle_distance_minima};
 use pulp::{Scalar, Simd, WithSimd};
 
@@ -42,13 +43,29 @@ impl Approaches {
     }
 
     /// By the complete enumeration of one pair.
-    pub fn of_pair(a: &Circle, b: &Circle) -> Self {
+    fn of_pair(a: &Circle, b: &Circle) -> Self {
         let mut out = Self::NONE;
-        for minimum in circle_distance_minima(a, b).as_slice() {
-            let direction_b = (minimum.point_b - b.center) / b.radius;
-            out.found[out.count] = Approach { distance: minimum.distance, direction_b };
+        let mut add = |distance: f64, direction_b: Vec3| {
+            out.found[out.count] = Approach { distance, direction_b };
             out.count += 1;
+        };
+        let swapped = a.radius < b.radius;
+        let pair = if swapped { Relative::new(b, a) } else { Relative::new(a, b) };
+        match quick::minima(&pair.reduced()) {
+            Some((directions, count)) => {
+                for Direction { cos, sin } in &directions[..count] {
+                    let (distance, [base, moving]) = pair.approach(*cos, *sin);
+                    add(distance, if swapped { base } else { moving });
+                }
+            }
+            None => {
+                for minimum in circle_distance_minima(a, b).as_slice() {
+                    add(minimum.distance, (minimum.point_b - b.center) / b.radius);
+                }
+            }
         }
+        let count = out.count;
+        out.found[..count].sort_unstable_by(|p, q| p.distance.total_cmp(&q.distance));
         out
     }
 }

@@ -270,6 +270,14 @@ impl<'a> Relative<'a> {
         r * (r - radial - at.z * self.tilt_sin * cos)
     }
 
+    /// The distance at this angle, in the caller's lengths, and the directions from the centres to the two points, that on
+    /// the base first.
+    pub fn approach(&self, cos: f64, sin: f64) -> (f64, [Vec3; 2]) {
+        let sample = self.at(cos, sin);
+        let (foot, [x, y]) = (sample.foot(), self.axes);
+        (self.scale * sample.distance(), [x * foot[0] + y * foot[1], self.steepest * cos + y * sin])
+    }
+
     /// The minimum at this angle of the moving circle, in the caller's lengths. The base is circle A, or B if `swapped`.
     ///
     /// With `g(α, θ) = ½ |A(α) − P(θ)|²` and α the angle of the foot: `g_α = 0` by construction, `g_θ = h′`,

@@ -10,4 +10,5 @@ pub mod kkt;
 pub mod newton;
 pub mod qp;
 pub mod rows;
+pub mod sparse;
 pub mod sqp;
