@@ -8,12 +8,14 @@ mod common;
 use common::{Family, Pair, circle, degenerate, direction, linked, near_degenerate, rng, symmetric, thin_gap, uniform};
 use divan::{Bencher, black_box, counter::ItemsCount};
 use maille_geometry::{
-    circle_distance_minima, circle_distance_minima_polynomial, linking_number, point_circle_distance,
+    Approaches, Instructions, circle_distance_approaches_with, circle_distance_floor, circle_distance_minima,
+    circle_distance_minima_polynomial, linking_number, point_circle_distance,
 };
 use rand::RngExt;
 
 const PAIRS: usize = 1_000;
-const FAMILIES: [&str; 7] = ["stacked", "linked", "thin gap", "uniform", "symmetric", "near degenerate", "degenerate"];
+const FAMILIES: [&str; 8] =
+    ["near", "stacked", "linked", "thin gap", "uniform", "symmetric", "near degenerate", "degenerate"];
 
 fn main() {
     divan::main();
@@ -22,6 +24,7 @@ fn main() {
 fn pairs(name: &str) -> Vec<Pair> {
     let family: Family = match name {
         "linked" => linked,
+        "near" => near,
         "stacked" => stacked,
         "thin gap" => thin_gap,
         "symmetric" => symmetric,
@@ -61,6 +64,25 @@ fn polynomial(bencher: Bencher<'_, '_>, family: &str) {
     time(bencher, family, |(a, b)| circle_distance_minima_polynomial(a, b));
 }
 
+/// Many pairs at once: nanoseconds a pair if microseconds are read as such.
+#[divan::bench(args = ["near", "linked", "thin gap", "uniform"], consts = [0, 1, 2])]
+fn batch<const SET: usize>(bencher: Bencher<'_, '_>, family: &str) {
+    let Some(set) = Instructions::available().nth(SET) else { return };
+    let pairs = pairs(family);
+    let reach = vec![f64::INFINITY; PAIRS];
+    let mut out = vec![Approaches::NONE; PAIRS];
+    bencher.counter(ItemsCount::new(PAIRS)).bench_local(|| {
+        circle_distance_approaches_with(set, black_box(&pairs), &reach, &mut out);
+        black_box(&mut out);
+    });
+}
+
+/// The lower bound that sorts pairs out.
+#[divan::bench(args = ["near", "uniform"])]
+fn floor(bencher: Bencher<'_, '_>, family: &str) {
+    time(bencher, family, |(a, b)| circle_distance_floor(a, b));
+}
+
 #[divan::bench(args = ["linked", "uniform"])]
 fn linking(bencher: Bencher<'_, '_>, family: &str) {
     time(bencher, family, |(a, b)| linking_number(a, b));
@@ -69,4 +91,16 @@ fn linking(bencher: Bencher<'_, '_>, family: &str) {
 #[divan::bench(args = ["uniform"])]
 fn point(bencher: Bencher<'_, '_>, family: &str) {
     time(bencher, family, |(a, b)| point_circle_distance(&b.center, a));
+}
+
+/// Rings of a weave as they lie: the core circles are within 0.4 R, most of them linked.
+fn near(rng: &mut common::Rng) -> Pair {
+    loop {
+        let (a, mut b) = linked(rng);
+        b.radius = if rng.random_bool(0.5) { 1.0 } else { 0.9 };
+        let distance = circle_distance_minima(&a, &b).closest().distance;
+        if distance > 0.02 && distance < 0.4 {
+            return (a, b);
+        }
+    }
 }

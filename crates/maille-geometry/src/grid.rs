@@ -23,6 +23,13 @@ impl Direction {
         Self { cos, sin }
     }
 
+    /// Turned by twice the angle whose tangent is given.
+    pub fn ahead(self, tan: f64) -> Self {
+        let inverse = 1.0 / (1.0 + tan * tan);
+        let (cos, sin) = ((1.0 - tan * tan) * inverse, 2.0 * tan * inverse);
+        Self { cos: self.cos * cos - self.sin * sin, sin: self.sin * cos + self.cos * sin }
+    }
+
     /// Turned by `±` the angle of another.
     pub fn turned(self, by: Self) -> [Self; 2] {
         let (cc, ss) = (self.cos * by.cos, self.sin * by.sin);

@@ -7,24 +7,30 @@
 //! | --- | --- |
 //! | how far is a point from a circle? | [`point_circle_distance`] |
 //! | where is the distance of two circles locally smallest? | [`circle_distance_minima`]: all such places |
+//! | the same for many pairs | [`circle_distance_approaches`]: several at once, by the machine's widest registers |
 //! | the same by the polynomial of degree 8 | [`circle_distance_minima_polynomial`]: a cross-check, fragile in doubles |
 //! | how wide are the gaps between two rings? | [`torus_score`], [`torus_scores`] |
 //! | are two rings linked, and in which sense? | [`linking_number`], [`interlocks`] |
 //!
-//! The order of the modules is `circle ← relative ← bounds ← search ← minima ← polynomial, torus`, with `linking` beside
-//! them: `relative` reduces a pair to six numbers and evaluates the distance along one circle, `bounds` proves
-//! what it can on an interval, `search` (on the angles of `grid`) and `polynomial` find the minima in two ways.
+//! The order of the modules is `circle ← lane, grid ← relative ← count ← quick, bounds ← search ← minima ← batch, polynomial,
+//! torus`, with `linking` and `floor` beside them: `relative` reduces a pair to six numbers and evaluates the distance along
+//! one circle, `count` and `quick` find the minima of ordinary pairs, `bounds` proves what it can on an interval, `search` (on
+//! the angles of `grid`) and `polynomial` find the minima in two other ways.
 //!
 //! Lengths carry the caller's unit, angles are radians. Radii must be positive and finite and normals of unit length;
 //! debug builds assert it in [`Circle::new`].
 
+mod batch;
 mod bounds;
 mod circle;
+mod count;
 mod floor;
 mod grid;
+mod lane;
 mod linking;
 mod minima;
 mod polynomial;
+mod quick;
 mod relative;
 mod search;
 mod torus;
@@ -38,6 +44,7 @@ pub type Vec3 = nalgebra::Vector3<f64>;
 /// are parallel. It is the only tolerance of this crate that decides between answers.
 pub const ROUNDING: f64 = 1e-14;
 
+pub use batch::{Approach, Approaches, Instructions, circle_distance_approaches, circle_distance_approaches_with};
 pub use circle::{Circle, PointOnCircle, point_circle_distance};
 pub use floor::circle_distance_floor;
 pub use linking::{interlocks, linking_number};

@@ -1,5 +1,6 @@
 //! The relative position of two circles in six numbers, and the distance from one circle along the other.
 
+use crate::lane::Lane;
 use crate::{Circle, Minimum, PairKind, ROUNDING, Vec3};
 
 /// A pair of circles, a **base** and a **moving** one whose angle is the unknown, reduced to six numbers.
@@ -32,6 +33,90 @@ pub(crate) struct Relative<'a> {
     direct_below: f64,
 }
 
+/// The six numbers of a pair, or of a register of pairs, with the harmonics that the quick kernel works on.
+#[derive(Clone, Copy)]
+pub(crate) struct Reduced<T> {
+    /// `R`, radius of the base.
+    pub base_radius: T,
+    /// `r`, radius of the moving circle.
+    pub radius: T,
+    pub x0: T,
+    pub y0: T,
+    pub z0: T,
+    /// `c`.
+    pub tilt_cos: T,
+    /// `s`.
+    pub tilt_sin: T,
+    /// `w·w′ = p₀ cos θ + p₁ sin θ`, w from the centre of the base.
+    pub p: [T; 2],
+    /// `R e·e′ = q₀ cos θ + q₁ sin θ + q₂ sin 2θ`.
+    pub q: [T; 3],
+}
+
+impl<T: Lane> Reduced<T> {
+    #[inline(always)]
+    pub fn new(base_radius: T, radius: T, [x0, y0, z0]: [T; 3], tilt_cos: T, tilt_sin: T) -> Self {
+        let (cx0, rise) = (tilt_cos * x0, radius * tilt_sin);
+        let p = [radius * y0, -(radius * (cx0 + tilt_sin * z0))];
+        let q = [base_radius * p[0], -(base_radius * (radius * cx0)), base_radius * (rise * rise) * 0.5];
+        Self { base_radius, radius, x0, y0, z0, tilt_cos, tilt_sin, p, q }
+    }
+
+    /// `ρ h′ = pρ − q` and its companion `pρ + q`.
+    #[inline(always)]
+    pub fn factors(&self, cos: T, sin: T) -> [T; 2] {
+        let (x, y) = (self.x0 + self.radius * self.tilt_cos * cos, self.y0 + self.radius * sin);
+        let p = (self.p[0] * cos + self.p[1] * sin) * (x * x + y * y).sqrt();
+        let q = self.q[0] * cos + self.q[1] * sin + self.q[2] * (sin * cos * 2.0);
+        [p - q, p + q]
+    }
+
+    /// `h′`, `h″`, `h‴` and ρ, from the products that keep `h′` accurate, see [`Relative::at`].
+    #[inline(always)]
+    pub fn slopes(&self, cos: T, sin: T) -> [T; 4] {
+        let (r, c) = (self.radius, self.tilt_cos);
+        let rise = r * self.tilt_sin;
+        let (x, y) = (self.x0 + r * c * cos, self.y0 + r * sin);
+        let rho = (x * x + y * y).sqrt();
+        let inverse = rho.like(1.0) / rho;
+        let (z, z1, z2) = (self.z0 + rise * cos, -(rise * sin), -(rise * cos));
+        let odd = r * (self.y0 * cos - c * self.x0 * sin);
+        let even = rise * rise * (sin * cos);
+        let ee2 = rise * rise * ((cos - sin) * (cos + sin)) - r * (self.y0 * sin + c * self.x0 * cos);
+        let rho1 = (odd + even) * inverse;
+        let rho2 = (ee2 - rho1 * rho1) * inverse;
+        let rho3 = -(odd + even * 4.0 + rho1 * rho2 * 3.0) * inverse;
+        let radial = rho - self.base_radius;
+        [
+            z * z1 + radial * rho1,
+            z1 * z1 + z * z2 + rho1 * rho1 + radial * rho2,
+            (z1 * z2 + rho1 * rho2) * 3.0 - z * z1 + radial * rho3,
+            rho,
+        ]
+    }
+
+    /// How large the slope could be: the sum of its harmonics' amplitudes.
+    #[inline(always)]
+    pub fn steepness(&self) -> T {
+        self.p[0].abs() + self.p[1].abs() + self.q[0].abs() + self.q[1].abs() + self.q[2]
+    }
+
+    /// The position in the base plane, and its distance from the axis.
+    #[inline(always)]
+    pub fn foot(&self, cos: T, sin: T) -> [T; 3] {
+        let (x, y) = (self.x0 + self.radius * self.tilt_cos * cos, self.y0 + self.radius * sin);
+        [x, y, (x * x + y * y).sqrt()]
+    }
+
+    /// The distance at an angle.
+    #[inline(always)]
+    pub fn distance(&self, cos: T, sin: T) -> T {
+        let radial = self.foot(cos, sin)[2] - self.base_radius;
+        let z = self.z0 + self.radius * self.tilt_sin * cos;
+        (z * z + radial * radial).sqrt()
+    }
+}
+
 /// The squared distance along the moving circle: `h(θ) = ½ d²`, `d² = z² + (ρ − R)²`, and its derivatives.
 #[derive(Clone, Copy)]
 pub(crate) struct Sample {
@@ -58,7 +143,7 @@ pub(crate) struct Sample {
 impl Sample {
     /// The distance `d`, in units of the pair's scale.
     pub fn distance(&self) -> f64 {
-        self.z.hypot(self.radial)
+        (self.z * self.z + self.radial * self.radial).sqrt()
     }
 
     /// The unit vector `e/ρ` to the foot, the nearest point of the base; on its axis a representative.
@@ -140,6 +225,11 @@ impl<'a> Relative<'a> {
         }
     }
 
+    /// The six numbers, for the quick kernel.
+    pub fn reduced(&self) -> Reduced<f64> {
+        Reduced::new(self.base_radius, self.radius, self.offset, self.tilt_cos, self.tilt_sin)
+    }
+
     /// [`Self::at`] an angle.
     pub fn at_angle(&self, angle_rad: f64) -> Sample {
         let (sin, cos) = angle_rad.sin_cos();
@@ -180,31 +270,50 @@ impl<'a> Relative<'a> {
         r * (r - radial - at.z * self.tilt_sin * cos)
     }
 
-    /// The minimum at this angle of the moving circle, in the caller's lengths, the base being circle A.
+    /// The distance at this angle, in the caller's lengths, and the directions from the centres to the two points, that on
+    /// the base first.
+    pub fn approach(&self, cos: f64, sin: f64) -> (f64, [Vec3; 2]) {
+        let sample = self.at(cos, sin);
+        let (foot, [x, y]) = (sample.foot(), self.axes);
+        (self.scale * sample.distance(), [x * foot[0] + y * foot[1], self.steepest * cos + y * sin])
+    }
+
+    /// The minimum at this angle of the moving circle, in the caller's lengths. The base is circle A, or B if `swapped`.
     ///
     /// With `g(α, θ) = ½ |A(α) − P(θ)|²` and α the angle of the foot: `g_α = 0` by construction, `g_θ = h′`,
     /// `g_αα = R ρ`, `g_αθ = −A′·P′ = −R (e × e′)/ρ`, `g_θθ = h″ + g_αθ²/g_αα = |P′|² + (P − A)·P″`.
-    pub fn minimum(&self, angle_rad: f64) -> Minimum {
-        let (sin, cos) = angle_rad.sin_cos();
+    pub fn minimum(&self, cos: f64, sin: f64, swapped: bool) -> Minimum {
         let sample = self.at(cos, sin);
-        let Sample { z, rho, radial, slope, .. } = sample;
+        let Sample { rho, slope, .. } = sample;
         let [x, y] = self.axes;
         let foot = sample.foot();
         let base_direction = x * foot[0] + y * foot[1];
         let moving_direction = self.steepest * cos + y * sin;
         let mixed = -self.base_radius * self.radius * (foot[0] * cos + foot[1] * self.tilt_cos * sin);
         let unit_sq = self.scale * self.scale;
-        Minimum {
-            distance: self.scale * z.hypot(radial),
-            point_a: self.base.center + base_direction * self.base.radius,
-            point_b: self.moving.center + moving_direction * self.moving.radius,
-            angle_a_rad: self.base.direction_angle_rad(&base_direction),
-            angle_b_rad: self.moving.direction_angle_rad(&moving_direction),
-            gradient: [0.0, slope * unit_sq],
-            hessian: [
-                [self.base_radius * rho * unit_sq, mixed * unit_sq],
-                [mixed * unit_sq, self.at_fixed_foot(cos, sin, &sample) * unit_sq],
-            ],
+        let distance = self.scale * sample.distance();
+        let base_point = self.base.center + base_direction * self.base.radius;
+        let moving_point = self.moving.center + moving_direction * self.moving.radius;
+        let base = self.base_radius * rho * unit_sq;
+        let moving = self.at_fixed_foot(cos, sin, &sample) * unit_sq;
+        let (mixed, slope) = (mixed * unit_sq, slope * unit_sq);
+        match swapped {
+            false => Minimum {
+                distance,
+                point_a: base_point,
+                point_b: moving_point,
+                angle_b_rad: self.moving.direction_angle_rad(&moving_direction),
+                gradient: [0.0, slope],
+                hessian: [[base, mixed], [mixed, moving]],
+            },
+            true => Minimum {
+                distance,
+                point_a: moving_point,
+                point_b: base_point,
+                angle_b_rad: self.base.direction_angle_rad(&base_direction),
+                gradient: [slope, 0.0],
+                hessian: [[moving, mixed], [mixed, base]],
+            },
         }
     }
 }

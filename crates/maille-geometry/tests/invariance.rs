@@ -53,7 +53,7 @@ fn gradient_and_hessian_agree_with_finite_differences() {
         let (a, b) = GENERIC[index % 3](&mut rng);
         for m in circle_distance_minima(&a, &b).as_slice() {
             let half_sq = |i: f64, j: f64, step: f64| {
-                let gap = a.point(m.angle_a_rad + i * step) - b.point(m.angle_b_rad + j * step);
+                let gap = a.point(a.angle_rad(&m.point_a) + i * step) - b.point(m.angle_b_rad + j * step);
                 0.5 * gap.norm_squared()
             };
             let first = |i: f64, j: f64| (half_sq(i, j, 1e-6) - half_sq(-i, -j, 1e-6)) / 2e-6;
@@ -108,7 +108,7 @@ fn generic_minima_move_with_the_pair() {
         assert_same(&minima, &larger, unit, factor, |p| p * factor, "scaled");
 
         let swapped = circle_distance_minima(&b, &a);
-        let back: Vec<_> = swapped.as_slice().iter().map(|m| m.swapped()).collect();
+        let back: Vec<_> = swapped.as_slice().to_vec();
         assert_eq!(back.len(), minima.as_slice().len());
         for (m, n) in minima.as_slice().iter().zip(&back) {
             assert!((m.distance - n.distance).abs() < 1e-12 * unit);

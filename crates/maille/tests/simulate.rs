@@ -13,7 +13,7 @@ use maille::{
     limit::energy::EnergyOptions,
     model::Model,
     simulate::{End, Setup, Simulation, elements_at, simulate},
-    solve::newton::Objective,
+    solve::{newton::Objective, sparse::Patterns},
 };
 use maille_geometry::Vec3;
 use std::sync::atomic::AtomicBool;
@@ -200,4 +200,27 @@ fn a_larger_sheet_moves_by_the_same_rules() {
     let model = sheet("1.1", "5x3");
     let end = run(&model, &setup(&model, "left", Some(("right", Vec3::new(4.8, 0.0, 0.0))), Vec3::zeros()));
     assert_eq!((end.end, end.share), (End::Reached, 1.0), "{:?}", end.note); // 11.25 + 4.95 is the most
+}
+
+/// Energy, gradient and Newton's step of a large sheet, to the bit.
+#[test]
+fn a_step_does_not_depend_on_the_number_of_threads() {
+    let model = sheet("1.1", "12x10");
+    let contacts = EnergyOptions::default().contacts(&model);
+    let mut state = shaken(&model, 0.01, 8);
+    state.poses.iter_mut().for_each(|p| p.position.x *= 1.45);
+    let floor = Some(Floor { height: -1.05, alpha: 1e3 });
+    let energy = SheetEnergy { loads: Loads { floor, ..Loads::default() }, ..SheetEnergy::new(&model, &contacts) };
+    let x = Configuration::start(state);
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let here = energy.derivatives(&x);
+            let curvature = here.hessian.decompose(&mut Patterns::default()).unwrap();
+            (here.energy, energy.energy(&x), curvature.descent_step(&here.gradient, 1e-3).unwrap(), here.gradient)
+        })
+    };
+    let (one, two, five) = (run(1), run(2), run(5));
+    assert!(one == two && one == five);
+    assert!(one.0 > 1.0 && (one.0 - one.1).abs() < 1e-12 * one.0 && one.2.iter().all(|s| s.is_finite()));
 }

@@ -6,9 +6,11 @@ use crate::{
     model::Model,
     solve::curvature::Curvature,
     state::State,
-    topology::{RingPair, close_pairs},
+    topology::{RingPair, broad::in_chunks, close_pairs},
 };
-use maille_geometry::{circle_distance_minima, circle_distance_minima_polynomial};
+use maille_geometry::{
+    Approach, Approaches, Circle, MAX_MINIMA, circle_distance_approaches, circle_distance_minima_polynomial,
+};
 use serde::{Deserialize, Serialize};
 
 /// Which way the minima of the circle–circle distance are found.
@@ -39,49 +41,93 @@ struct Overlap {
     pair: RingPair,
     frame: PairFrame,
     contact_distance: f64,
-    minima: Vec<(f64, f64)>,
+    minima: [(f64, f64); MAX_MINIMA],
+    count: usize,
 }
 
-fn overlaps(model: &Model, state: &State, options: &ContactOptions) -> Vec<Overlap> {
-    close_pairs(model, state, 0.0)
-        .into_iter()
-        .filter_map(|pair| {
-            let a = state.circle(model, pair.ring_a, [0, 0]);
-            let b = state.circle(model, pair.ring_b, pair.shift);
-            let found = match options.minima {
-                MinimaMethod::Enumeration => circle_distance_minima(&a, &b),
-                MinimaMethod::Polynomial => circle_distance_minima_polynomial(&a, &b),
-            };
-            let contact_distance = model.contact_distance(pair.ring_a, pair.ring_b);
-            let minima: Vec<(f64, f64)> = found
-                .as_slice()
-                .iter()
-                .filter(|m| m.distance < contact_distance)
-                .map(|m| (m.angle_b_rad, m.distance))
-                .collect();
-            if minima.is_empty() {
-                return None;
+impl Overlap {
+    fn minima(&self) -> &[(f64, f64)] {
+        &self.minima[..self.count]
+    }
+}
+
+/// The overlaps of some pairs, in their order.
+fn overlaps(
+    model: &Model,
+    state: &State,
+    circles: &[Circle],
+    options: &ContactOptions,
+    pairs: &[RingPair],
+) -> Vec<Overlap> {
+    let of = |pair: &RingPair| {
+        let b = circles[pair.ring_b];
+        (circles[pair.ring_a], Circle { center: b.center + state.translation(pair.shift), ..b })
+    };
+    let placed: Vec<(Circle, Circle)> = pairs.iter().map(of).collect();
+    let reach: Vec<f64> = pairs.iter().map(|p| model.contact_distance(p.ring_a, p.ring_b)).collect();
+    let mut found = vec![Approaches::NONE; pairs.len()];
+    if options.minima == MinimaMethod::Enumeration {
+        circle_distance_approaches(&placed, &reach, &mut found);
+    }
+    let mut out = Vec::new();
+    for (k, pair) in pairs.iter().enumerate() {
+        let ((a, b), contact_distance) = (&placed[k], reach[k]);
+        let (mut minima, mut count) = ([(0.0, 0.0); MAX_MINIMA], 0);
+        let mut add = |angle_rad: f64, distance: f64| {
+            if distance < contact_distance {
+                minima[count] = (angle_rad, distance);
+                count += 1;
             }
+        };
+        match options.minima {
+            MinimaMethod::Enumeration => {
+                let (u, v) = b.frame();
+                let angle = |m: &Approach| m.direction_b.dot(&v).atan2(m.direction_b.dot(&u));
+                found[k].as_slice().iter().for_each(|m| add(angle(m), m.distance));
+            }
+            MinimaMethod::Polynomial => {
+                let found = circle_distance_minima_polynomial(a, b);
+                found.as_slice().iter().for_each(|m| add(m.angle_b_rad, m.distance));
+            }
+        }
+        if count > 0 {
             let reference_a = state.poses[model.rings[pair.ring_a].element].position;
             let reference_b = state.poses[model.rings[pair.ring_b].element].position + state.translation(pair.shift);
-            Some(Overlap { pair, frame: PairFrame::new(&a, &reference_a, &b, &reference_b), contact_distance, minima })
-        })
-        .collect()
+            let frame = PairFrame::new(a, &reference_a, b, &reference_b);
+            out.push(Overlap { pair: *pair, frame, contact_distance, minima, count });
+        }
+    }
+    out
+}
+
+/// `of` applied to the overlaps of the cell piece by piece, the results in the order of the pairs: nothing depends on the
+/// number of threads.
+fn for_overlaps<R: Send>(
+    model: &Model,
+    state: &State,
+    options: &ContactOptions,
+    of: impl Fn(Vec<Overlap>) -> Vec<R> + Sync,
+) -> Vec<R> {
+    let circles: Vec<Circle> = (0..model.rings.len()).map(|ring| state.circle(model, ring, [0, 0])).collect();
+    in_chunks(&close_pairs(model, state, 0.0), |pairs| of(overlaps(model, state, &circles, options, pairs)))
 }
 
 /// E_c of one cell.
 pub(super) fn energy(model: &Model, options: &ContactOptions, state: &State) -> f64 {
-    let mut sum = 0.0;
-    for overlap in overlaps(model, state, options) {
-        for &(angle, distance) in &overlap.minima {
-            sum += options.law.at(distance, overlap.contact_distance, options.alpha)[0];
-            for offset in &options.sample_offsets_rad {
-                let distance = overlap.frame.distance(angle + offset);
+    let parts = for_overlaps(model, state, options, |overlaps| {
+        let mut sum = 0.0;
+        for overlap in overlaps {
+            for &(angle, distance) in overlap.minima() {
                 sum += options.law.at(distance, overlap.contact_distance, options.alpha)[0];
+                for offset in &options.sample_offsets_rad {
+                    let distance = overlap.frame.distance(angle + offset);
+                    sum += options.law.at(distance, overlap.contact_distance, options.alpha)[0];
+                }
             }
         }
-    }
-    sum
+        vec![sum]
+    });
+    parts.into_iter().sum()
 }
 
 /// Adds gradient and Hessian of E_c; returns E_c.
@@ -92,26 +138,33 @@ pub(super) fn add_derivatives(
     gradient: &mut [f64],
     hessian: &mut Curvature,
 ) -> f64 {
-    let mut sum = 0.0;
-    for overlap in overlaps(model, state, options) {
-        let (mut grad, mut hess) = (Grad::zeros(), Hess::zeros());
-        for &(angle, _) in &overlap.minima {
-            let root = overlap.frame.jet(angle);
-            let motion = RootMotion::at(&root);
-            let samples = options
-                .sample_offsets_rad
-                .iter()
-                .filter(|offset| overlap.frame.distance(angle + **offset) < overlap.contact_distance)
-                .map(|offset| overlap.frame.jet(angle + offset));
-            for jet in std::iter::once(root).chain(samples) {
-                let [value, first, second] = options.law.at(jet.distance, overlap.contact_distance, options.alpha);
-                let (d_grad, d_hess) = jet.distance_derivatives(&motion);
-                sum += value;
-                grad += d_grad * first;
-                hess += d_hess * first + d_grad * d_grad.transpose() * second;
+    let parts = for_overlaps(model, state, options, |overlaps| {
+        let of = |overlap: Overlap| {
+            let (mut sum, mut grad, mut hess) = (0.0, Grad::zeros(), Hess::zeros());
+            for &(angle, _) in overlap.minima() {
+                let root = overlap.frame.jet(angle);
+                let motion = RootMotion::at(&root);
+                let samples = options
+                    .sample_offsets_rad
+                    .iter()
+                    .filter(|offset| overlap.frame.distance(angle + **offset) < overlap.contact_distance)
+                    .map(|offset| overlap.frame.jet(angle + offset));
+                for jet in std::iter::once(root).chain(samples) {
+                    let [value, first, second] = options.law.at(jet.distance, overlap.contact_distance, options.alpha);
+                    let (d_grad, d_hess) = jet.distance_derivatives(&motion);
+                    sum += value;
+                    grad += d_grad * first;
+                    hess += d_hess * first + d_grad * d_grad.transpose() * second;
+                }
             }
-        }
-        scatter(model, &overlap.pair, &grad, &hess, gradient, hessian);
+            (overlap.pair, sum, grad, hess)
+        };
+        overlaps.into_iter().map(of).collect()
+    });
+    let mut sum = 0.0;
+    for (pair, energy, grad, hess) in parts {
+        sum += energy;
+        scatter(model, &pair, &grad, &hess, gradient, hessian);
     }
     sum
 }

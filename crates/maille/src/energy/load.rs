@@ -2,8 +2,9 @@
 //! them: elements whose position is no unknown, and a floor.
 
 use super::barrier::barrier;
-use crate::{error::InvalidInput, model::Model, solve::curvature::Curvature, state::State};
+use crate::{error::InvalidInput, model::Model, solve::curvature::Curvature, state::State, topology::broad::in_chunks};
 use maille_geometry::Vec3;
+use nalgebra::{Matrix3, Matrix4, Vector4};
 
 /// A position that an element is pulled to, with energy β |x − x_T|².
 #[derive(Clone, Debug, PartialEq)]
@@ -72,8 +73,9 @@ impl Loads {
             }
         }
         for group in groups(model) {
-            let force: Vec3 = self.forces.iter().filter(|f| group.contains(&f.0)).map(|f| f.1).sum();
-            let held = self.held.iter().chain(self.targets.iter().map(|t| &t.element)).any(|e| group.contains(e));
+            let inside = |e: &usize| group.binary_search(e).is_ok();
+            let force: Vec3 = self.forces.iter().filter(|f| inside(&f.0)).map(|f| f.1).sum();
+            let held = self.held.iter().chain(self.targets.iter().map(|t| &t.element)).any(inside);
             let caught = self.floor.is_some() && force.z < 0.0 && force.x == 0.0 && force.y == 0.0;
             if force != Vec3::zeros() && !held && !caught {
                 let element = &model.elements[group[0]].name;
@@ -97,9 +99,11 @@ impl Loads {
             self.targets.iter().map(|t| t.weight * (state.poses[t.element].position - t.position).norm_squared()).sum();
         let mut floor = 0.0;
         if let Some(plane) = self.floor {
-            for_floor_points(model, state, plane, |_, _, depth, touching| {
-                floor += barrier(depth, touching, plane.alpha)[0];
-            });
+            for ring in 0..model.rings.len() {
+                for_points_of(model, state, plane, ring, |_, depth, touching| {
+                    floor += barrier(depth, touching, plane.alpha)[0];
+                });
+            }
         }
         forces + targets + floor
     }
@@ -119,66 +123,83 @@ impl Loads {
             }
         }
         let Some(plane) = self.floor else { return };
-        for_floor_points(model, state, plane, |element, arm, depth, touching| {
-            let [_, first, second] = barrier(depth, touching, plane.alpha);
-            // z of e^ω arm: derivative arm × e_z, second derivative ½ (e_z armᵀ + arm e_zᵀ) − arm_z 1.
-            let turn = arm.cross(&Vec3::z());
-            let slope = [1.0, turn.x, turn.y, turn.z];
-            let up = |k: usize| if k == 3 { 1.0 } else { 0.0 };
-            let bend = |p: usize, q: usize| match p > 0 && q > 0 {
-                true => {
-                    let same = if p == q { arm.z } else { 0.0 };
-                    0.5 * (up(p) * arm[q - 1] + arm[p - 1] * up(q)) - same
-                }
-                false => 0.0,
-            };
+        let rings: Vec<usize> = (0..model.rings.len()).collect();
+        let parts =
+            in_chunks(&rings, |some| some.iter().filter_map(|ring| floor_part(model, state, plane, *ring)).collect());
+        for (element, slope, bend) in parts {
             let entries: Vec<(usize, usize, f64)> =
                 [2, 3, 4, 5].iter().enumerate().map(|(p, k)| (p, 6 * element + k, 1.0)).collect();
             for &(p, column, _) in &entries {
-                gradient[column] += first * slope[p];
+                gradient[column] += slope[p];
             }
-            hessian.add(&entries, 4, |p, q| second * slope[p] * slope[q] + first * bend(p, q));
-        });
+            hessian.add(&entries, 4, |p, q| bend[(p, q)]);
+        }
     }
 }
 
-/// Calls `each` with (element, arm from its reference point, height above the floor, height at which it touches) for the
-/// points that press on the floor.
-fn for_floor_points(model: &Model, state: &State, floor: Floor, mut each: impl FnMut(usize, Vec3, f64, f64)) {
-    for (index, ring) in model.rings.iter().enumerate() {
-        let pose = &state.poses[ring.element];
-        let arm = state.arm(model, index);
-        let normal = pose.rotation * ring.normal.into_inner();
-        let lowest = (pose.position + arm).z - ring.major_radius * (1.0 - normal.z * normal.z).max(0.0).sqrt();
-        if lowest >= floor.height + ring.minor_radius {
-            continue;
-        }
-        // Two directions in the ring's own plane, which turn with it.
-        let least = ring.normal.iamin();
-        let u = ring.normal.cross(&Vec3::ith(least, 1.0)).normalize();
-        let v = ring.normal.cross(&u);
-        let (u, v) = (pose.rotation * u, pose.rotation * v);
-        for k in 0..FLOOR_POINTS {
-            let angle = std::f64::consts::TAU * k as f64 / FLOOR_POINTS as f64;
-            let arm = arm + (u * angle.cos() + v * angle.sin()) * ring.major_radius;
-            let height = (pose.position + arm).z - floor.height;
-            if height < ring.minor_radius {
-                each(ring.element, arm, height, ring.minor_radius);
-            }
+/// The floor's gradient and Hessian in height and turn of the element of a ring that presses on it.
+fn floor_part(model: &Model, state: &State, floor: Floor, ring: usize) -> Option<(usize, Vector4<f64>, Matrix4<f64>)> {
+    let (mut gradient, mut hessian) = (Vector4::zeros(), Matrix4::zeros());
+    let mut presses = false;
+    for_points_of(model, state, floor, ring, |arm, depth, touching| {
+        presses = true;
+        let [_, first, second] = barrier(depth, touching, floor.alpha);
+        // z of e^ω arm: derivative arm × e_z, second derivative ½ (e_z armᵀ + arm e_zᵀ) − arm_z 1.
+        let turn = arm.cross(&Vec3::z());
+        let slope = Vector4::new(1.0, turn.x, turn.y, turn.z);
+        gradient += slope * first;
+        hessian += slope * slope.transpose() * second;
+        let bend = (Vec3::z() * arm.transpose() + arm * Vec3::z().transpose()) * 0.5 - Matrix3::identity() * arm.z;
+        let mut turns = hessian.fixed_view_mut::<3, 3>(1, 1);
+        turns += bend * first;
+    });
+    presses.then_some((model.rings[ring].element, gradient, hessian))
+}
+
+/// Calls `each` with (arm from the element's reference point, height above the floor, height at which it touches) for the
+/// points of a ring that press on the floor.
+fn for_points_of(model: &Model, state: &State, floor: Floor, index: usize, mut each: impl FnMut(Vec3, f64, f64)) {
+    let ring = &model.rings[index];
+    let pose = &state.poses[ring.element];
+    let arm = state.arm(model, index);
+    let normal = pose.rotation * ring.normal.into_inner();
+    let lowest = (pose.position + arm).z - ring.major_radius * (1.0 - normal.z * normal.z).max(0.0).sqrt();
+    if lowest >= floor.height + ring.minor_radius {
+        return;
+    }
+    // Two directions in the ring's own plane, which turn with it.
+    let least = ring.normal.iamin();
+    let u = ring.normal.cross(&Vec3::ith(least, 1.0)).normalize();
+    let v = ring.normal.cross(&u);
+    let (u, v) = (pose.rotation * u, pose.rotation * v);
+    for k in 0..FLOOR_POINTS {
+        let angle = std::f64::consts::TAU * k as f64 / FLOOR_POINTS as f64;
+        let arm = arm + (u * angle.cos() + v * angle.sin()) * ring.major_radius;
+        let height = (pose.position + arm).z - floor.height;
+        if height < ring.minor_radius {
+            each(arm, height, ring.minor_radius);
         }
     }
 }
 
 /// Elements that chains of links join, images included.
 fn groups(model: &Model) -> Vec<Vec<usize>> {
-    let mut group: Vec<usize> = (0..model.elements.len()).collect();
+    let mut parent: Vec<usize> = (0..model.elements.len()).collect();
+    fn root(parent: &mut [usize], mut e: usize) -> usize {
+        while parent[e] != e {
+            parent[e] = parent[parent[e]];
+            e = parent[e];
+        }
+        e
+    }
     for link in &model.links {
         let (i, j) = (model.rings[link.pair.ring_a].element, model.rings[link.pair.ring_b].element);
-        let (from, to) = (group[i].max(group[j]), group[i].min(group[j]));
-        if from != to {
-            group.iter_mut().filter(|g| **g == from).for_each(|g| *g = to);
-        }
+        let (i, j) = (root(&mut parent, i), root(&mut parent, j));
+        parent[i.max(j)] = i.min(j);
     }
-    let firsts: std::collections::BTreeSet<usize> = group.iter().copied().collect();
-    firsts.into_iter().map(|g| (0..group.len()).filter(|e| group[*e] == g).collect()).collect()
+    let mut out = std::collections::BTreeMap::<usize, Vec<usize>>::new();
+    for e in 0..parent.len() {
+        out.entry(root(&mut parent, e)).or_default().push(e);
+    }
+    out.into_values().collect()
 }

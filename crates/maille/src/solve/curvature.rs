@@ -1,18 +1,19 @@
 //! The Hessian of an objective, as Newton's iteration needs it: dense with its eigenvalues for few unknowns, sparse with
 //! Cholesky's factorisation for many.
 //!
-//! A sparse Hessian is kept twice: exact, and with every block that was added made positive by itself. Newton's step is
-//! that of H + floor·1 where this is positive, and of the second one elsewhere: either descends.
+//! A sparse Hessian is kept as the blocks that were added. Newton's step is that of H + floor·1 where this is positive;
+//! elsewhere every block is made positive by itself, and the step is that of their sum. Either descends.
 
-use super::eigen::{Eigen, EigenFailure, symmetric_eigen};
-use faer::{
-    Mat, Side,
-    linalg::solvers::Solve,
-    sparse::{SparseColMat, Triplet, linalg::solvers::Llt},
+use super::{
+    eigen::{Eigen, EigenFailure, symmetric_eigen},
+    sparse::{GROUP, Pattern, Patterns},
 };
+use faer::{Mat, Side};
+use rayon::prelude::*;
+use std::sync::Arc;
 
 /// Up to this many unknowns the Hessian is dense: eigenvalues of more cost too much.
-const MOST_DENSE: usize = 250;
+const MOST_DENSE: usize = 120;
 
 /// A symmetric Hessian in the making: blocks are added to it.
 pub struct Curvature {
@@ -23,11 +24,48 @@ pub struct Curvature {
 
 enum Kind {
     Dense(Mat<f64>),
-    /// Lower triangles: of the exact Hessian, and of the sum of the blocks' positive parts.
-    Sparse {
-        exact: Vec<Triplet<usize, usize, f64>>,
-        convex: Vec<Triplet<usize, usize, f64>>,
-    },
+    Sparse(Vec<Piece>),
+}
+
+/// Σ c_p c_q B(p, q).
+struct Piece {
+    /// Row of the block B, unknown, coefficient c.
+    entries: Box<[(u32, u32, f64)]>,
+    size: usize,
+    /// B's lower triangle, row after row.
+    block: Box<[f64]>,
+}
+
+impl Piece {
+    fn at(block: &[f64], p: usize, q: usize) -> f64 {
+        let (row, column) = (p.max(q), p.min(q));
+        block[row * (row + 1) / 2 + column]
+    }
+
+    /// Calls `each` with row, column and value of the entries of the lower triangle that `block` makes.
+    fn scatter(&self, block: &[f64], mut each: impl FnMut(usize, usize, f64)) {
+        for &(p, row, c) in &self.entries {
+            for &(q, column, d) in self.entries.iter().filter(|e| e.1 <= row) {
+                each(row as usize, column as usize, c * d * Self::at(block, p as usize, q as usize));
+            }
+        }
+    }
+
+    /// B with its negative eigenvalues set to 0; B itself where the decomposition fails.
+    fn positive(&self) -> Box<[f64]> {
+        let n = self.size;
+        if n == 1 {
+            return [self.block[0].max(0.0)].into();
+        }
+        let whole = Mat::from_fn(n, n, |p, q| Self::at(&self.block, p, q));
+        let Ok(eigen) = whole.self_adjoint_eigen(Side::Lower) else { return self.block.clone() };
+        let (vectors, values) = (eigen.U(), eigen.S().column_vector());
+        if values.iter().all(|v| *v >= 0.0) {
+            return self.block.clone();
+        }
+        let entry = |p: usize, q: usize| (0..n).map(|k| vectors[(p, k)] * vectors[(q, k)] * values[k].max(0.0)).sum();
+        (0..n).flat_map(|p| (0..=p).map(move |q| (p, q))).map(|(p, q)| entry(p, q)).collect()
+    }
 }
 
 impl Curvature {
@@ -35,7 +73,7 @@ impl Curvature {
     pub fn new(n: usize, held: &[usize]) -> Self {
         let kind = match n <= MOST_DENSE {
             true => Kind::Dense(Mat::zeros(n, n)),
-            false => Kind::Sparse { exact: Vec::new(), convex: Vec::new() },
+            false => Kind::Sparse(Vec::new()),
         };
         let mut out = Curvature { n, held: vec![false; n], kind };
         for &k in held {
@@ -62,14 +100,10 @@ impl Curvature {
                     }
                 }
             }
-            Kind::Sparse { exact, convex } => {
-                let positive = positive_part(&Mat::from_fn(size, size, &block));
-                for &(p, row, c) in free() {
-                    for &(q, column, d) in free().filter(|e| e.1 <= row) {
-                        exact.push(Triplet::new(row, column, c * d * block(p, q)));
-                        convex.push(Triplet::new(row, column, c * d * positive[(p, q)]));
-                    }
-                }
+            Kind::Sparse(pieces) => {
+                let entries = free().map(|&(p, unknown, c)| (p as u32, unknown as u32, c)).collect();
+                let lower = (0..size).flat_map(|p| (0..=p).map(move |q| (p, q)));
+                pieces.push(Piece { entries, size, block: lower.map(|(p, q)| block(p, q)).collect() });
             }
         }
     }
@@ -78,66 +112,96 @@ impl Curvature {
     pub fn to_dense(&self) -> Mat<f64> {
         match &self.kind {
             Kind::Dense(h) => h.clone(),
-            Kind::Sparse { exact, .. } => {
+            Kind::Sparse(pieces) => {
                 let mut h = Mat::zeros(self.n, self.n);
-                for t in exact {
-                    h[(t.row, t.col)] += t.val;
-                    if t.row != t.col {
-                        h[(t.col, t.row)] += t.val;
-                    }
+                for piece in pieces {
+                    piece.scatter(&piece.block, |row, column, value| {
+                        h[(row, column)] += value;
+                        if row != column {
+                            h[(column, row)] += value;
+                        }
+                    });
                 }
                 h
             }
         }
     }
 
-    /// Decomposes what can be decomposed once.
-    pub fn decompose(self) -> Result<Decomposed, EigenFailure> {
-        Ok(match self.kind {
-            Kind::Dense(h) => Decomposed::Dense(symmetric_eigen(&h)?),
-            Kind::Sparse { exact, convex } => Decomposed::Sparse { n: self.n, exact, convex },
-        })
+    /// Decomposes what can be decomposed once; `patterns` are those of the matrices before.
+    pub fn decompose(self, patterns: &mut Patterns) -> Result<Decomposed, EigenFailure> {
+        let pieces = match self.kind {
+            Kind::Dense(h) => return Ok(Decomposed::Dense(symmetric_eigen(&h)?)),
+            Kind::Sparse(pieces) => pieces,
+        };
+        let group = |e: &(u32, u32, f64)| e.1 / GROUP as u32;
+        let mut pairs = Vec::new();
+        for piece in &pieces {
+            let mut groups: Vec<u32> = piece.entries.iter().map(group).collect();
+            groups.sort_unstable();
+            groups.dedup();
+            for (k, row) in groups.iter().enumerate() {
+                pairs.extend(groups[..k].iter().map(|column| (*column, *row)));
+            }
+        }
+        let no_room = EigenFailure { residual: f64::NAN, norm: f64::NAN };
+        let pattern = patterns.with(self.n, pairs).ok_or(no_room)?;
+        let mut exact = pattern.zeros();
+        for piece in &pieces {
+            piece.scatter(&piece.block, |row, column, value| pattern.add(&mut exact, row, column, value));
+        }
+        Ok(Decomposed::Sparse(SparseHessian { pattern, exact, pieces }))
     }
-}
-
-/// The matrix with its negative eigenvalues set to 0; itself where the decomposition fails.
-fn positive_part(block: &Mat<f64>) -> Mat<f64> {
-    let n = block.nrows();
-    if n == 1 {
-        return Mat::from_fn(1, 1, |_, _| block[(0, 0)].max(0.0));
-    }
-    let Ok(eigen) = block.self_adjoint_eigen(Side::Lower) else { return block.clone() };
-    let (vectors, values) = (eigen.U(), eigen.S().column_vector());
-    let scaled = Mat::from_fn(n, n, |i, k| vectors[(i, k)] * values[k].max(0.0));
-    scaled * vectors.transpose()
 }
 
 /// A Hessian of which steps and signs can be asked.
 pub enum Decomposed {
     /// Eigenvalues and vectors.
     Dense(Eigen),
-    /// Lower triangles, exact and made positive block by block.
-    Sparse {
-        /// Unknowns.
-        n: usize,
-        /// Of the Hessian.
-        exact: Vec<Triplet<usize, usize, f64>>,
-        /// Of the sum of the blocks' positive parts.
-        convex: Vec<Triplet<usize, usize, f64>>,
-    },
+    /// Entries, and the blocks they were made of.
+    Sparse(SparseHessian),
 }
 
-/// Cholesky's factor of the lower triangle plus `shift` times the unit matrix; `None` where it is not positive.
-fn shifted(n: usize, lower: &[Triplet<usize, usize, f64>], shift: f64) -> Option<Llt<usize, f64>> {
-    let mut all = lower.to_vec();
-    all.extend((0..n).map(|k| Triplet::new(k, k, shift)));
-    SparseColMat::try_new_from_triplets(n, n, &all).ok()?.sp_cholesky(Side::Lower).ok()
+/// A large Hessian.
+pub struct SparseHessian {
+    pattern: Arc<Pattern>,
+    exact: Vec<f64>,
+    pieces: Vec<Piece>,
 }
 
-fn solved(factor: &Llt<usize, f64>, right: &[f64]) -> Vec<f64> {
-    let mut x = Mat::from_fn(right.len(), 1, |i, _| right[i]);
-    factor.solve_in_place(&mut x);
-    x.col(0).iter().copied().collect()
+impl SparseHessian {
+    /// Entries of the lower triangle, and of its factor.
+    pub fn sizes(&self) -> [usize; 2] {
+        self.pattern.sizes()
+    }
+
+    /// The sum of the blocks' positive parts.
+    fn convex(&self) -> Vec<f64> {
+        let blocks: Vec<Box<[f64]>> = self.pieces.par_iter().with_min_len(64).map(Piece::positive).collect();
+        let mut values = self.pattern.zeros();
+        for (piece, block) in self.pieces.iter().zip(&blocks) {
+            piece.scatter(block, |row, column, value| self.pattern.add(&mut values, row, column, value));
+        }
+        values
+    }
+
+    fn step(&self, gradient: &[f64], floor: f64) -> Option<Vec<f64>> {
+        let exact = self.pattern.factor(&self.exact, floor);
+        let factor = exact.or_else(|| self.pattern.factor(&self.convex(), floor))?;
+        Some(factor.solve(gradient)?.iter().map(|x| -x).collect())
+    }
+
+    fn lowest(&self) -> Option<(f64, Vec<f64>)> {
+        let size = self.exact.iter().fold(1e-300f64, |m, v| m.max(v.abs()));
+        let factor = (0..60).find_map(|k| self.pattern.factor(&self.exact, 1e-9 * size * 2f64.powi(k)))?;
+        // Any start that is orthogonal to no vector in particular.
+        let mut vector: Vec<f64> = (0..self.pattern.unknowns()).map(|k| (1.0 + k as f64).sin()).collect();
+        for _ in 0..INVERSE_ITERATIONS {
+            vector = factor.solve(&vector)?;
+            let norm = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
+            vector.iter_mut().for_each(|x| *x /= norm);
+        }
+        Some((self.pattern.quadratic_form(&self.exact, &vector), vector))
+    }
 }
 
 /// Inverse iterations for the lowest eigenvector of a sparse Hessian.
@@ -148,10 +212,7 @@ impl Decomposed {
     pub fn descent_step(&self, gradient: &[f64], floor: f64) -> Option<Vec<f64>> {
         match self {
             Decomposed::Dense(eigen) => Some(eigen.descent_step(gradient, floor)),
-            Decomposed::Sparse { n, exact, convex } => {
-                let factor = shifted(*n, exact, floor).or_else(|| shifted(*n, convex, floor))?;
-                Some(solved(&factor, gradient).iter().map(|x| -x).collect())
-            }
+            Decomposed::Sparse(hessian) => hessian.step(gradient, floor),
         }
     }
 
@@ -159,30 +220,16 @@ impl Decomposed {
     pub fn no_saddle(&self, tolerance: f64) -> bool {
         match self {
             Decomposed::Dense(eigen) => eigen.values[0] >= -tolerance,
-            Decomposed::Sparse { n, exact, .. } => shifted(*n, exact, tolerance).is_some(),
+            Decomposed::Sparse(hessian) => hessian.pattern.factor(&hessian.exact, tolerance).is_some(),
         }
     }
 
     /// The least eigenvalue with its vector; of a sparse Hessian by inverse iteration, as good as that gets.
     pub fn lowest(&self) -> Option<(f64, Vec<f64>)> {
-        let (n, exact) = match self {
-            Decomposed::Dense(eigen) => return Some((eigen.values[0], eigen.lowest())),
-            Decomposed::Sparse { n, exact, .. } => (*n, exact),
-        };
-        let size = exact.iter().map(|t| t.val.abs()).fold(1e-300, f64::max);
-        let factor = (0..60).find_map(|k| shifted(n, exact, 1e-9 * size * 2f64.powi(k)))?;
-        // Any start that is orthogonal to no vector in particular.
-        let mut vector: Vec<f64> = (0..n).map(|k| (1.0 + k as f64).sin()).collect();
-        for _ in 0..INVERSE_ITERATIONS {
-            vector = solved(&factor, &vector);
-            let norm = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
-            vector.iter_mut().for_each(|x| *x /= norm);
+        match self {
+            Decomposed::Dense(eigen) => Some((eigen.values[0], eigen.lowest())),
+            Decomposed::Sparse(hessian) => hessian.lowest(),
         }
-        let of = |t: &Triplet<usize, usize, f64>| match t.row == t.col {
-            true => t.val * vector[t.row] * vector[t.col],
-            false => 2.0 * t.val * vector[t.row] * vector[t.col],
-        };
-        Some((exact.iter().map(of).sum(), vector))
     }
 }
 
@@ -207,8 +254,8 @@ mod tests {
         for negative in [0.5, -0.2] {
             let sparse = chain(n, negative);
             let eigen = symmetric_eigen(&sparse.to_dense()).unwrap();
-            let sparse = sparse.decompose().unwrap();
-            assert!(matches!(sparse, Decomposed::Sparse { .. }));
+            let sparse = sparse.decompose(&mut Patterns::default()).unwrap();
+            assert!(matches!(sparse, Decomposed::Sparse(_)));
             assert_eq!(sparse.no_saddle(1e-6), eigen.values[0] >= -1e-6);
             let (value, vector) = sparse.lowest().unwrap();
             // The low eigenvalues lie close together: inverse iteration mixes them.

@@ -11,4 +11,5 @@ pub mod newton;
 pub mod qp;
 pub mod rows;
 mod saddle;
+pub mod sparse;
 pub mod sqp;

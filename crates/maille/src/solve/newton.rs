@@ -8,6 +8,7 @@
 use super::{
     curvature::{Curvature, Decomposed},
     eigen::EigenFailure,
+    sparse::Patterns,
 };
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -32,9 +33,9 @@ struct Here<G> {
 }
 
 impl<G> Derivatives<G> {
-    fn decompose(self) -> Result<Here<G>, EigenFailure> {
+    fn decompose(self, patterns: &mut Patterns) -> Result<Here<G>, EigenFailure> {
         let Derivatives { energy, gradient, hessian, guard } = self;
-        Ok(Here { energy, gradient, curvature: hessian.decompose()?, guard })
+        Ok(Here { energy, gradient, curvature: hessian.decompose(patterns)?, guard })
     }
 }
 
@@ -139,6 +140,7 @@ pub fn minimize<O: Objective>(
     watch: &mut dyn FnMut(&O::Point, f64),
 ) -> Minimization<O::Point> {
     let mut out = Minimization::at(start);
+    let mut patterns = Patterns::default();
     while out.iterations < options.max_iterations {
         if cancel.load(Ordering::Relaxed) {
             out.outcome = Outcome::Interrupted;
@@ -147,7 +149,7 @@ pub fn minimize<O: Objective>(
         let here = objective.derivatives(&out.point);
         (out.energy, out.gradient_norm) = (here.energy, norm(&here.gradient));
         watch(&out.point, here.energy);
-        let here = match here.decompose() {
+        let here = match here.decompose(&mut patterns) {
             Ok(here) => here,
             Err(failure) => {
                 out.outcome = Outcome::Eigen(failure);

@@ -1,14 +1,11 @@
 //! Which rings are near, which are linked, and in which directions chains of links bind the sheet.
 
+pub(crate) mod broad;
 pub mod crossing;
 pub mod near;
 pub mod side;
 
-use crate::{
-    lattice::{Shift, shifts_within},
-    model::Model,
-    state::State,
-};
+use crate::{lattice::Shift, model::Model, state::State};
 use maille_geometry::{circle_distance_minima, linking_number};
 
 /// Ring `ring_a` of the main cell and ring `ring_b` of the image `shift`; each pair of the sheet stands once per cell.
@@ -36,26 +33,19 @@ pub struct Link {
 /// An element's images are other elements; rings of one element make no pair. Of (a, b, s) and (b, a, −s) one is
 /// listed: the lower element first, and for an element's own images the lexicographically positive shift.
 pub fn close_pairs(model: &Model, state: &State, margin: f64) -> Vec<RingPair> {
-    let mut out = Vec::new();
     let thickest = model.rings.iter().map(|r| r.minor_radius).fold(0.0, f64::max);
     let arms: Vec<_> = (0..model.rings.len()).map(|ring| state.arm(model, ring)).collect();
-    for (i, first) in model.elements.iter().enumerate() {
-        for (j, second) in model.elements.iter().enumerate().skip(i) {
-            let offset = state.poses[j].position - state.poses[i].position;
-            let reach = first.reach + second.reach + 2.0 * thickest + margin;
-            let shifts = match model.periodic {
-                true => shifts_within(&offset, &state.a1, &state.a2, reach),
-                false if offset.norm_squared() <= reach * reach => vec![[0, 0]],
-                false => continue,
-            };
-            for shift in shifts {
-                if i == j && shift <= [0, 0] {
-                    continue;
-                }
-                for ring_a in first.rings.clone() {
-                    for ring_b in second.rings.clone() {
+    let neighbours = broad::neighbours(model, state, thickest, margin);
+    let elements: Vec<usize> = (0..model.elements.len()).collect();
+    broad::in_chunks(&elements, |some| {
+        let mut out = Vec::new();
+        for &i in some {
+            for &(j, shift) in &neighbours[i] {
+                let offset = state.poses[j].position - state.poses[i].position + state.translation(shift);
+                for ring_a in model.elements[i].rings.clone() {
+                    for ring_b in model.elements[j].rings.clone() {
                         let (ra, rb) = (&model.rings[ring_a], &model.rings[ring_b]);
-                        let centers = offset + arms[ring_b] - arms[ring_a] + state.translation(shift);
+                        let centers = offset + arms[ring_b] - arms[ring_a];
                         let near = ra.major_radius + rb.major_radius + ra.minor_radius + rb.minor_radius + margin;
                         if centers.norm_squared() <= near * near {
                             out.push(RingPair { ring_a, ring_b, shift });
@@ -64,8 +54,8 @@ pub fn close_pairs(model: &Model, state: &State, margin: f64) -> Vec<RingPair> {
                 }
             }
         }
-    }
-    out
+        out
+    })
 }
 
 /// Least distance of the pair's core circles.

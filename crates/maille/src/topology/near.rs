@@ -1,6 +1,6 @@
 //! The near pairs of one state with what is known of their distance: each is examined once, and only if asked.
 
-use super::{RingPair, close_pairs};
+use super::{RingPair, broad::in_chunks, close_pairs};
 use crate::{model::Model, state::State};
 use maille_geometry::{Circle, Minimum, circle_distance_floor, circle_distance_minima};
 use std::cell::OnceCell;
@@ -40,14 +40,12 @@ impl NearPair {
 /// All pairs whose tori may be within `margin` of each other, in the order of [`close_pairs`].
 pub fn near_pairs(model: &Model, state: &State, margin: f64) -> Vec<NearPair> {
     let circles: Vec<Circle> = (0..model.rings.len()).map(|ring| state.circle(model, ring, [0, 0])).collect();
-    let pairs = close_pairs(model, state, margin).into_iter();
-    pairs
-        .map(|pair| {
-            let (a, b) = (circles[pair.ring_a], circles[pair.ring_b]);
-            let b = Circle { center: b.center + state.translation(pair.shift), ..b };
-            let touching = model.contact_distance(pair.ring_a, pair.ring_b);
-            let floor = circle_distance_floor(&a, &b);
-            NearPair { pair, a, b, touching, floor, minima: OnceCell::new() }
-        })
-        .collect()
+    let of = |pair: &RingPair| {
+        let (a, b) = (circles[pair.ring_a], circles[pair.ring_b]);
+        let b = Circle { center: b.center + state.translation(pair.shift), ..b };
+        let touching = model.contact_distance(pair.ring_a, pair.ring_b);
+        let floor = circle_distance_floor(&a, &b);
+        NearPair { pair: *pair, a, b, touching, floor, minima: OnceCell::new() }
+    };
+    in_chunks(&close_pairs(model, state, margin), |pairs| pairs.iter().map(of).collect())
 }

@@ -1,0 +1,168 @@
+//! Numbers that the quick kernel is written in: one `f64`, or a register of them, one pair of circles in each.
+//!
+//! Only operations that IEEE 754 rounds in one way, and no fused multiplication: every lane of every instruction set
+//! computes the same bits.
+
+use pulp::Simd;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// One number, or a register of numbers.
+pub(crate) trait Lane:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + Mul<f64, Output = Self>
+{
+    /// A truth value for each number.
+    type Mask: Copy;
+    /// A constant.
+    fn like(self, value: f64) -> Self;
+    fn sqrt(self) -> Self;
+    fn abs(self) -> Self;
+    fn max(self, other: Self) -> Self;
+    fn below(self, other: Self) -> Self::Mask;
+    fn pick(mask: Self::Mask, yes: Self, no: Self) -> Self;
+    fn both(p: Self::Mask, q: Self::Mask) -> Self::Mask;
+    fn any(mask: Self::Mask) -> bool;
+}
+
+impl Lane for f64 {
+    type Mask = bool;
+
+    #[inline(always)]
+    fn like(self, value: f64) -> f64 {
+        value
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> f64 {
+        f64::sqrt(self)
+    }
+
+    #[inline(always)]
+    fn abs(self) -> f64 {
+        f64::abs(self)
+    }
+
+    #[inline(always)]
+    fn max(self, other: f64) -> f64 {
+        f64::max(self, other)
+    }
+
+    #[inline(always)]
+    fn below(self, other: f64) -> bool {
+        self < other
+    }
+
+    #[inline(always)]
+    fn pick(mask: bool, yes: f64, no: f64) -> f64 {
+        if mask { yes } else { no }
+    }
+
+    #[inline(always)]
+    fn both(p: bool, q: bool) -> bool {
+        p & q
+    }
+
+    #[inline(always)]
+    fn any(mask: bool) -> bool {
+        mask
+    }
+}
+
+/// A register of the instruction set `S`.
+#[derive(Clone, Copy)]
+pub(crate) struct Register<S: Simd> {
+    pub simd: S,
+    pub value: S::f64s,
+}
+
+/// A truth value for each number of a register.
+#[derive(Clone, Copy)]
+pub(crate) struct Truth<S: Simd> {
+    simd: S,
+    value: S::m64s,
+}
+
+macro_rules! operator {
+    ($trait:ident, $name:ident, $of:ident) => {
+        impl<S: Simd> $trait for Register<S> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $name(self, other: Self) -> Self {
+                Self { simd: self.simd, value: self.simd.$of(self.value, other.value) }
+            }
+        }
+    };
+}
+
+operator!(Add, add, add_f64s);
+operator!(Sub, sub, sub_f64s);
+operator!(Mul, mul, mul_f64s);
+operator!(Div, div, div_f64s);
+
+impl<S: Simd> Neg for Register<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self { simd: self.simd, value: self.simd.neg_f64s(self.value) }
+    }
+}
+
+impl<S: Simd> Mul<f64> for Register<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, factor: f64) -> Self {
+        self * self.like(factor)
+    }
+}
+
+impl<S: Simd> Lane for Register<S> {
+    type Mask = Truth<S>;
+
+    #[inline(always)]
+    fn like(self, value: f64) -> Self {
+        Self { simd: self.simd, value: self.simd.splat_f64s(value) }
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self { simd: self.simd, value: self.simd.sqrt_f64s(self.value) }
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self { simd: self.simd, value: self.simd.abs_f64s(self.value) }
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self { simd: self.simd, value: self.simd.max_f64s(self.value, other.value) }
+    }
+
+    #[inline(always)]
+    fn below(self, other: Self) -> Truth<S> {
+        Truth { simd: self.simd, value: self.simd.less_than_f64s(self.value, other.value) }
+    }
+
+    #[inline(always)]
+    fn pick(mask: Truth<S>, yes: Self, no: Self) -> Self {
+        Self { simd: yes.simd, value: yes.simd.select_f64s(mask.value, yes.value, no.value) }
+    }
+
+    #[inline(always)]
+    fn both(p: Truth<S>, q: Truth<S>) -> Truth<S> {
+        Truth { simd: p.simd, value: p.simd.and_m64s(p.value, q.value) }
+    }
+
+    #[inline(always)]
+    fn any(mask: Truth<S>) -> bool {
+        mask.simd.first_true_m64s(mask.value) < S::F64_LANES
+    }
+}

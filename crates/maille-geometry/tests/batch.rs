@@ -1,0 +1,87 @@
+//! The batch against the single kernel and against sampling, on every instruction set that the machine has.
+
+mod common;
+
+use common::{FAMILIES, Pair, degenerate, oracle, rng, sample_angles, scale};
+use maille_geometry::{
+    Approaches, Instructions, circle_distance_approaches, circle_distance_approaches_with, circle_distance_minima,
+};
+
+fn pairs() -> Vec<(&'static str, Vec<Pair>)> {
+    let mut families = FAMILIES.to_vec();
+    families.push(("degenerate", degenerate));
+    // A number that no register divides: the last block is not full.
+    families
+        .iter()
+        .enumerate()
+        .map(|(seed, (name, family))| {
+            let mut rng = rng(70 + seed as u64);
+            (*name, (0..3_001).map(|_| family(&mut rng)).collect())
+        })
+        .collect()
+}
+
+fn batch(set: Instructions, pairs: &[Pair]) -> Vec<Approaches> {
+    let mut out = vec![Approaches::NONE; pairs.len()];
+    circle_distance_approaches_with(set, pairs, &vec![f64::INFINITY; pairs.len()], &mut out);
+    out
+}
+
+#[test]
+fn every_instruction_set_gives_the_same_bits() {
+    for (name, pairs) in pairs() {
+        let baseline = batch(Instructions::Baseline, &pairs);
+        for set in Instructions::available() {
+            let differ = batch(set, &pairs).iter().zip(&baseline).filter(|(p, q)| p != q).count();
+            assert_eq!(differ, 0, "{name} {set:?}");
+        }
+    }
+}
+
+#[test]
+fn the_batch_has_the_minima_of_each_pair() {
+    let widest = Instructions::available().last().unwrap();
+    let angles = sample_angles(720);
+    for (name, pairs) in pairs() {
+        for (k, ((a, b), found)) in pairs.iter().zip(batch(widest, &pairs)).enumerate() {
+            let unit = scale(a, b);
+            let single = circle_distance_minima(a, b);
+            if name == "near degenerate" || name == "degenerate" {
+                // How many minima rounding makes of a nearly constant distance is not defined; the distance is.
+                assert!((found.as_slice()[0].distance - single.closest().distance).abs() < 1e-10 * unit, "{name} {k}");
+                continue;
+            }
+            assert_eq!(found.as_slice().len(), single.as_slice().len(), "{name} {k}: {a:?} {b:?}");
+            for (p, q) in found.as_slice().iter().zip(single.as_slice()) {
+                assert!((p.distance - q.distance).abs() < 1e-10 * unit, "{name} {k}: {p:?} {q:?}");
+                let there = b.center + p.direction_b * b.radius;
+                // Minima of equal distance may come in either order.
+                let near = |q: &maille_geometry::Minimum| (q.point_b - there).norm() < 1e-6 * unit;
+                assert!(single.as_slice().iter().any(near), "{name} {k}: {p:?} {single:?}");
+            }
+            for expected in oracle(a, b, &angles).iter().filter(|_| k % 10 == 0) {
+                let hit = found.as_slice().iter().any(|m| (m.distance - expected.distance).abs() < 1e-9 * unit);
+                assert!(hit, "{name} {k}: missed {expected:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_out_of_reach_has_no_minima_and_nothing_else_is_lost() {
+    let mut left_out = 0;
+    for (name, pairs) in pairs() {
+        let reach: Vec<f64> = pairs.iter().enumerate().map(|(k, (a, b))| scale(a, b) * 0.1 * (k % 7) as f64).collect();
+        let mut out = vec![Approaches::NONE; pairs.len()];
+        circle_distance_approaches(&pairs, &reach, &mut out);
+        let all = batch(Instructions::Baseline, &pairs);
+        for ((found, whole), reach) in out.iter().zip(&all).zip(&reach) {
+            match found.as_slice().is_empty() {
+                true => assert!(whole.as_slice()[0].distance > *reach, "{name}"),
+                false => assert_eq!(found, whole, "{name}"),
+            }
+            left_out += usize::from(found.as_slice().is_empty());
+        }
+    }
+    assert!(left_out > 2_000, "{left_out}");
+}
