@@ -288,3 +288,17 @@ fn a_sweep_goes_on_where_it_was() {
     assert!(said.contains("1.1-r0.4-s1 could not be used") && said.contains("minor_radius = 0.4"), "{said}");
     assert!(fs::read_to_string(folder.join("other/limits.csv")).unwrap().contains("1.1-r0.05-s1"));
 }
+
+/// The thickest wire is a design again, and there is no room left in it.
+#[test]
+fn the_tightest_state_is_saved_as_a_design() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let answer = json(folder, "tightest european-4-in-1 --starts 2 --save tight.toml --json");
+    let ratio = answer["sizes"][0]["aspect_ratio"].as_f64().unwrap();
+    assert!((ratio - 2.980927).abs() < 1e-6, "{ratio}");
+    assert_eq!((answer["status"].as_str(), answer["links_ok"].as_bool()), (Some("local"), Some(true)));
+    let gap = json(folder, "roomiest tight.toml --lattice free --starts 2 --json")["gap"].as_f64().unwrap();
+    assert!((0.0..1e-6).contains(&gap), "{gap}");
+    assert!(done(folder, "render tight.toml --tile 2x2 --size 64x48 --out -", b"").starts_with(b"\x89PNG"));
+}
