@@ -97,8 +97,9 @@ impl Map {
 
 /// The same limit, of the exact method.
 const EXACT_TIE: f64 = 1e-6;
-/// The same limit, of the energy method: its threshold and its overlap move a limit by this much.
-const ENERGY_TIE: f64 = 0.01;
+/// The same limit, of the energy method: its threshold and its overlap move a limit by this much at most, where it does not
+/// jam (docs/theory/comparison.md).
+const ENERGY_TIE: f64 = 0.003;
 
 /// `r = R/10`.
 fn ratio_label(ratio: f64) -> String {
