@@ -14,6 +14,8 @@ const MOST_LOSS: f64 = 1e-10;
 /// Shares of the largest multiplier above which a row counts as loaded: with the first, chains that are stretched side by
 /// side all count; with the second, what only touches does not.
 const LOADED: [f64; 2] = [1e-5, 1e-3];
+/// Newton steps at most; half as many as there are unknowns if that is more.
+const LEAST_BUDGET: usize = 30;
 /// Times that overlaps are cleared in a row.
 const CLEARINGS: usize = 6;
 /// Largest step of the polish in one unknown.
@@ -26,8 +28,13 @@ const HOLDS: [f64; 5] = [1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
 pub fn polish<P: Program>(program: &P, end: &SqpEnd<P::Point>) -> (P::Point, Certificate) {
     let most = end.multipliers.iter().map(|m| m.value).fold(0.0, f64::max);
     let mut best: Option<(P::Point, Certificate)> = None;
+    let mut tried = 0;
     for share in LOADED {
-        let active = end.multipliers.iter().copied().filter(|m| m.value > share * most).collect();
+        let active: Vec<Multiplier> = end.multipliers.iter().copied().filter(|m| m.value > share * most).collect();
+        if active.len() == tried {
+            break;
+        }
+        tried = active.len();
         let found = polished(program, end.point.clone(), active);
         if best.as_ref().is_none_or(|b| found.1.score() < b.1.score()) {
             best = Some(found);
@@ -45,8 +52,9 @@ pub fn polish<P: Program>(program: &P, end: &SqpEnd<P::Point>) -> (P::Point, Cer
 /// Newton on the rows `active`, with rows taken in and let go until gaps and multipliers have their signs.
 fn polished<P: Program>(program: &P, mut x: P::Point, mut active: Vec<Multiplier>) -> (P::Point, Certificate) {
     let mut best: Option<(P::Point, Certificate)> = None;
-    for _ in 0..12 {
-        newton(program, &mut x, &mut active);
+    let mut budget = LEAST_BUDGET.max(program.objective().len() / 2);
+    while budget > 0 {
+        newton(program, &mut x, &mut active, &mut budget);
         let mut certificate = certify(program, &x, &active);
         for _ in 0..CLEARINGS {
             if !certificate.lacks_only_room() {
@@ -54,7 +62,7 @@ fn polished<P: Program>(program: &P, mut x: P::Point, mut active: Vec<Multiplier
             }
             let Some(cleared) = cleared(program, &x, &active) else { break };
             let (mut settled, mut carrying) = (cleared.clone(), active.clone());
-            newton(program, &mut settled, &mut carrying);
+            newton(program, &mut settled, &mut carrying, &mut budget);
             let again = certify(program, &settled, &carrying);
             if again.smallest_gap > 0.5 * certificate.smallest_gap {
                 (x, active, certificate) = (settled, carrying, again);
@@ -99,11 +107,16 @@ fn polished<P: Program>(program: &P, mut x: P::Point, mut active: Vec<Multiplier
     })
 }
 
-/// Newton's method on the rows `active`, whose multipliers it improves; `x` moves while steps stay small.
-fn newton<P: Program>(program: &P, x: &mut P::Point, active: &mut Vec<Multiplier>) {
+/// Newton's method on the rows `active`, whose multipliers it improves; `x` moves while steps stay small and the budget
+/// of steps lasts.
+fn newton<P: Program>(program: &P, x: &mut P::Point, active: &mut Vec<Multiplier>, budget: &mut usize) {
     let c = program.objective();
     let mut last = f64::INFINITY;
     for _ in 0..10 {
+        if *budget == 0 {
+            break;
+        }
+        *budget -= 1;
         let rows = program.rows(x, BAND, Derivatives::Second(active));
         let chosen = matched(&rows, active);
         let chosen_rows: Vec<Row> = chosen.iter().map(|(k, _)| rows[*k].clone()).collect();
