@@ -61,7 +61,7 @@ fn prepare(folder: &Path) {
     fs::write(folder.join("wrong-study.toml"), "angles = 3\n[[designs]]\ndesign = \"1.1\"\n").unwrap();
     fs::write(folder.join("twice.toml"), "[[designs]]\ndesign = \"1.1\"\n[[designs]]\ndesign = \"mine.toml\"\n")
         .unwrap();
-    let apart = fs::read_to_string(folder.join("mine.toml")).unwrap().replace("2.5", "25.0");
+    let apart = fs::read_to_string(folder.join("mine.toml")).unwrap().replace("2.5", "25.0").replace("1.25", "12.5");
     fs::write(folder.join("apart.toml"), apart).unwrap();
     fs::create_dir(folder.join("a-folder")).unwrap();
     fs::write(folder.join("a-folder/letter.txt"), "dear reader\n").unwrap();
