@@ -18,6 +18,7 @@ use maille::{
         curvature::Decomposed,
         descent::steepest_descent,
         newton::{NewtonOptions, Objective, Outcome, minimize},
+        sparse::Patterns,
     },
     topology::{links_kept, smallest_gap},
 };
@@ -142,7 +143,7 @@ fn descent() {
                 }
             };
             let wall = begun.elapsed().as_secs_f64();
-            let curvature = energy.derivatives(&end.point).hessian.decompose().ok();
+            let curvature = energy.derivatives(&end.point).hessian.decompose(&mut Patterns::default()).ok();
             let least = curvature.as_ref().and_then(Decomposed::lowest).map_or(f64::NAN, |(value, _)| value);
             let ended = match end.outcome {
                 Outcome::Minimum => "small gradient",
