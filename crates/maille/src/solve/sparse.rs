@@ -142,7 +142,7 @@ impl Pattern {
         let mut shifted = values.to_vec();
         (0..self.n).for_each(|k| shifted[self.first_entry[k]] += shift);
         let entries = SymbolicSparseColMatRef::new_checked(self.n, self.n, &self.first_entry, None, &self.row_of_entry);
-        let matrix = SparseColMatRef::new(entries, &*shifted);
+        let matrix = SparseColMatRef::new(entries, &shifted);
         let mut factor = vec![0.0; self.symbolic.len_val()];
         let need = self.symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Spec::default());
         let mut memory = MemBuffer::try_new(need).ok()?;
