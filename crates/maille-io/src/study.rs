@@ -87,7 +87,7 @@ impl Study {
     /// assert_eq!(study.designs[0].minor_radius, [0.05, 0.1]);
     /// ```
     pub fn read(source_name: &str, text: &str) -> Result<Study, StudyError> {
-        let source = NamedSource::new(source_name, Arc::from(text));
+        let source = Arc::new(NamedSource::new(source_name, text.to_owned()));
         Self::parsed(text).map_err(|wrong| StudyError { source, wrong })
     }
 
@@ -149,7 +149,7 @@ impl Study {
 /// What is wrong with a study, shown at its place.
 #[derive(Debug)]
 pub struct StudyError {
-    source: NamedSource<Arc<str>>,
+    source: Arc<NamedSource<String>>,
     wrong: Wrong,
 }
 
@@ -183,7 +183,7 @@ impl Diagnostic for StudyError {
     }
 
     fn source_code(&self) -> Option<&dyn SourceCode> {
-        Some(&self.source)
+        Some(&*self.source)
     }
 }
 
