@@ -147,12 +147,8 @@ impl OpenMap<'_> {
         let receive = |finished: Finished| {
             found(&finished.row);
             let mut collected = collected.lock().unwrap_or_else(|e| e.into_inner());
-            if let Some(k) = place(&all, &finished.row) {
-                collected.rows[k] = Some((finished.row, finished.state));
-            }
-            if collected.written.elapsed() >= WRITE_INTERVAL
-                && let Err(report) = collected.write()
-            {
+            let Some(k) = place(&all, &finished.row) else { return };
+            if let Err(report) = collected.keep(k, finished) {
                 collected.failure = Some(report);
                 cancel.store(true, Ordering::Relaxed);
             }
@@ -202,12 +198,22 @@ struct Collected {
     failure: Option<miette::Report>,
 }
 
-/// A record is written at most this often while limits come in.
+/// A record's files are written at most this often while limits come in; between, limits go to its journal.
 const WRITE_INTERVAL: Duration = Duration::from_secs(1);
 
 impl Collected {
     fn finished(&self) -> (Vec<LimitRow>, Vec<StateRecord>) {
         self.rows.iter().flatten().cloned().unzip()
+    }
+
+    /// Takes a limit: it is on the disk when this returns.
+    fn keep(&mut self, place: usize, Finished { row, state }: Finished) -> Result<()> {
+        let due = self.written.elapsed() >= WRITE_INTERVAL;
+        if !due {
+            self.folder.append(&row, &state)?;
+        }
+        self.rows[place] = Some((row, state));
+        if due { self.write() } else { Ok(()) }
     }
 
     fn write(&mut self) -> Result<()> {

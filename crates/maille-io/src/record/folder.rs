@@ -9,6 +9,8 @@
 //!   last step the folder is the old record with fewer rows, never a mixture.
 //! - More rows: `states.jsonl`, then `limits.csv`, then `run.json` (only its counters change). A kill in between leaves
 //!   states without rows, which are ignored, or counters that lag until the next write.
+//! - Each limit as it is found: a line at the end of `limits.journal`, in one write, until all files are written again. A kill
+//!   loses the limits in work and no other; a line that is cut off is not read.
 
 use super::error::RecordError;
 use super::limits::{read_limits, write_limits};
@@ -27,6 +29,7 @@ const LIMITS: &str = "limits.csv";
 const STATES: &str = "states.jsonl";
 const SVG: &str = "polar.svg";
 const PNG: &str = "polar.png";
+const JOURNAL: &str = "limits.journal";
 const TEMPORARY: (&str, &str) = (".maille-", ".tmp");
 
 /// What a record's folder holds.
@@ -86,6 +89,8 @@ pub struct NamedRecord {
 pub struct RecordFolder {
     path: PathBuf,
     run: RunRecord,
+    /// The journal, once something is in it.
+    journal: Option<fs::File>,
 }
 
 /// One change of the folder that happens wholly or not at all.
@@ -119,14 +124,23 @@ impl RecordFolder {
         let mut found = names(path)?;
         found.retain(|name| !is_temporary(name));
         remove_temporary(path)?;
-        let mut folder = Self { path: path.to_owned(), run };
+        let mut folder = Self { path: path.to_owned(), run, journal: None };
         if !found.is_empty() {
             if overwrite {
                 folder.may_replace(&found)?;
             } else {
                 let record = Record::read(path)?;
                 folder.same_inputs(&record.run)?;
-                let (rows, states) = record.finished();
+                let (mut rows, mut states) = record.finished();
+                if let Some(journal) = read_if_there(&path.join(JOURNAL))? {
+                    for (row, state) in journal_lines(&journal) {
+                        if !rows.iter().any(|known| (known.direction_deg, known.l2) == (row.direction_deg, row.l2)) {
+                            rows.push(row);
+                            states.push(state);
+                        }
+                    }
+                    folder.write(&rows, &states)?;
+                }
                 folder.run.counters = Counters::of(&rows);
                 return Ok((folder, rows, states));
             }
@@ -147,13 +161,28 @@ impl RecordFolder {
         &self.run
     }
 
+    /// Keeps one limit until the next [`Self::write`].
+    pub fn append(&mut self, row: &LimitRow, state: &StateRecord) -> Result<(), RecordError> {
+        let path = self.path.join(JOURNAL);
+        let line = serde_json::to_string(&(row, state)).expect("no map with odd keys") + "\n";
+        let mut append = || -> std::io::Result<()> {
+            let journal = match &mut self.journal {
+                Some(journal) => journal,
+                none => none.insert(fs::OpenOptions::new().create(true).append(true).open(&path)?),
+            };
+            journal.write_all(line.as_bytes())
+        };
+        append().map_err(RecordError::io("write", &path))
+    }
+
     /// Replaces rows and states by all those of the run so far.
     pub fn write(&mut self, rows: &[LimitRow], states: &[StateRecord]) -> Result<(), RecordError> {
         self.run.counters = Counters::of(rows);
         for step in self.steps_to_write(rows, states)? {
             self.apply(step)?;
         }
-        Ok(())
+        self.journal = None;
+        self.apply(Step::Remove(JOURNAL))
     }
 
     /// Writes the plot.
@@ -163,7 +192,7 @@ impl RecordFolder {
     }
 
     fn steps_to_replace(&self) -> Vec<Step> {
-        let mut steps: Vec<_> = [LIMITS, STATES, SVG, PNG].map(Step::Remove).into();
+        let mut steps: Vec<_> = [LIMITS, JOURNAL, STATES, SVG, PNG].map(Step::Remove).into();
         steps.push(Step::Write(RUN, write_run(&self.run).into()));
         steps
     }
@@ -276,6 +305,12 @@ fn read_if_there(path: &Path) -> Result<Option<String>, RecordError> {
     }
 }
 
+/// The whole lines of a journal.
+fn journal_lines(text: &str) -> impl Iterator<Item = (LimitRow, StateRecord)> {
+    let whole = text.split_inclusive('\n').map_while(|line| serde_json::from_str(line.strip_suffix('\n')?).ok());
+    whole.filter(|(row, _): &(LimitRow, StateRecord)| row.status != Status::Interrupted)
+}
+
 fn names(folder: &Path) -> Result<Vec<String>, RecordError> {
     let read = || -> std::io::Result<Vec<String>> {
         let names = fs::read_dir(folder)?.map(|e| Ok(e?.file_name().to_string_lossy().into_owned()));
@@ -380,6 +415,29 @@ mod tests {
         }
     }
 
+    /// Limits of the journal come back, once each, but for a line that is cut off; then it is gone.
+    #[test]
+    fn a_kill_between_writes_loses_the_limit_in_work_alone() {
+        let dir = tempfile::tempdir().unwrap();
+        let open = || RecordFolder::open(dir.path(), &design(), &json!({}), "1", false).unwrap();
+        let (all, all_states) = rows(4);
+        let (mut folder, _, _) = open();
+        folder.append(&all[0], &all_states[0]).unwrap();
+        folder.write(&all[..1], &all_states[..1]).unwrap();
+        assert!(!dir.path().join(JOURNAL).exists());
+        // Row 0 again, as if a kill had come between the files and the end of the journal.
+        (0..4).for_each(|k| folder.append(&all[k], &all_states[k]).unwrap());
+        drop(folder);
+        let journal = fs::read_to_string(dir.path().join(JOURNAL)).unwrap();
+        fs::write(dir.path().join(JOURNAL), &journal[..journal.len() - 5]).unwrap();
+        for _ in 0..2 {
+            let (folder, found, states) = open();
+            assert_eq!((&found[..], &states[..]), (&all[..3], &all_states[..3]));
+            assert_eq!(folder.run().counters, Counters::of(&all[..3]));
+            assert!(!dir.path().join(JOURNAL).exists());
+        }
+    }
+
     #[test]
     fn kill_while_adding_rows_leaves_old_or_new_rows() {
         let (old, old_states) = rows(2);
@@ -437,7 +495,7 @@ mod tests {
         killed_anywhere(before, steps, |path, done| {
             let record = Record::read(path).unwrap();
             let old_run = record.run.parameters == old_inputs;
-            assert_eq!(old_run, done < 5);
+            assert_eq!(old_run, done < 6);
             assert_eq!(record.finished().0.len(), if done == 0 { 3 } else { 0 });
             let (.., rows, _) = RecordFolder::open(path, &design(), &new_inputs, "0.1.0", true).unwrap();
             assert!(rows.is_empty());
