@@ -1,4 +1,4 @@
-//! Progress on standard error: a bar on a terminal, plain lines elsewhere.
+//! Progress on standard error: a bar or a spinner on a terminal, plain lines elsewhere.
 
 use indicatif::{ProgressBar, ProgressStyle};
 use std::{
@@ -46,6 +46,42 @@ impl Progress {
     }
 
     /// Removes the bar.
+    pub fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+/// Progress of work whose end is not known.
+pub struct Spinner {
+    bar: ProgressBar,
+    said: Option<Mutex<Instant>>,
+}
+
+impl Spinner {
+    /// Starts.
+    pub fn new(quiet: bool) -> Spinner {
+        let terminal = std::io::stderr().is_terminal();
+        let bar = if quiet || !terminal { ProgressBar::hidden() } else { ProgressBar::new_spinner() };
+        let said = (!quiet && !terminal).then(|| Mutex::new(Instant::now()));
+        Spinner { bar, said }
+    }
+
+    /// Where the work is; `what` is asked only if it is shown.
+    pub fn says(&self, what: impl Fn() -> String) {
+        if !self.bar.is_hidden() {
+            self.bar.set_message(what());
+            self.bar.tick();
+        }
+        if let Some(said) = &self.said {
+            let mut said = said.lock().unwrap_or_else(|e| e.into_inner());
+            if said.elapsed() >= PLAIN_INTERVAL {
+                *said = Instant::now();
+                eprintln!("{}", what());
+            }
+        }
+    }
+
+    /// Removes the line.
     pub fn finish(&self) {
         self.bar.finish_and_clear();
     }

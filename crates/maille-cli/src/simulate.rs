@@ -6,6 +6,7 @@ use crate::{
     interrupt,
     numbers::positive,
     output,
+    progress::Spinner,
 };
 use maille::{
     error::InvalidInput,
@@ -13,7 +14,7 @@ use maille::{
     limit::energy::EnergyOptions,
     model::Model,
     record::{FrameRecord, pose_records},
-    simulate::{Accepted, End, Setup, Simulation, elements_at, simulate},
+    simulate::{Accepted, End, Setup, Simulation, along, elements_at, simulate},
 };
 use maille_geometry::Vec3;
 use maille_io::{
@@ -40,6 +41,7 @@ Examples:
   maille simulate 1.1 --tile 1x6 --fix top --gravity 0,-1,0         a strip that hangs
   maille simulate 1.1 --tile 4x4 --gravity 0,0,-1 --floor -3        a sheet that falls on a floor
   maille simulate 1.1 --tile 1x6 --fix top --force flat@0,0=0,-5,0  a strip with a load on one ring
+  maille simulate 1.1 --tile 8x2 --fix left --pull right=-6,0,0/0,0,0 --gravity 0,0,-1 --floor -3   folded and unfolded
   maille simulate 2 --tile 10x10 --fix left --pull right=0.5,0,0 --frames all-frames
   maille export --from maille-out/1.1-simulate --format vtk --frames 50
   maille render --from maille-out/1.1-simulate
@@ -57,15 +59,15 @@ pub struct Args {
     /// Where elements are held: left, right, top, bottom or elements, as left,flat@0,2
     #[arg(long, value_name = "PLACE,…", value_parser = parse_places)]
     fix: Option<Places>,
-    /// Pull a place by a vector, in the file's unit; may be given for several places
-    #[arg(long, value_name = "PLACE=DX,DY,DZ", value_parser = parse_pull, allow_hyphen_values = true)]
+    /// Pull a place by a vector, in the file's unit, or along several, all from the start; may be given for several places
+    #[arg(long, value_name = "PLACE=DX,DY,DZ[/…]", value_parser = parse_pull, allow_hyphen_values = true)]
     pull: Vec<Pull>,
     /// Weight of every element; 1 is a thousandth of the stiffness of a pull at R
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true)]
     gravity: Option<Vec3>,
     /// Constant force on a place besides, in the unit of --gravity; may be given for several places
     #[arg(long, value_name = "PLACE=X,Y,Z", value_parser = parse_force, allow_hyphen_values = true)]
-    force: Vec<Pull>,
+    force: Vec<Force>,
     /// A floor at this height, in the file's unit
     #[arg(long, value_name = "Z", allow_hyphen_values = true, value_parser = parse_number)]
     floor: Option<f64>,
@@ -101,11 +103,18 @@ pub struct Args {
     quiet: bool,
 }
 
-/// A place and the vector by which it is pulled, or the force that acts there.
+/// A place and its way: displacements from the start, one after the other.
 #[derive(Clone, Debug, PartialEq)]
 struct Pull {
     place: String,
-    by: Vec3,
+    way: Vec<Vec3>,
+}
+
+/// A place and the force on each of its elements.
+#[derive(Clone, Debug, PartialEq)]
+struct Force {
+    place: String,
+    force: Vec3,
 }
 
 /// Names of places.
@@ -127,24 +136,32 @@ fn parse_vector(text: &str) -> Result<Vec3, String> {
     }
 }
 
-/// `right=0.5,0,0`.
+/// `right=0.5,0,0`, or `right=-3,0,0/0.5,0,0`.
 fn parse_pull(text: &str) -> Result<Pull, String> {
-    at_place(text, "pull", "pulls nowhere; hold the place with --fix instead")
+    let (place, way) = at_place(text, "pull")?;
+    if way.iter().all(|by| *by == Vec3::zeros()) {
+        return Err(format!("\"{text}\" pulls nowhere; hold the place with --fix instead"));
+    }
+    Ok(Pull { place, way })
 }
 
 /// `flat@0,2=0,0,-1`.
-fn parse_force(text: &str) -> Result<Pull, String> {
-    at_place(text, "force", "is no force; leave it out")
+fn parse_force(text: &str) -> Result<Force, String> {
+    let (place, forces) = at_place(text, "force")?;
+    match forces[..] {
+        [force] if force != Vec3::zeros() => Ok(Force { place, force }),
+        [_] => Err(format!("\"{text}\" is no force; leave it out")),
+        _ => Err(format!("\"{text}\" has {} forces; give one vector, as right=0.5,0,0", forces.len())),
+    }
 }
 
-fn at_place(text: &str, what: &str, nothing: &str) -> Result<Pull, String> {
+fn at_place(text: &str, what: &str) -> Result<(String, Vec<Vec3>), String> {
     let wrong = || format!("\"{text}\" is no {what}; give a place and a vector, as right=0.5,0,0");
-    let (place, by) = text.split_once('=').ok_or_else(wrong)?;
-    let by = parse_vector(by).map_err(|_| wrong())?;
+    let (place, vectors) = text.split_once('=').ok_or_else(wrong)?;
+    let vectors = vectors.split('/').map(parse_vector).collect::<Result<_, _>>().map_err(|_| wrong())?;
     match place.trim() {
         "" => Err(wrong()),
-        _ if by == Vec3::zeros() => Err(format!("\"{text}\" {nothing}")),
-        place => Ok(Pull { place: place.into(), by }),
+        place => Ok((place.into(), vectors)),
     }
 }
 
@@ -174,7 +191,17 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let setup = setup(args, &model)?;
     let begun = Instant::now();
     let mut all = Vec::new();
+    let progress = Spinner::new(args.quiet);
     let mut watch = |x: &Accepted<'_>| {
+        progress.says(|| {
+            let percent = 100.0 * x.share;
+            format!(
+                "pull {percent:.1} %, minimisation {}, state {}, energy {:.6}",
+                x.run + 1,
+                x.state_of_run + 1,
+                x.energy
+            )
+        });
         if args.frames.is_some() {
             let poses = pose_records(&model, x.state);
             all.push(FrameRecord { run: x.run, share: x.share, energy: x.energy, poses });
@@ -182,6 +209,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     };
     let cancel = interrupt::flag()?;
     let end = simulate(&model, &setup, &cancel, &mut watch).map_err(|e| refused(&format!("--{}", e.field), e))?;
+    progress.finish();
     let record = record(args, &input, &model, &end);
     let stem = file_name(&input.design.name) + "-simulate";
     let out = args.out.clone().unwrap_or_else(|| PathBuf::from("maille-out").join(stem));
@@ -225,11 +253,12 @@ fn setup(args: &Args, model: &Model) -> Result<Setup> {
     }
     let mut pull = Vec::new();
     for one in &args.pull {
-        pull.extend(at("--pull", &one.place)?.into_iter().map(|e| (e, one.by / model.unit)));
+        let way: Vec<Vec3> = one.way.iter().map(|by| by / model.unit).collect();
+        pull.extend(at("--pull", &one.place)?.into_iter().map(|e| (e, way.clone())));
     }
     let mut forces = Vec::new();
     for one in &args.force {
-        forces.extend(at("--force", &one.place)?.into_iter().map(|e| (e, one.by)));
+        forces.extend(at("--force", &one.place)?.into_iter().map(|e| (e, one.force)));
     }
     let gravity = args.gravity.unwrap_or_else(Vec3::zeros);
     if pull.is_empty() && forces.is_empty() && gravity == Vec3::zeros() {
@@ -252,8 +281,12 @@ fn setup(args: &Args, model: &Model) -> Result<Setup> {
 
 fn record(args: &Args, input: &Input, model: &Model, end: &Simulation) -> SimulationRecord {
     let array = |v: &Vec3| [v.x, v.y, v.z];
-    let pulls: Vec<_> = args.pull.iter().map(|p| json!({ "place": p.place, "by": array(&p.by) })).collect();
-    let forces: Vec<_> = args.force.iter().map(|p| json!({ "place": p.place, "force": array(&p.by) })).collect();
+    let pulls: Vec<_> = args
+        .pull
+        .iter()
+        .map(|p| json!({ "place": p.place, "way": p.way.iter().map(array).collect::<Vec<_>>() }))
+        .collect();
+    let forces: Vec<_> = args.force.iter().map(|p| json!({ "place": p.place, "force": array(&p.force) })).collect();
     SimulationRecord {
         schema: 1,
         version: env!("CARGO_PKG_VERSION").into(),
@@ -300,7 +333,7 @@ fn summary(args: &Args, model: &Model, end: &Simulation, out: &Path, frames: usi
     };
     output::say!("{}, {} cells, {} elements: {what}", model.name, args.tile, model.elements.len());
     for pull in &args.pull {
-        let by = pull.by * end.share;
+        let by = along(&pull.way, end.share);
         output::say!("  {} moved by {:.4}, {:.4}, {:.4}", pull.place, by.x, by.y, by.z);
     }
     if let Some(gap) = end.smallest_gap {
@@ -321,7 +354,9 @@ mod tests {
         let places = |text: &str| parse_places(text).map(|p| p.0);
         assert_eq!(places("left,flat@0,2,top").unwrap(), ["left", "flat@0,2", "top"]);
         assert!(places("left,,top").is_err() && places("").is_err());
-        assert_eq!(parse_pull("right=0.5,0,-1").unwrap().by, Vec3::new(0.5, 0.0, -1.0));
+        assert_eq!(parse_pull("right=0.5,0,-1").unwrap().way, [Vec3::new(0.5, 0.0, -1.0)]);
+        assert_eq!(parse_pull("right=-3,0,0/0,0,0").unwrap().way, [Vec3::new(-3.0, 0.0, 0.0), Vec3::zeros()]);
+        assert!(parse_force("right=-3,0,0/0,0,0").is_err() && parse_pull("right=1,0,0/").is_err());
         for wrong in ["right", "right=1,2", "=1,0,0", "right=0,0,0", "right=a,0,0", "right=1,2,3,4"] {
             assert!(parse_pull(wrong).is_err() && parse_force(wrong).is_err(), "{wrong}");
         }

@@ -31,7 +31,7 @@ fn main() {
             let by = Vec3::new(most * length, 0.0, 0.0);
             let setup = Setup {
                 fix: left,
-                pull: right.into_iter().map(|e| (e, by)).collect(),
+                pull: right.into_iter().map(|e| (e, vec![by])).collect(),
                 gravity: Vec3::zeros(),
                 forces: Vec::new(),
                 floor: None,

@@ -84,8 +84,9 @@ pub fn elements_at(model: &Model, place: &str) -> Result<Vec<usize>, InvalidInpu
 pub struct Setup {
     /// Elements whose reference point is held; they may turn.
     pub fix: Vec<usize>,
-    /// Elements that are pulled, and by how much in all.
-    pub pull: Vec<(usize, Vec3)>,
+    /// Elements that are pulled, and their way: displacements from the start that they come to one after the other, each
+    /// in an equal share of the pull.
+    pub pull: Vec<(usize, Vec<Vec3>)>,
     /// Weight of each element, in [`WEIGHT_UNIT`]s.
     pub gravity: Vec3,
     /// Constant forces on single elements besides, in [`WEIGHT_UNIT`]s.
@@ -102,6 +103,9 @@ pub struct Setup {
 pub const WEIGHT_UNIT: f64 = 1e-3;
 /// Under weight, α of the first minimisations, as parts of the last one's.
 const SOFTER: [f64; 3] = [1e-5, 1e-3, 0.03];
+/// A sheet under weight is at rest where the forces that nothing balances are this part of all forces (both as norms over
+/// the elements); in the first, soft minimisations the second part is enough.
+const UNBALANCED: [f64; 2] = [1e-4, 1e-2];
 /// Halvings of the step in which a sheet locks.
 const HALVINGS: usize = 8;
 
@@ -123,6 +127,8 @@ pub enum End {
 pub struct Accepted<'a> {
     /// Minimisation, counted from 0.
     pub run: u32,
+    /// State of this minimisation, counted from 0.
+    pub state_of_run: u32,
     /// Share of the pull that it aims at.
     pub share: f64,
     /// Energy, in β R².
@@ -177,6 +183,14 @@ struct Rest {
     miss: f64,
 }
 
+/// The displacement when `share` of the way is done: from 0 to its points in turn, each in an equal share.
+pub fn along(way: &[Vec3], share: f64) -> Vec3 {
+    let done = share * way.len() as f64;
+    let leg = (done.floor() as usize).min(way.len().saturating_sub(1));
+    let from = if leg == 0 { Vec3::zeros() } else { way[leg - 1] };
+    way.get(leg).map_or(from, |to| from.lerp(to, done - leg as f64))
+}
+
 impl Setup {
     /// Whether no constant force acts.
     fn is_weightless(&self) -> bool {
@@ -194,9 +208,9 @@ impl Setup {
         // Targets so stiff that all forces together cost them half of the threshold.
         let all: f64 = forces.iter().map(|(_, force)| force.norm()).sum();
         let stiffness = all / (self.options.tau * self.pull.len().max(1) as f64);
-        let target = |&(element, by): &(usize, Vec3)| PositionTarget {
-            element,
-            position: model.start.poses[element].position + by * share,
+        let target = |(element, way): &(usize, Vec<Vec3>)| PositionTarget {
+            element: *element,
+            position: model.start.poses[*element].position + along(way, share),
             weight: stiffness.max(1.0),
         };
         Loads {
@@ -228,14 +242,18 @@ impl Setup {
 
 impl Run<'_> {
     /// Comes to rest. A weight is small against α, so that elements would bounce along stiff walls for long: with soft
-    /// contacts first they do not.
+    /// contacts first they do not. The softest ones are for the fall, before the pull.
     fn relax(&mut self, share: f64, from: &State) -> Rest {
-        let softer: &[f64] = if self.setup.is_weightless() { &[] } else { &SOFTER };
+        let softer = match (self.setup.is_weightless(), self.runs) {
+            (true, _) => &[],
+            (false, 0) => &SOFTER[..],
+            (false, _) => &SOFTER[1..],
+        };
         let mut from = from.clone();
-        for factor in softer {
-            from = self.minimise(share, &from, self.setup.options.alpha * factor).state;
+        for softness in softer {
+            from = self.minimise(share, &from, *softness).state;
         }
-        let rest = self.minimise(share, &from, self.setup.options.alpha);
+        let rest = self.minimise(share, &from, 1.0);
         if self.reached(&rest) {
             let poses = pose_records(self.model, &rest.state);
             self.path.push(FrameRecord { run: self.runs - 1, share, energy: rest.energy, poses });
@@ -243,8 +261,10 @@ impl Run<'_> {
         rest
     }
 
-    fn minimise(&mut self, share: f64, from: &State, alpha: f64) -> Rest {
+    /// Minimises with the part `softness` of α.
+    fn minimise(&mut self, share: f64, from: &State, softness: f64) -> Rest {
         let Run { model, setup, runs, .. } = *self;
+        let alpha = softness * setup.options.alpha;
         let contacts = EnergyOptions { alpha, ..setup.options.clone() }.contacts(model);
         let energy = SheetEnergy {
             loads: setup.loads(model, share, alpha),
@@ -252,10 +272,15 @@ impl Run<'_> {
             ..SheetEnergy::new(model, &contacts)
         };
         let start = Configuration::start(from.clone());
+        let mut state_of_run = 0;
         let mut see = |x: &Configuration, energy: f64| {
-            (self.watch)(&Accepted { run: runs, share, energy, state: &x.state });
+            (self.watch)(&Accepted { run: runs, state_of_run, share, energy, state: &x.state });
+            state_of_run += 1;
         };
-        let end = minimize(&energy, start, &setup.options.newton(), self.cancel, &mut see);
+        let mut options = setup.options.newton();
+        let forces = energy.loads.forces.iter().map(|(_, force)| force.norm_squared()).sum::<f64>().sqrt();
+        options.gradient_tolerance = (UNBALANCED[usize::from(softness < 1.0)] * forces).max(options.gradient_tolerance);
+        let end = minimize(&energy, start, &options, self.cancel, &mut see);
         self.runs += 1;
         self.iterations += end.iterations;
         self.kicks += end.kicks;

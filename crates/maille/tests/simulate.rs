@@ -12,7 +12,7 @@ use maille::{
     lattice::Cell,
     limit::energy::EnergyOptions,
     model::Model,
-    simulate::{End, Setup, Simulation, elements_at, simulate},
+    simulate::{End, Setup, Simulation, along, elements_at, simulate},
     solve::{newton::Objective, sparse::Patterns},
 };
 use maille_geometry::Vec3;
@@ -26,7 +26,7 @@ fn setup(model: &Model, fix: &str, pull: Option<(&str, Vec3)>, gravity: Vec3) ->
     let at = |place: &str| elements_at(model, place).unwrap();
     Setup {
         fix: if fix.is_empty() { Vec::new() } else { at(fix) },
-        pull: pull.map_or(Vec::new(), |(place, by)| at(place).into_iter().map(|e| (e, by)).collect()),
+        pull: pull.map_or(Vec::new(), |(place, by)| at(place).into_iter().map(|e| (e, vec![by])).collect()),
         gravity,
         forces: Vec::new(),
         floor: None,
@@ -192,6 +192,38 @@ fn what_nothing_holds_is_refused_and_a_floor_holds_it() {
     };
     let lowest = (0..model.rings.len()).map(lowest).fold(f64::INFINITY, f64::min);
     assert!(lowest > -2.01 && lowest < -1.99, "{lowest}: on the floor, which may be entered a little between points");
+}
+
+/// A way is made in equal shares, corner by corner, by the formula and by a sheet.
+#[test]
+fn a_way_has_corners() {
+    let way = [Vec3::new(1.0, 0.0, 0.0), Vec3::new(1.0, 2.0, 0.0), Vec3::zeros()];
+    for (share, at) in
+        [(0.0, [0.0, 0.0]), (0.25, [0.75, 0.0]), (0.5, [1.0, 1.0]), (2.0 / 3.0, [1.0, 2.0]), (1.0, [0.0, 0.0])]
+    {
+        assert!((along(&way, share) - Vec3::new(at[0], at[1], 0.0)).norm() < 1e-12, "{share}");
+    }
+    assert_eq!(along(&[], 0.5), Vec3::zeros());
+    let model = sheet("1.1", "2x1");
+    let mut setup = setup(&model, "left", Some(("right", Vec3::new(0.8, 0.0, 0.0))), Vec3::zeros());
+    setup.pull.iter_mut().for_each(|(_, way)| way.push(Vec3::new(-0.3, 0.0, 0.2)));
+    let end = run(&model, &setup);
+    assert_eq!((end.end, end.share, end.path.len()), (End::Reached, 1.0, 5));
+    let right = setup.pull[0].0;
+    let moved = |frame: usize| Vec3::from(end.path[frame].poses[right].position) - model.start.poses[right].position;
+    assert!((moved(2) - Vec3::new(0.8, 0.0, 0.0)).norm() < 2e-3, "half of the way is its first corner");
+    assert!((moved(4) - Vec3::new(-0.3, 0.0, 0.2)).norm() < 2e-3);
+}
+
+/// A sheet under weight between a held edge and a floor: the fall, then a pull.
+#[test]
+fn a_heavy_sheet_comes_to_rest_and_is_pulled() {
+    let model = sheet("1.1", "4x3");
+    let mut setup = setup(&model, "left", Some(("right", Vec3::new(0.5, 0.0, 0.0))), Vec3::new(0.0, 0.0, -1.0));
+    (setup.floor, setup.steps) = (Some(-3.0), 2);
+    let end = run(&model, &setup);
+    assert_eq!((end.end, end.share), (End::Reached, 1.0), "{:?}", end.note);
+    assert!(end.smallest_gap.unwrap() > -1e-4);
 }
 
 /// 270 unknowns: the sparse solver.

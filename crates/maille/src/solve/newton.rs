@@ -2,8 +2,8 @@
 //!
 //! Differences from the printed algorithm: a trial is the saved point plus a fraction of the step (the printed loop
 //! accumulates); the regularisation replaces each eigenvalue λ by max(|λ|, floor), which needs no repeated shifts and
-//! passes the descent test by construction; the decrease must be sufficient (Armijo); a saddle is left along its most
-//! negative eigenvector as soon as the gradient is small, and the minimisation goes on.
+//! passes the descent test by construction, and the floor follows the steps; the decrease must be sufficient (Armijo); a
+//! saddle is left along its most negative eigenvector as soon as the gradient is small, and the minimisation goes on.
 
 use super::{
     curvature::{Curvature, Decomposed},
@@ -68,7 +68,8 @@ pub trait Objective {
 pub struct NewtonOptions {
     /// Converged where |gradient| is below this.
     pub gradient_tolerance: f64,
-    /// Floor of |λ| in the step.
+    /// Floor of |λ| in the first step. It doubles where less than half of a step could be taken, so that one free ring
+    /// does not hold up all others, and halves after every whole step, so that shallow valleys are crossed.
     pub curvature_floor: f64,
     /// A saddle is a point with an eigenvalue below −this.
     pub saddle_tolerance: f64,
@@ -114,6 +115,8 @@ pub struct Minimization<P> {
 const LEAST_FRACTION: f64 = 1e-9;
 /// Sufficient decrease (Armijo).
 const ARMIJO: f64 = 1e-4;
+/// Least and largest floor of the curvature, as parts of the first.
+const FLOOR_RANGE: [f64; 2] = [1e-3, 1e4];
 
 impl<P> Minimization<P> {
     /// At `start`, with nothing done.
@@ -141,6 +144,7 @@ pub fn minimize<O: Objective>(
 ) -> Minimization<O::Point> {
     let mut out = Minimization::at(start);
     let mut patterns = Patterns::default();
+    let mut floor = options.curvature_floor;
     while out.iterations < options.max_iterations {
         if cancel.load(Ordering::Relaxed) {
             out.outcome = Outcome::Interrupted;
@@ -174,11 +178,13 @@ pub fn minimize<O: Objective>(
                 }
             }
         } else {
-            let newton = here.curvature.descent_step(&here.gradient, options.curvature_floor);
+            let newton = here.curvature.descent_step(&here.gradient, floor);
             let along = |step: &[f64]| descend(objective, &out.point, (here.energy, &here.gradient), &here.guard, step);
             newton
                 .and_then(|step| along(&step))
+                .inspect(|&(_, fraction)| floor = next_floor(floor, fraction, options.curvature_floor))
                 .or_else(|| along(&here.gradient.iter().map(|g| -g).collect::<Vec<_>>()))
+                .map(|(point, _)| point)
                 .or_else(|| escape(objective, &out.point, &here))
         };
         out.point = match next {
@@ -196,20 +202,31 @@ pub fn minimize<O: Objective>(
     out
 }
 
-/// The first point along `step` that decreases enough from `x`, of the energy and gradient `here`.
+fn next_floor(floor: f64, fraction: f64, first: f64) -> f64 {
+    let factor = if fraction < 0.5 {
+        2.0
+    } else if fraction < 1.0 {
+        1.0
+    } else {
+        0.5
+    };
+    (floor * factor).clamp(FLOOR_RANGE[0] * first, FLOOR_RANGE[1] * first)
+}
+
+/// The first point along `step` that decreases enough from `x`, of the energy and gradient `here`, and its fraction.
 pub(super) fn descend<O: Objective>(
     objective: &O,
     x: &O::Point,
     here: (f64, &[f64]),
     guard: &O::Guard,
     step: &[f64],
-) -> Option<O::Point> {
+) -> Option<(O::Point, f64)> {
     let slope: f64 = step.iter().zip(here.1).map(|(s, g)| s * g).sum();
     let mut fraction = objective.largest_step(guard, step);
     while slope < 0.0 && fraction > LEAST_FRACTION {
         let trial = objective.moved(x, step, fraction);
         if objective.energy(&trial) <= here.0 + ARMIJO * fraction * slope && objective.allows(x, &trial) {
-            return Some(trial);
+            return Some((trial, fraction));
         }
         fraction *= 0.5;
     }
