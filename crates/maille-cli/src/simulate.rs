@@ -71,7 +71,10 @@ pub struct Args {
     /// A floor at this height, in the file's unit
     #[arg(long, value_name = "Z", allow_hyphen_values = true, value_parser = parse_number)]
     floor: Option<f64>,
-    /// Steps of the pull
+    /// Slow the sheet, which then need not come to rest in each step: under weight 1 a free ring sinks by 1/DRAG in a step
+    #[arg(long, value_parser = positive)]
+    drag: Option<f64>,
+    /// Steps of the pull; with --drag, of the whole motion
     #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     steps: u32,
     /// Folder of the result [default: maille-out/DESIGN-simulate]
@@ -276,7 +279,7 @@ fn setup(args: &Args, model: &Model) -> Result<Setup> {
         ..EnergyOptions::default()
     };
     let floor = args.floor.map(|z| z / model.unit);
-    Ok(Setup { fix, pull, gravity, forces, floor, steps: args.steps, options })
+    Ok(Setup { fix, pull, gravity, forces, floor, steps: args.steps, drag: args.drag, options })
 }
 
 fn record(args: &Args, input: &Input, model: &Model, end: &Simulation) -> SimulationRecord {
@@ -299,6 +302,7 @@ fn record(args: &Args, input: &Input, model: &Model, end: &Simulation) -> Simula
             "force": forces,
             "floor": args.floor,
             "steps": args.steps,
+            "drag": args.drag,
             "alpha": args.alpha,
             "tau": args.tau,
             "max_iterations": args.max_iterations,

@@ -36,6 +36,7 @@ fn main() {
                 forces: Vec::new(),
                 floor: None,
                 steps: 10,
+                drag: None,
                 options: EnergyOptions { max_iterations: 2000, ..EnergyOptions::default() },
             };
             let end = simulate(&model, &setup, &cancel, &mut |_| {}).expect("the setup is right");

@@ -8,7 +8,7 @@
 use crate::{
     energy::{
         Configuration, SheetEnergy,
-        load::{Floor, Loads, PositionTarget},
+        load::{Drag, Floor, Loads, PositionTarget},
     },
     error::InvalidInput,
     limit::energy::EnergyOptions,
@@ -93,8 +93,11 @@ pub struct Setup {
     pub forces: Vec<(usize, Vec3)>,
     /// Height of a floor.
     pub floor: Option<f64>,
-    /// Steps of the pull.
+    /// Steps of the pull; with a drag, of the whole motion.
     pub steps: u32,
+    /// With a drag the sheet does not come to rest: each step is one implicit step of overdamped motion. Under weight 1 a
+    /// free element sinks by 1/drag in a step.
+    pub drag: Option<f64>,
     /// Parameters of the energy method; those of its periodic cell play no part.
     pub options: EnergyOptions,
 }
@@ -102,10 +105,10 @@ pub struct Setup {
 /// A gravity or force of size 1 pulls an element with this force, in β R: so small that it makes little overlap.
 pub const WEIGHT_UNIT: f64 = 1e-3;
 /// Under weight, α of the first minimisations, as parts of the last one's.
-const SOFTER: [f64; 3] = [1e-5, 1e-3, 0.03];
-/// A sheet under weight is at rest where the forces that nothing balances are this part of all forces (both as norms over
-/// the elements); in the first, soft minimisations the second part is enough.
-const UNBALANCED: [f64; 2] = [1e-4, 1e-2];
+const SOFTER: [f64; 5] = [1e-5, 1e-4, 1e-3, 1e-2, 0.1];
+/// A sheet under weight is at rest where the forces that nothing balances are this part of all forces, both as norms over
+/// the elements.
+const UNBALANCED: f64 = 1e-4;
 /// Halvings of the step in which a sheet locks.
 const HALVINGS: usize = 8;
 
@@ -207,6 +210,8 @@ impl Setup {
             .collect();
         // Targets so stiff that all forces together cost them half of the threshold.
         let all: f64 = forces.iter().map(|(_, force)| force.norm()).sum();
+        let all =
+            all + self.drag.map_or(0.0, |drag| drag * WEIGHT_UNIT * self.longest_step() * model.elements.len() as f64);
         let stiffness = all / (self.options.tau * self.pull.len().max(1) as f64);
         let target = |(element, way): &(usize, Vec<Vec3>)| PositionTarget {
             element: *element,
@@ -218,7 +223,17 @@ impl Setup {
             targets: self.pull.iter().map(target).collect(),
             held: self.fix.clone(),
             floor: self.floor.map(|height| Floor { height, alpha }),
+            drag: None,
         }
+    }
+
+    /// The longest way of a pulled element in one step.
+    fn longest_step(&self) -> f64 {
+        let legs = |way: &Vec<Vec3>| {
+            let from = std::iter::once(Vec3::zeros()).chain(way.iter().copied());
+            from.zip(way).map(|(from, to)| (to - from).norm()).fold(0.0, f64::max) * way.len() as f64
+        };
+        self.pull.iter().map(|(_, way)| legs(way)).fold(0.0, f64::max) / f64::from(self.steps.max(1))
     }
 
     fn check(&self, model: &Model) -> Result<(), InvalidInput> {
@@ -241,13 +256,14 @@ impl Setup {
 }
 
 impl Run<'_> {
-    /// Comes to rest. A weight is small against α, so that elements would bounce along stiff walls for long: with soft
+    /// Comes to rest, or makes a step against the drag. A weight is small against α, so that elements would bounce along stiff walls for long: with soft
     /// contacts first they do not. The softest ones are for the fall, before the pull.
     fn relax(&mut self, share: f64, from: &State) -> Rest {
-        let softer = match (self.setup.is_weightless(), self.runs) {
-            (true, _) => &[],
-            (false, 0) => &SOFTER[..],
-            (false, _) => &SOFTER[1..],
+        let comes_to_rest_slowly = self.setup.drag.is_none() && !self.setup.is_weightless();
+        let softer = match (comes_to_rest_slowly, self.runs) {
+            (false, _) => &[],
+            (true, 0) => &SOFTER[..],
+            (true, _) => &SOFTER[2..],
         };
         let mut from = from.clone();
         for softness in softer {
@@ -266,11 +282,9 @@ impl Run<'_> {
         let Run { model, setup, runs, .. } = *self;
         let alpha = softness * setup.options.alpha;
         let contacts = EnergyOptions { alpha, ..setup.options.clone() }.contacts(model);
-        let energy = SheetEnergy {
-            loads: setup.loads(model, share, alpha),
-            seed: setup.options.seed,
-            ..SheetEnergy::new(model, &contacts)
-        };
+        let mut loads = setup.loads(model, share, alpha);
+        loads.drag = setup.drag.map(|drag| Drag { from: from.poses.clone(), coefficient: drag * WEIGHT_UNIT });
+        let energy = SheetEnergy { loads, seed: setup.options.seed, ..SheetEnergy::new(model, &contacts) };
         let start = Configuration::start(from.clone());
         let mut state_of_run = 0;
         let mut see = |x: &Configuration, energy: f64| {
@@ -279,7 +293,7 @@ impl Run<'_> {
         };
         let mut options = setup.options.newton();
         let forces = energy.loads.forces.iter().map(|(_, force)| force.norm_squared()).sum::<f64>().sqrt();
-        options.gradient_tolerance = (UNBALANCED[usize::from(softness < 1.0)] * forces).max(options.gradient_tolerance);
+        options.gradient_tolerance = (UNBALANCED * forces).max(options.gradient_tolerance);
         let end = minimize(&energy, start, &options, self.cancel, &mut see);
         self.runs += 1;
         self.iterations += end.iterations;
@@ -311,7 +325,7 @@ impl Run<'_> {
     }
 }
 
-/// Lets the finite sheet `model` come to rest, then pulls it. `watch` sees every accepted state.
+/// Lets the finite sheet `model` come to rest, then pulls it; with a drag, moves it step by step. `watch` sees every accepted state.
 pub fn simulate(
     model: &Model,
     setup: &Setup,
@@ -322,7 +336,7 @@ pub fn simulate(
     let mut run = Run { model, setup, cancel, watch, runs: 0, iterations: 0, kicks: 0, path: Vec::new() };
     let (mut share, mut rest) = (0.0, run.relax(0.0, &model.start));
     // The last position that was reached, then the first one that was missed.
-    let steps = if setup.pull.is_empty() { 0 } else { setup.steps.max(1) };
+    let steps = if setup.pull.is_empty() && setup.drag.is_none() { 0 } else { setup.steps.max(1) };
     let mut missed = (!run.reached(&rest)).then_some(0.0);
     let mut step = 0;
     let mut failed = None;

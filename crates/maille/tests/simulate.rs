@@ -7,7 +7,7 @@ use maille::{
     energy::{
         Configuration, ContactOptions, MinimaMethod, SheetEnergy,
         barrier::ContactLaw,
-        load::{Floor, Loads, PositionTarget},
+        load::{Drag, Floor, Loads, PositionTarget},
     },
     lattice::Cell,
     limit::energy::EnergyOptions,
@@ -31,6 +31,7 @@ fn setup(model: &Model, fix: &str, pull: Option<(&str, Vec3)>, gravity: Vec3) ->
         forces: Vec::new(),
         floor: None,
         steps: 4,
+        drag: None,
         options: EnergyOptions::default(),
     }
 }
@@ -95,6 +96,7 @@ fn loads_match_finite_differences() {
         targets: vec![PositionTarget { element: 3, position: Vec3::new(2.0, 1.0, -0.5), weight: 2.0 }],
         held: vec![1],
         floor: Some(Floor { height: -1.08, alpha: 30.0 }),
+        drag: Some(Drag { from: shaken(&model, 0.4, 6).poses, coefficient: 0.7 }),
     };
     let energy = SheetEnergy { loads, ..SheetEnergy::new(&model, &contacts) };
     let x = Configuration::start(shaken(&model, 0.03, 5));
@@ -224,6 +226,25 @@ fn a_heavy_sheet_comes_to_rest_and_is_pulled() {
     let end = run(&model, &setup);
     assert_eq!((end.end, end.share), (End::Reached, 1.0), "{:?}", end.note);
     assert!(end.smallest_gap.unwrap() > -1e-4);
+}
+
+/// Against a drag a free sheet sinks by weight over drag in a step, and lies on the floor after some.
+#[test]
+fn a_sheet_sinks_against_its_drag() {
+    let model = sheet("1.1", "2x2");
+    let mut setup = setup(&model, "", None, Vec3::new(0.0, 0.0, -1.0));
+    (setup.floor, setup.drag) = (Some(-3.0), Some(4.0));
+    let end = run(&model, &setup);
+    assert_eq!((end.end, end.path.len()), (End::Reached, 5));
+    for (step, frame) in end.path.iter().enumerate() {
+        let z: f64 = frame.poses.iter().map(|p| p.position[2]).sum::<f64>() / 12.0;
+        let start: f64 = model.start.poses.iter().map(|p| p.position.z).sum::<f64>() / 12.0;
+        assert!((z - (start - 0.25 * (step as f64 + 1.0))).abs() < 1e-4, "step {step}: {z}");
+    }
+    setup.steps = 40;
+    let end = run(&model, &setup);
+    let z: f64 = end.state.poses.iter().map(|p| p.position.z).sum::<f64>() / 12.0;
+    assert!(end.end == End::Reached && z < -2.5 && z > -2.9, "{z}");
 }
 
 /// 270 unknowns: the sparse solver.

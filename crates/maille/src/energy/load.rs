@@ -1,8 +1,14 @@
 //! Forces on elements (§4.1.4): constant ones (eq. 4.1.7), targets for positions (eq. 4.1.8), and what holds against
-//! them: elements whose position is no unknown, and a floor.
+//! them: elements whose position is no unknown, a floor, and drag.
 
 use super::barrier::barrier;
-use crate::{error::InvalidInput, model::Model, solve::curvature::Curvature, state::State, topology::broad::in_chunks};
+use crate::{
+    error::InvalidInput,
+    model::Model,
+    solve::curvature::Curvature,
+    state::{Pose, State},
+    topology::broad::in_chunks,
+};
 use maille_geometry::Vec3;
 use nalgebra::{Matrix3, Matrix4, Vector4};
 
@@ -33,6 +39,29 @@ pub struct Floor {
 /// Points of a core circle that feel the floor.
 pub const FLOOR_POINTS: usize = 32;
 
+/// Resistance to motion: an implicit step of overdamped motion from the poses `from`.
+///
+/// Energy of an element that has moved by Δx and turned by the angle θ since: c/2 |Δx|² + c R² (1 − cos θ), where
+/// R = 1 is the reference radius. With Q = rotation · from⁻¹, 1 − cos θ = (3 − tr Q)/2, smooth but at θ = π.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drag {
+    /// Poses at the beginning of the step.
+    pub from: Vec<Pose>,
+    /// c: drag coefficient over time step, in β.
+    pub coefficient: f64,
+}
+
+impl Drag {
+    /// 1 − cos of the angle turned, its gradient and its Hessian in a further turn.
+    fn turned(&self, e: usize, pose: &Pose) -> (f64, Vec3, Matrix3<f64>) {
+        let q = (pose.rotation * self.from[e].rotation.inverse()).to_rotation_matrix();
+        let q = q.matrix();
+        let axis = Vec3::new(q[(2, 1)] - q[(1, 2)], q[(0, 2)] - q[(2, 0)], q[(1, 0)] - q[(0, 1)]);
+        let bend = (Matrix3::identity() * q.trace() - (q + q.transpose()) * 0.5) * 0.5;
+        (0.5 * (3.0 - q.trace()), axis * 0.5, bend)
+    }
+}
+
 /// What acts on single elements.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Loads {
@@ -44,6 +73,8 @@ pub struct Loads {
     pub held: Vec<usize>,
     /// A floor.
     pub floor: Option<Floor>,
+    /// Resistance to motion.
+    pub drag: Option<Drag>,
 }
 
 impl Loads {
@@ -105,7 +136,14 @@ impl Loads {
                 });
             }
         }
-        forces + targets + floor
+        let mut dragged = 0.0;
+        if let Some(drag) = &self.drag {
+            for (e, pose) in state.poses.iter().enumerate() {
+                let moved = (pose.position - drag.from[e].position).norm_squared();
+                dragged += drag.coefficient * (0.5 * moved + drag.turned(e, pose).0);
+            }
+        }
+        forces + targets + floor + dragged
     }
 
     /// Adds gradient and Hessian.
@@ -120,6 +158,23 @@ impl Loads {
             for axis in 0..3 {
                 gradient[6 * t.element + axis] += 2.0 * t.weight * miss[axis];
                 hessian.add(&[(0, 6 * t.element + axis, 1.0)], 1, |_, _| 2.0 * t.weight);
+            }
+        }
+        if let Some(drag) = &self.drag {
+            for (e, pose) in state.poses.iter().enumerate() {
+                let c = drag.coefficient;
+                let moved = pose.position - drag.from[e].position;
+                let (_, slope, bend) = drag.turned(e, pose);
+                for axis in 0..3 {
+                    gradient[6 * e + axis] += c * moved[axis];
+                    gradient[6 * e + 3 + axis] += c * slope[axis];
+                }
+                let entries: Vec<(usize, usize, f64)> = (0..6).map(|k| (k, 6 * e + k, 1.0)).collect();
+                hessian.add(&entries, 6, |p, q| match (p, q) {
+                    (3.., 3..) => c * bend[(p - 3, q - 3)],
+                    _ if p == q => c,
+                    _ => 0.0,
+                });
             }
         }
         let Some(plane) = self.floor else { return };
