@@ -40,6 +40,9 @@ pub struct SimulationOutcome {
     pub iterations: usize,
     /// Random kicks.
     pub kicks: usize,
+    /// Steps against a drag whose forces do not balance.
+    #[serde(default)]
+    pub stalled: usize,
     /// What happened, where `end` does not say it.
     pub note: Option<String>,
 }

@@ -32,7 +32,10 @@ pub fn steepest_descent<O: Objective>(
         }
         out.iterations += 1;
         let step: Vec<f64> = gradient.iter().map(|g| -length * g).collect();
-        let Some((point, _)) = descend(objective, &out.point, (energy, &gradient), &guard, &step) else { return out };
+        let Some((point, _)) = descend(objective, &out.point, (energy, &gradient), &guard, &step) else {
+            out.outcome = Outcome::Stalled;
+            return out;
+        };
         let before = energy;
         let slope_sq = out.gradient_norm * out.gradient_norm;
         (energy, gradient, guard) = objective.slope(&point);

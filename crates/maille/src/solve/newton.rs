@@ -84,8 +84,10 @@ pub struct NewtonOptions {
 pub enum Outcome {
     /// Small gradient, no negative curvature.
     Minimum,
-    /// Too many iterations, or no decrease was found.
+    /// Too many iterations.
     NotConverged,
+    /// No decrease was found, kicks included: the energy jumps where minima split.
+    Stalled,
     /// The caller asked to stop.
     Interrupted,
     /// The eigensolver failed its check.
@@ -196,7 +198,10 @@ pub fn minimize<O: Objective>(
                 let kicked = objective.moved(&out.point, &step, fraction);
                 if objective.allows(&out.point, &kicked) { kicked } else { continue }
             }
-            None => return out,
+            None => {
+                out.outcome = Outcome::Stalled;
+                return out;
+            }
         };
     }
     out
