@@ -6,10 +6,12 @@
 //!
 //! No closures in the kernels: what is not inlined into the function of an instruction set cannot use it.
 
-use crate::count::TABLE;
+use crate::brackets::{Bracket, Brackets, Counted, SLOTS, is_steep};
+use crate::count::{ARCS, TABLE};
 use crate::grid::Direction;
 use crate::lane::{Lane, Register};
-use crate::quick::{self, Angle, Found, SLOTS, minima_of_lanes};
+use crate::placed::{Block, WIDTH};
+use crate::quick::{self, roots};
 use crate::relative::{Reduced, Relative};
 use crate::{Circle, MAX_MINIMA, Vec3, circle_distance_minima};
 use pulp::{Scalar, Simd, WithSimd};
@@ -137,174 +139,6 @@ pub fn circle_distance_approaches_with(
     Simd::vectorize(Scalar, work);
 }
 
-/// Pairs side by side: the most lanes of a register.
-const WIDTH: usize = 8;
-/// Numbers of a pair: centre, normal and radius of A, then of B.
-const NUMBERS: usize = 14;
-
-/// Pairs as a structure of arrays.
-struct Block {
-    numbers: [[f64; WIDTH]; NUMBERS],
-    index: [usize; WIDTH],
-    count: usize,
-}
-
-impl Block {
-    /// Full of one harmless pair.
-    fn new() -> Self {
-        let one = [0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0];
-        Self { numbers: one.map(|x| [x; WIDTH]), index: [0; WIDTH], count: 0 }
-    }
-
-    #[inline(always)]
-    fn push(&mut self, index: usize, (a, b): &(Circle, Circle)) {
-        let lane = self.count % WIDTH;
-        for (k, circle) in [(0, a), (7, b)] {
-            let numbers = [
-                circle.center.x,
-                circle.center.y,
-                circle.center.z,
-                circle.normal.x,
-                circle.normal.y,
-                circle.normal.z,
-                circle.radius,
-            ];
-            for (number, x) in self.numbers[k..].iter_mut().zip(numbers) {
-                number[lane] = x;
-            }
-        }
-        self.index[lane] = index;
-        self.count = lane + 1;
-    }
-
-    #[inline(always)]
-    fn load<S: Simd>(&self, simd: S, from: usize) -> Placed<Register<S>> {
-        Placed {
-            between: minus(self.vector(simd, 7, from), self.vector(simd, 0, from)),
-            normals: [self.vector(simd, 3, from), self.vector(simd, 10, from)],
-            radii: [self.number(simd, 6, from), self.number(simd, 13, from)],
-        }
-    }
-
-    #[inline(always)]
-    fn number<S: Simd>(&self, simd: S, k: usize, from: usize) -> Register<S> {
-        Register { simd, value: S::as_simd_f64s(&self.numbers[k][from..from + S::F64_LANES]).0[0] }
-    }
-
-    #[inline(always)]
-    fn vector<S: Simd>(&self, simd: S, k: usize, from: usize) -> Vector<Register<S>> {
-        [self.number(simd, k, from), self.number(simd, k + 1, from), self.number(simd, k + 2, from)]
-    }
-}
-
-type Vector<T> = [T; 3];
-
-#[inline(always)]
-fn minus<T: Lane>(p: Vector<T>, q: Vector<T>) -> Vector<T> {
-    [p[0] - q[0], p[1] - q[1], p[2] - q[2]]
-}
-
-#[inline(always)]
-fn dot<T: Lane>(p: Vector<T>, q: Vector<T>) -> T {
-    p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
-}
-
-#[inline(always)]
-fn cross<T: Lane>(p: Vector<T>, q: Vector<T>) -> Vector<T> {
-    [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]]
-}
-
-#[inline(always)]
-fn sum<T: Lane>(p: Vector<T>, by: T, q: Vector<T>, times: T) -> Vector<T> {
-    [p[0] * by + q[0] * times, p[1] * by + q[1] * times, p[2] * by + q[2] * times]
-}
-
-#[inline(always)]
-fn choose<T: Lane>(mask: T::Mask, yes: Vector<T>, no: Vector<T>) -> Vector<T> {
-    [T::pick(mask, yes[0], no[0]), T::pick(mask, yes[1], no[1]), T::pick(mask, yes[2], no[2])]
-}
-
-/// The pairs of a register: from the centre of A to that of B, normals and radii.
-struct Placed<T> {
-    between: Vector<T>,
-    normals: [Vector<T>; 2],
-    radii: [T; 2],
-}
-
-/// The minima of a register: for each slot distance and direction on B.
-struct Answer<T> {
-    slots: [(T, Vector<T>); SLOTS],
-    count: T,
-    complete: T,
-}
-
-/// Sines of the planes' angle below this go to the single kernel.
-const LEAST_TILT: f64 = 1e-7;
-
-impl<T: Lane> Placed<T> {
-    /// [`crate::circle_distance_floor`].
-    #[inline(always)]
-    fn floor(&self) -> T {
-        let zero = self.radii[0].like(0.0);
-        let apart_sq = dot(self.between, self.between);
-        let apart = apart_sq.sqrt();
-        let cos = dot(self.normals[0], self.normals[1]);
-        let sin = (zero.like(1.0) - cos * cos).max(zero).sqrt();
-        let mut over = [zero; 2];
-        for (base, moving) in [(0, 1), (1, 0)] {
-            let height = dot(self.normals[base], self.between);
-            let from_axis = (apart_sq - height * height).max(zero).sqrt();
-            let rise = (height.abs() - self.radii[moving] * sin).max(zero);
-            let radial = ((from_axis - self.radii[base]).abs() - self.radii[moving]).max(zero);
-            over[base] = rise * rise + radial * radial;
-        }
-        let size = apart + self.radii[0] + self.radii[1];
-        let spheres = apart - self.radii[0] - self.radii[1];
-        let inside = (self.radii[0] - self.radii[1]).abs() - apart;
-        let floor = spheres.max(inside).max(over[0].max(over[1]).sqrt()) - size * 1e-7;
-        floor.max(zero)
-    }
-
-    /// The register's minima; the numbers of a pair are those of [`crate::relative::Relative`].
-    #[inline(always)]
-    fn minima(&self) -> Answer<T> {
-        let one = self.radii[0].like(1.0);
-        let zero = self.radii[0].like(0.0);
-        // The smaller circle moves; B, if they are equal.
-        let swapped = self.radii[0].below(self.radii[1]);
-        let base_normal = choose(swapped, self.normals[1], self.normals[0]);
-        let normal = choose(swapped, self.normals[0], self.normals[1]);
-        let base_radius = T::pick(swapped, self.radii[1], self.radii[0]);
-        let radius = T::pick(swapped, self.radii[0], self.radii[1]);
-        let [bx, by, bz] = self.between;
-        let between = choose(swapped, [-bx, -by, -bz], self.between);
-        let scale = dot(between, between).sqrt().max(base_radius).max(radius);
-        let inverse = one / scale;
-        let tilt = cross(normal, base_normal);
-        let flat = sum(tilt, one, base_normal, -dot(base_normal, tilt));
-        let length = dot(flat, flat).sqrt();
-        let along = one / length;
-        let y = [flat[0] * along, flat[1] * along, flat[2] * along];
-        let x = cross(y, base_normal);
-        let offset = [dot(x, between) * inverse, dot(y, between) * inverse, dot(base_normal, between) * inverse];
-        let pair =
-            Reduced::new(base_radius * inverse, radius * inverse, offset, dot(base_normal, normal), dot(y, tilt));
-        let Found { angles, count, complete } = minima_of_lanes(&pair, &TABLE);
-        let steepest = cross(y, normal);
-        let mut slots = [(zero, x); SLOTS];
-        for k in 0..SLOTS {
-            let Angle { cos, sin } = angles[k];
-            let moving = sum(steepest, cos, y, sin);
-            let [ex, ey, rho] = pair.foot(cos, sin);
-            let foot = one / rho;
-            let base = sum(x, ex * foot, y, ey * foot);
-            slots[k] = (pair.distance(cos, sin) * scale, choose(swapped, base, moving));
-        }
-        let tilted = zero.like(LEAST_TILT).below(length);
-        Answer { slots, count, complete: T::pick(tilted, complete, zero) }
-    }
-}
-
 /// A batch on its way into registers.
 struct Work<'a> {
     pairs: &'a [(Circle, Circle)],
@@ -344,22 +178,111 @@ impl WithSimd for Work<'_> {
 }
 
 #[inline(always)]
-fn store<S: Simd>(register: Register<S>, to: &mut [f64; WIDTH], from: usize) {
+fn store<S: Simd>(register: Register<S>, to: &mut Row, from: usize) {
     S::as_mut_simd_f64s(&mut to[from..from + S::F64_LANES]).0[0] = register.value;
+}
+
+#[inline(always)]
+fn load<S: Simd>(simd: S, row: &Row, from: usize) -> Register<S> {
+    Register { simd, value: S::as_simd_f64s(&row[from..from + S::F64_LANES]).0[0] }
+}
+
+/// One number of each pair of a block.
+type Row = [f64; WIDTH];
+
+/// Numbers of a bracket.
+const PARTS: usize = 5;
+
+/// The brackets of a register with arcs in doubt: those pairs leave the register for a while.
+#[inline(always)]
+fn decided<S: Simd>(
+    simd: S,
+    pair: &Reduced<Register<S>>,
+    counted: &Counted<Register<S>>,
+    (brackets, count): ([Bracket<Register<S>>; SLOTS], Register<S>),
+) -> ([Bracket<Register<S>>; SLOTS], Register<S>) {
+    let mut doubts = [0.0; WIDTH];
+    store(counted.doubts(), &mut doubts, 0);
+    let (mut excess, mut minus) = ([[0.0; WIDTH]; ARCS], [[0.0; WIDTH]; ARCS]);
+    for k in 0..ARCS {
+        store(counted.excess[k], &mut excess[k], 0);
+        store(counted.minus[k], &mut minus[k], 0);
+    }
+    let mut numbers = [[0.0; WIDTH]; 7];
+    for (row, number) in numbers.iter_mut().zip(pair.numbers()) {
+        store(number, row, 0);
+    }
+    let mut parts = [[[0.0; WIDTH]; PARTS]; SLOTS];
+    let mut counts = [0.0; WIDTH];
+    store(count, &mut counts, 0);
+    for (rows, bracket) in parts.iter_mut().zip(&brackets) {
+        for (row, part) in rows.iter_mut().zip(bracket.parts()) {
+            store(part, row, 0);
+        }
+    }
+    for lane in 0..S::F64_LANES {
+        if doubts[lane] != 0.0 {
+            counts[lane] = decide(lane, &numbers, &excess, &minus, &mut parts);
+        }
+    }
+    let mut brackets = brackets;
+    for (bracket, rows) in brackets.iter_mut().zip(&parts) {
+        let mut parts = bracket.parts();
+        for (part, row) in parts.iter_mut().zip(rows) {
+            *part = load(simd, row, 0);
+        }
+        *bracket = Bracket::of_parts(parts);
+    }
+    (brackets, load(simd, &counts, 0))
+}
+
+/// The brackets of one pair of a block, and how many: 0 if that is not to be decided here.
+fn decide(
+    lane: usize,
+    numbers: &[Row; 7],
+    excess: &[Row; ARCS],
+    minus: &[Row; ARCS],
+    parts: &mut [[Row; PARTS]; SLOTS],
+) -> f64 {
+    let pair = Reduced::of_numbers(numbers.map(|row| row[lane]));
+    let counted = Counted { excess: excess.map(|row| row[lane]), minus: minus.map(|row| row[lane]) };
+    match Brackets::new(&pair, &counted, &TABLE) {
+        Some(found) if (1..=SLOTS).contains(&found.count) => {
+            for (slot, rows) in parts.iter_mut().enumerate() {
+                for (row, part) in rows.iter_mut().zip(found.all[slot.min(found.count - 1)].parts()) {
+                    row[lane] = part;
+                }
+            }
+            found.count as f64
+        }
+        _ => 0.0,
+    }
 }
 
 /// The minima of the pairs of a block, put in their places.
 #[inline(always)]
 fn solve<S: Simd>(simd: S, block: &Block, pairs: &[(Circle, Circle)], out: &mut [Approaches]) {
-    let (mut count, mut complete) = ([0.0; WIDTH], [0.0; WIDTH]);
+    let table = &*TABLE;
+    let (mut counts, mut complete) = ([0.0; WIDTH], [0.0; WIDTH]);
     let mut distance = [[0.0; WIDTH]; SLOTS];
     let mut direction = [[[0.0; WIDTH]; 3]; SLOTS];
     for from in (0..block.count).step_by(S::F64_LANES) {
-        let answer = block.load(simd, from).minima();
-        store(answer.count, &mut count, from);
-        store(answer.complete, &mut complete, from);
+        let framed = block.load(simd, from).framed();
+        let pair = &framed.pair;
+        let counted = Counted::new(pair, table);
+        let zero = pair.radius.like(0.0);
+        let mut rising = counted.rising(table);
+        if <Register<S>>::any(zero.below(counted.doubts())) {
+            rising = decided(simd, pair, &counted, rising);
+        }
+        let (brackets, count) = rising;
+        let (angles, good) = roots(pair, &brackets, SLOTS);
+        let few = <Register<S>>::both(zero.below(count), count.below(zero.like(SLOTS as f64 + 0.5)));
+        let regular = <Register<S>>::both(few, <Register<S>>::both(is_steep(pair), framed.is_tilted()));
+        store(count, &mut counts, from);
+        store(<Register<S>>::pick(regular, good[0] * good[1], zero), &mut complete, from);
         for slot in 0..SLOTS {
-            let (d, v) = answer.slots[slot];
+            let (d, v) = framed.approach(angles[slot]);
             store(d, &mut distance[slot], from);
             for axis in 0..3 {
                 store(v[axis], &mut direction[slot][axis], from);
@@ -378,7 +301,7 @@ fn solve<S: Simd>(simd: S, block: &Block, pairs: &[(Circle, Circle)], out: &mut 
             direction_b: Vec3::from(direction[slot].map(|axis| axis[lane])),
         };
         let there = &mut out[index];
-        there.count = count[lane] as usize;
+        there.count = counts[lane] as usize;
         for slot in 0..there.count {
             there.found[slot] = approach(slot);
         }

@@ -22,6 +22,7 @@
 
 mod batch;
 mod bounds;
+mod brackets;
 mod circle;
 mod count;
 mod floor;
@@ -29,6 +30,7 @@ mod grid;
 mod lane;
 mod linking;
 mod minima;
+mod placed;
 mod polynomial;
 mod quick;
 mod relative;

@@ -51,6 +51,8 @@ pub(crate) struct Reduced<T> {
     pub p: [T; 2],
     /// `R e·e′ = q₀ cos θ + q₁ sin θ + q₂ sin 2θ`.
     pub q: [T; 3],
+    /// `1/R`.
+    inverse: T,
 }
 
 impl<T: Lane> Reduced<T> {
@@ -59,7 +61,18 @@ impl<T: Lane> Reduced<T> {
         let (cx0, rise) = (tilt_cos * x0, radius * tilt_sin);
         let p = [radius * y0, -(radius * (cx0 + tilt_sin * z0))];
         let q = [base_radius * p[0], -(base_radius * (radius * cx0)), base_radius * (rise * rise) * 0.5];
-        Self { base_radius, radius, x0, y0, z0, tilt_cos, tilt_sin, p, q }
+        Self { base_radius, radius, x0, y0, z0, tilt_cos, tilt_sin, p, q, inverse: radius.like(1.0) / base_radius }
+    }
+
+    /// What it is made of.
+    #[inline(always)]
+    pub fn numbers(&self) -> [T; 7] {
+        [self.base_radius, self.radius, self.x0, self.y0, self.z0, self.tilt_cos, self.tilt_sin]
+    }
+
+    #[inline(always)]
+    pub fn of_numbers([base_radius, radius, x0, y0, z0, tilt_cos, tilt_sin]: [T; 7]) -> Self {
+        Self::new(base_radius, radius, [x0, y0, z0], tilt_cos, tilt_sin)
     }
 
     /// `ρ h′ = pρ − q` and its companion `pρ + q`.
@@ -93,6 +106,29 @@ impl<T: Lane> Reduced<T> {
             (z1 * z2 + rho1 * rho2) * 3.0 - z * z1 + radial * rho3,
             rho,
         ]
+    }
+
+    /// Halley's step for `f = pρ − q`, as a fraction that is the tangent of half of it: `−f f′ / (2 f′² − f f″)` times
+    /// ρ³ above and below, so that it takes no division. `R e·e′ = q`. No step where f does not rise.
+    #[inline(always)]
+    pub fn rough_step(&self, cos: T, sin: T) -> [T; 2] {
+        let (x, y) = (self.x0 + self.radius * self.tilt_cos * cos, self.y0 + self.radius * sin);
+        let square = x * x + y * y;
+        let rho = square.sqrt();
+        let (twice_sin, twice_cos) = (sin * cos * 2.0, (cos - sin) * (cos + sin));
+        let (p, p1) = (self.p[0] * cos + self.p[1] * sin, self.p[1] * cos - self.p[0] * sin);
+        let (odd, even) = (self.q[0] * cos + self.q[1] * sin, self.q[2] * twice_sin);
+        let q = odd + even;
+        let q1 = self.q[1] * cos - self.q[0] * sin + self.q[2] * twice_cos * 2.0;
+        let q2 = -(odd + even * 4.0);
+        let (ee, ee1) = (q * self.inverse, q1 * self.inverse);
+        let f = p * rho - q;
+        // ρ f′ and ρ³ f″
+        let first = p1 * square + p * ee - q1 * rho;
+        let second = square * (p1 * ee * 2.0 + p * ee1 - p * square - q2 * rho) - p * (ee * ee);
+        let rises = square.like(0.0).below(first);
+        let bottom = first * first * rho * 2.0 - f * second;
+        [T::pick(rises, -(f * first * square), square.like(0.0)), bottom]
     }
 
     /// How large the slope could be: the sum of its harmonics' amplitudes.
