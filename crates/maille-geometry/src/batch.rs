@@ -10,7 +10,7 @@ use crate::brackets::{Bracket, Brackets, Counted, SLOTS, is_steep};
 use crate::count::{ARCS, TABLE};
 use crate::grid::Direction;
 use crate::lane::{Lane, Register};
-use crate::placed::{Block, WIDTH};
+use crate::placed::{Block, Row, WIDTH};
 use crate::quick::{self, roots};
 use crate::relative::{Reduced, Relative};
 use crate::{Circle, MAX_MINIMA, Vec3, circle_distance_minima};
@@ -151,162 +151,216 @@ impl WithSimd for Work<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let mut near = Block::new();
-        for first in (0..self.pairs.len()).step_by(WIDTH) {
-            let mut all = Block::new();
-            let last = (first + WIDTH).min(self.pairs.len());
+        let Work { pairs, reach, out } = self;
+        let (mut all, mut near, mut rows) = (Block::new(), Block::new(), Rows::new());
+        for first in (0..pairs.len()).step_by(WIDTH) {
+            let last = (first + WIDTH).min(pairs.len());
+            all.count = 0;
             for index in first..last {
-                all.push(index, &self.pairs[index]);
+                all.push(index, &pairs[index]);
+                out[index] = Approaches::NONE;
             }
             let mut floors = [0.0; WIDTH];
             for from in (0..WIDTH).step_by(S::F64_LANES) {
-                store(all.load(simd, from).floor(), &mut floors, from);
+                all.load(simd, from).floor().store(&mut floors, from);
             }
-            for index in first..last {
-                self.out[index] = Approaches::NONE;
-                if floors[index - first] <= self.reach[index] {
-                    near.push(index, &self.pairs[index]);
-                    if near.count == WIDTH {
-                        solve(simd, &near, self.pairs, self.out);
-                        near.count = 0;
+            let mut within = [false; WIDTH];
+            for lane in 0..all.count {
+                within[lane] = floors[lane] <= reach[first + lane];
+            }
+            if within == [true; WIDTH] {
+                simd.vectorize(Solve { block: &all, rows: &mut rows, pairs, out });
+                continue;
+            }
+            for lane in (0..all.count).filter(|lane| within[*lane]) {
+                near.push(first + lane, &pairs[first + lane]);
+                if near.count == WIDTH {
+                    simd.vectorize(Solve { block: &near, rows: &mut rows, pairs, out });
+                    near.count = 0;
+                }
+            }
+        }
+        simd.vectorize(Solve { block: &near, rows: &mut rows, pairs, out });
+    }
+}
+
+/// What the registers of a block leave in memory.
+struct Rows {
+    excess: [Row; ARCS],
+    minus: [Row; ARCS],
+    plus: [Row; ARCS],
+    numbers: [Row; 7],
+    brackets: [[Row; 5]; SLOTS],
+    counts: Row,
+    complete: Row,
+    distance: [Row; SLOTS],
+    direction: [[Row; 3]; SLOTS],
+}
+
+impl Rows {
+    fn new() -> Self {
+        let row = [0.0; WIDTH];
+        Self {
+            excess: [row; ARCS],
+            minus: [row; ARCS],
+            plus: [row; ARCS],
+            numbers: [row; 7],
+            brackets: [[row; 5]; SLOTS],
+            counts: row,
+            complete: row,
+            distance: [row; SLOTS],
+            direction: [[row; 3]; SLOTS],
+        }
+    }
+
+    /// The brackets of a register with arcs in doubt: those pairs leave it for a while.
+    #[inline(always)]
+    fn decided<S: Simd>(
+        &mut self,
+        simd: S,
+        from: usize,
+        pair: &Reduced<Register<S>>,
+        counted: &Counted<Register<S>>,
+        (brackets, count): &mut ([Bracket<Register<S>>; SLOTS], Register<S>),
+    ) {
+        for k in 0..ARCS {
+            counted.excess[k].store(&mut self.excess[k], from);
+            counted.minus[k].store(&mut self.minus[k], from);
+            counted.plus[k].store(&mut self.plus[k], from);
+        }
+        for (row, number) in self.numbers.iter_mut().zip(pair.numbers()) {
+            number.store(row, from);
+        }
+        count.store(&mut self.counts, from);
+        for (rows, bracket) in self.brackets.iter_mut().zip(&*brackets) {
+            for (row, part) in rows.iter_mut().zip(bracket.parts()) {
+                part.store(row, from);
+            }
+        }
+        let mut doubts = [0.0; WIDTH];
+        counted.doubts().store(&mut doubts, 0);
+        for lane in 0..S::F64_LANES {
+            if doubts[lane] != 0.0 {
+                self.decide(from + lane);
+            }
+        }
+        for (bracket, rows) in brackets.iter_mut().zip(&self.brackets) {
+            let mut parts = bracket.parts();
+            for (part, row) in parts.iter_mut().zip(rows) {
+                *part = Register::load(simd, row, from);
+            }
+            *bracket = Bracket::of_parts(parts);
+        }
+        *count = Register::load(simd, &self.counts, from);
+    }
+
+    /// The brackets of one pair, and how many: 0 if that is not to be decided here.
+    fn decide(&mut self, lane: usize) {
+        let pair = Reduced::of_numbers(column(&self.numbers, lane));
+        let counted = Counted {
+            excess: column(&self.excess, lane),
+            minus: column(&self.minus, lane),
+            plus: column(&self.plus, lane),
+        };
+        self.counts[lane] = 0.0;
+        let Some(found) = Brackets::new(&pair, &counted, &TABLE) else { return };
+        if (1..=SLOTS).contains(&found.count) {
+            self.counts[lane] = found.count as f64;
+            for (slot, rows) in self.brackets.iter_mut().enumerate() {
+                let parts = found.all[slot.min(found.count - 1)].parts();
+                for k in 0..parts.len() {
+                    rows[k][lane] = parts[k];
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn approach(&self, slot: usize, lane: usize) -> Approach {
+        let [x, y, z] = column(&self.direction[slot], lane);
+        Approach { distance: self.distance[slot][lane], direction_b: Vec3::new(x, y, z) }
+    }
+
+    /// Puts the minima of a pair in its place, which has none yet.
+    #[inline(always)]
+    fn put(&self, lane: usize, place: &mut Approaches) {
+        let count = self.counts[lane];
+        place.count = count as usize;
+        if count < 1.5 {
+            place.found[0] = self.approach(0, lane);
+            return;
+        }
+        let swapped = usize::from(self.distance[1][lane] < self.distance[0][lane]);
+        place.found[swapped] = self.approach(0, lane);
+        place.found[1 - swapped] = self.approach(1, lane);
+    }
+}
+
+#[inline(always)]
+fn column<const N: usize>(rows: &[Row; N], lane: usize) -> [f64; N] {
+    let mut out = [0.0; N];
+    for k in 0..N {
+        out[k] = rows[k][lane];
+    }
+    out
+}
+
+/// Registers whose roots are sought together: one step waits for the other's square roots.
+const ABREAST: usize = 2;
+
+/// The minima of the pairs of a block, put in their places.
+struct Solve<'a> {
+    block: &'a Block,
+    rows: &'a mut Rows,
+    pairs: &'a [(Circle, Circle)],
+    out: &'a mut [Approaches],
+}
+
+impl WithSimd for Solve<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Solve { block, rows, pairs, out } = self;
+        let table = &*TABLE;
+        for from in (0..block.count).step_by(ABREAST * S::F64_LANES) {
+            let second = from + S::F64_LANES;
+            let framed = [block.load(simd, from).framed(), block.load(simd, second).framed()];
+            let zero = framed[0].pair.radius.like(0.0);
+            let [first, last] = &framed;
+            let (counted, other) = (Counted::new(&first.pair, table), Counted::new(&last.pair, table));
+            let mut rising = [counted.rising(table), other.rising(table)];
+            if <Register<S>>::any(zero.below(counted.doubts())) {
+                rows.decided(simd, from, &first.pair, &counted, &mut rising[0]);
+            }
+            if <Register<S>>::any(zero.below(other.doubts())) {
+                rows.decided(simd, second, &last.pair, &other, &mut rising[1]);
+            }
+            let [([a, b], _), ([c, d], _)] = rising;
+            let (angles, good) = roots([&first.pair, &first.pair, &last.pair, &last.pair], &[a, b, c, d], 4);
+            for half in 0..ABREAST {
+                let (at, framed, count) = (from + half * S::F64_LANES, &framed[half], rising[half].1);
+                let few = <Register<S>>::both(zero.below(count), count.below(zero.like(SLOTS as f64 + 0.5)));
+                let regular = <Register<S>>::both(few, <Register<S>>::both(is_steep(&framed.pair), framed.is_tilted()));
+                let good = good[SLOTS * half] * good[SLOTS * half + 1];
+                count.store(&mut rows.counts, at);
+                <Register<S>>::pick(regular, good, zero).store(&mut rows.complete, at);
+                for slot in 0..SLOTS {
+                    let (distance, direction) = framed.approach(angles[SLOTS * half + slot]);
+                    distance.store(&mut rows.distance[slot], at);
+                    for axis in 0..3 {
+                        direction[axis].store(&mut rows.direction[slot][axis], at);
                     }
                 }
             }
         }
-        solve(simd, &near, self.pairs, self.out);
-    }
-}
-
-#[inline(always)]
-fn store<S: Simd>(register: Register<S>, to: &mut Row, from: usize) {
-    S::as_mut_simd_f64s(&mut to[from..from + S::F64_LANES]).0[0] = register.value;
-}
-
-#[inline(always)]
-fn load<S: Simd>(simd: S, row: &Row, from: usize) -> Register<S> {
-    Register { simd, value: S::as_simd_f64s(&row[from..from + S::F64_LANES]).0[0] }
-}
-
-/// One number of each pair of a block.
-type Row = [f64; WIDTH];
-
-/// Numbers of a bracket.
-const PARTS: usize = 5;
-
-/// The brackets of a register with arcs in doubt: those pairs leave the register for a while.
-#[inline(always)]
-fn decided<S: Simd>(
-    simd: S,
-    pair: &Reduced<Register<S>>,
-    counted: &Counted<Register<S>>,
-    (brackets, count): ([Bracket<Register<S>>; SLOTS], Register<S>),
-) -> ([Bracket<Register<S>>; SLOTS], Register<S>) {
-    let mut doubts = [0.0; WIDTH];
-    store(counted.doubts(), &mut doubts, 0);
-    let (mut excess, mut minus) = ([[0.0; WIDTH]; ARCS], [[0.0; WIDTH]; ARCS]);
-    for k in 0..ARCS {
-        store(counted.excess[k], &mut excess[k], 0);
-        store(counted.minus[k], &mut minus[k], 0);
-    }
-    let mut numbers = [[0.0; WIDTH]; 7];
-    for (row, number) in numbers.iter_mut().zip(pair.numbers()) {
-        store(number, row, 0);
-    }
-    let mut parts = [[[0.0; WIDTH]; PARTS]; SLOTS];
-    let mut counts = [0.0; WIDTH];
-    store(count, &mut counts, 0);
-    for (rows, bracket) in parts.iter_mut().zip(&brackets) {
-        for (row, part) in rows.iter_mut().zip(bracket.parts()) {
-            store(part, row, 0);
-        }
-    }
-    for lane in 0..S::F64_LANES {
-        if doubts[lane] != 0.0 {
-            counts[lane] = decide(lane, &numbers, &excess, &minus, &mut parts);
-        }
-    }
-    let mut brackets = brackets;
-    for (bracket, rows) in brackets.iter_mut().zip(&parts) {
-        let mut parts = bracket.parts();
-        for (part, row) in parts.iter_mut().zip(rows) {
-            *part = load(simd, row, 0);
-        }
-        *bracket = Bracket::of_parts(parts);
-    }
-    (brackets, load(simd, &counts, 0))
-}
-
-/// The brackets of one pair of a block, and how many: 0 if that is not to be decided here.
-fn decide(
-    lane: usize,
-    numbers: &[Row; 7],
-    excess: &[Row; ARCS],
-    minus: &[Row; ARCS],
-    parts: &mut [[Row; PARTS]; SLOTS],
-) -> f64 {
-    let pair = Reduced::of_numbers(numbers.map(|row| row[lane]));
-    let counted = Counted { excess: excess.map(|row| row[lane]), minus: minus.map(|row| row[lane]) };
-    match Brackets::new(&pair, &counted, &TABLE) {
-        Some(found) if (1..=SLOTS).contains(&found.count) => {
-            for (slot, rows) in parts.iter_mut().enumerate() {
-                for (row, part) in rows.iter_mut().zip(found.all[slot.min(found.count - 1)].parts()) {
-                    row[lane] = part;
-                }
+        for lane in 0..block.count {
+            let index = block.index[lane];
+            if rows.complete[lane] == 1.0 {
+                rows.put(lane, &mut out[index]);
+            } else {
+                out[index] = Approaches::of_pair(&pairs[index].0, &pairs[index].1);
             }
-            found.count as f64
-        }
-        _ => 0.0,
-    }
-}
-
-/// The minima of the pairs of a block, put in their places.
-#[inline(always)]
-fn solve<S: Simd>(simd: S, block: &Block, pairs: &[(Circle, Circle)], out: &mut [Approaches]) {
-    let table = &*TABLE;
-    let (mut counts, mut complete) = ([0.0; WIDTH], [0.0; WIDTH]);
-    let mut distance = [[0.0; WIDTH]; SLOTS];
-    let mut direction = [[[0.0; WIDTH]; 3]; SLOTS];
-    for from in (0..block.count).step_by(S::F64_LANES) {
-        let framed = block.load(simd, from).framed();
-        let pair = &framed.pair;
-        let counted = Counted::new(pair, table);
-        let zero = pair.radius.like(0.0);
-        let mut rising = counted.rising(table);
-        if <Register<S>>::any(zero.below(counted.doubts())) {
-            rising = decided(simd, pair, &counted, rising);
-        }
-        let (brackets, count) = rising;
-        let (angles, good) = roots(pair, &brackets, SLOTS);
-        let few = <Register<S>>::both(zero.below(count), count.below(zero.like(SLOTS as f64 + 0.5)));
-        let regular = <Register<S>>::both(few, <Register<S>>::both(is_steep(pair), framed.is_tilted()));
-        store(count, &mut counts, from);
-        store(<Register<S>>::pick(regular, good[0] * good[1], zero), &mut complete, from);
-        for slot in 0..SLOTS {
-            let (d, v) = framed.approach(angles[slot]);
-            store(d, &mut distance[slot], from);
-            for axis in 0..3 {
-                store(v[axis], &mut direction[slot][axis], from);
-            }
-        }
-    }
-    for lane in 0..block.count {
-        let index = block.index[lane];
-        if complete[lane] != 1.0 {
-            let (a, b) = &pairs[index];
-            out[index] = Approaches::of_pair(a, b);
-            continue;
-        }
-        let approach = |slot: usize| Approach {
-            distance: distance[slot][lane],
-            direction_b: Vec3::from(direction[slot].map(|axis| axis[lane])),
-        };
-        let there = &mut out[index];
-        there.count = counts[lane] as usize;
-        for slot in 0..there.count {
-            there.found[slot] = approach(slot);
-        }
-        if there.count == 2 && there.found[1].distance < there.found[0].distance {
-            there.found.swap(0, 1);
         }
     }
 }

@@ -105,6 +105,8 @@ pub(crate) struct Counted<T> {
     pub excess: [T; ARCS],
     /// G₋ at the first ends of the arcs.
     pub minus: [T; ARCS],
+    /// G₊ there.
+    pub plus: [T; ARCS],
 }
 
 impl<T: Lane> Counted<T> {
@@ -114,18 +116,29 @@ impl<T: Lane> Counted<T> {
         let [minus, plus] = at_ends(pair, table);
         let harmonics = Harmonics::new(pair, table);
         let (turned, doubt) = (harmonics.turned(), harmonics.doubt());
-        let mut excess = [zero; ARCS];
+        let mut counted = Self { excess: [zero; ARCS], minus, plus };
+        let ends = counted.ends();
         for m in 0..ARCS / 2 {
-            let both = turned.coefficients(m, table);
+            let both = turned.coefficients(m, &ends, table);
             for half in 0..2 {
                 let k = m + half * (ARCS / 2);
                 let next = (k + 1) % ARCS;
                 let root = T::pick((minus[k] * minus[next]).below(zero), one, zero);
                 let far = T::pick((plus[k] * plus[next]).below(zero), one, zero);
-                excess[k] = changes(&both[half], doubt) - (root + far);
+                counted.excess[k] = changes(&both[half], doubt) - (root + far);
             }
         }
-        Self { excess, minus }
+        counted
+    }
+
+    /// H at the first ends of the arcs.
+    #[inline(always)]
+    fn ends(&self) -> [T; ARCS] {
+        let mut ends = self.minus;
+        for k in 0..ARCS {
+            ends[k] = ends[k] * self.plus[k];
+        }
+        ends
     }
 
     /// 0 if the count is known.
@@ -206,17 +219,16 @@ impl Brackets {
                 }
                 continue;
             }
-            let (turned, doubt) = turned.get_or_insert_with(|| {
+            let (turned, ends, doubt) = turned.get_or_insert_with(|| {
                 let harmonics = Harmonics::new(pair, table);
-                (harmonics.turned(), harmonics.certain())
+                (harmonics.turned(), counted.ends(), harmonics.certain())
             });
-            let coefficients = turned.coefficients(k % (ARCS / 2), table)[k / (ARCS / 2)];
-            let plus = [k, k + 1].map(|k| pair.factors(table.ends[k].cos, table.ends[k].sin)[1]);
+            let coefficients = turned.coefficients(k % (ARCS / 2), ends, table)[k / (ARCS / 2)];
             let arc = Arc {
                 from: -1.0,
                 to: 1.0,
                 minus,
-                plus,
+                plus: [counted.plus[k], counted.plus[(k + 1) % ARCS]],
                 coefficients: std::array::from_fn(|i| coefficients[i] * table.weights[i]),
             };
             arc.examine(&Doubtful { pair, doubt: *doubt, center: table.centers[k] }, HALVINGS, &mut brackets)?;
@@ -253,10 +265,17 @@ impl Arc {
     /// Adds what the arc has, halving it as often as it takes; `None` where that does not decide.
     fn examine(&self, of: &Doubtful<'_>, halvings: usize, brackets: &mut Brackets) -> Option<()> {
         let change = |g: &[f64; 2]| usize::from((g[0] < 0.0) != (g[1] < 0.0));
-        if self.coefficients.iter().any(|b| b.abs() <= of.doubt) {
+        // No branches: what is found here is anyone's guess.
+        let mut certain = self.coefficients[8].abs() > of.doubt;
+        let mut changes = 0;
+        for i in 0..8 {
+            let [b, next] = [self.coefficients[i], self.coefficients[i + 1]];
+            certain &= b.abs() > of.doubt;
+            changes += usize::from((b < 0.0) != (next < 0.0));
+        }
+        if !certain {
             return None;
         }
-        let changes = self.coefficients.windows(2).filter(|w| (w[0] < 0.0) != (w[1] < 0.0)).count();
         if changes == change(&self.minus) + change(&self.plus) {
             return if self.minus[0] < 0.0 && self.minus[1] >= 0.0 { brackets.add(self.bracket(of)) } else { Some(()) };
         }

@@ -191,12 +191,14 @@ pub(crate) struct Turned<T> {
 
 impl<T: Lane> Turned<T> {
     /// The coefficients of an arc `m < ARCS / 2` and of the opposite one, divided by [`Arcs::weights`]. The two differ in
-    /// the sign of the odd harmonics.
+    /// the sign of the odd harmonics. The first and the last are the values of H at the ends, given by arc.
     #[inline(always)]
-    pub fn coefficients(&self, m: usize, table: &Arcs) -> [[T; 9]; 2] {
+    pub fn coefficients(&self, m: usize, ends: &[T; ARCS], table: &Arcs) -> [[T; 9]; 2] {
         let [first, second, third, fourth] = [self.modes[0][m], self.modes[1][m], self.modes[2][m], self.modes[3][m]];
         let mut out = [[self.mean; 9]; 2];
-        for i in 0..5 {
+        (out[0][0], out[0][8]) = (ends[m], ends[m + 1]);
+        (out[1][0], out[1][8]) = (ends[m + ARCS / 2], ends[(m + ARCS / 2 + 1) % ARCS]);
+        for i in 1..5 {
             let a = &table.cosines[i];
             let even = self.mean + second[0] * a[1] + fourth[0] * a[3];
             let odd = first[0] * a[0] + third[0] * a[2];
@@ -229,16 +231,17 @@ pub(crate) fn changes<T: Lane>(coefficients: &[T; 9], doubt: T) -> T {
 }
 
 /// The coefficients of the two halves of an arc (de Casteljau).
+#[inline]
 pub(crate) fn halves(coefficients: &[f64; 9]) -> [[f64; 9]; 2] {
-    let (mut row, mut left, mut right) = (*coefficients, [0.0; 9], [0.0; 9]);
-    for k in 0..9 {
-        left[k] = row[0];
-        right[8 - k] = row[8 - k];
-        for i in 0..8 - k {
+    let (mut row, mut left) = (*coefficients, *coefficients);
+    for k in 1..9 {
+        // In place, of constant length: what lies behind 8 − k is the right half.
+        for i in 0..9 - k {
             row[i] = 0.5 * (row[i] + row[i + 1]);
         }
+        left[k] = row[0];
     }
-    [left, right]
+    [left, row]
 }
 
 #[cfg(test)]
@@ -259,8 +262,12 @@ mod tests {
             let pair = Relative::new(&a, &b).reduced();
             let harmonics = Harmonics::new(&pair, &TABLE);
             let turned = harmonics.turned();
+            let ends: [f64; ARCS] = std::array::from_fn(|k| {
+                let [minus, plus] = pair.factors(TABLE.ends[k].cos, TABLE.ends[k].sin);
+                minus * plus
+            });
             for (k, center) in TABLE.centers.into_iter().enumerate() {
-                let arc = turned.coefficients(k % 4, &TABLE)[k / 4];
+                let arc = turned.coefficients(k % 4, &ends, &TABLE)[k / 4];
                 let whole: [f64; 9] = std::array::from_fn(|i| arc[i] * TABLE.weights[i]);
                 let [left, right] = halves(&whole);
                 for (b, from, to) in [(whole, -1.0, 1.0), (left, -1.0, 0.0), (right, 0.0, 1.0)] {

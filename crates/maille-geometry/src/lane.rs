@@ -93,6 +93,19 @@ pub(crate) struct Truth<S: Simd> {
     value: S::m64s,
 }
 
+impl<S: Simd> Register<S> {
+    /// Some of the numbers of a row.
+    #[inline(always)]
+    pub fn load(simd: S, row: &[f64], from: usize) -> Self {
+        Self { simd, value: S::as_simd_f64s(&row[from..from + S::F64_LANES]).0[0] }
+    }
+
+    #[inline(always)]
+    pub fn store(self, row: &mut [f64], from: usize) {
+        S::as_mut_simd_f64s(&mut row[from..from + S::F64_LANES]).0[0] = self.value;
+    }
+}
+
 macro_rules! operator {
     ($trait:ident, $name:ident, $of:ident) => {
         impl<S: Simd> $trait for Register<S> {

@@ -6,14 +6,16 @@ use crate::lane::{Lane, Register};
 use crate::relative::Reduced;
 use pulp::Simd;
 
-/// Pairs side by side: the most lanes of a register.
-pub(crate) const WIDTH: usize = 8;
+/// Pairs side by side: two registers of the widest kind.
+pub(crate) const WIDTH: usize = 16;
+/// One number of each.
+pub(crate) type Row = [f64; WIDTH];
 /// Numbers of a pair: centre, normal and radius of A, then of B.
 const NUMBERS: usize = 14;
 
 /// Pairs as a structure of arrays.
 pub(crate) struct Block {
-    numbers: [[f64; WIDTH]; NUMBERS],
+    numbers: [Row; NUMBERS],
     pub index: [usize; WIDTH],
     pub count: usize,
 }
@@ -57,7 +59,7 @@ impl Block {
 
     #[inline(always)]
     fn number<S: Simd>(&self, simd: S, k: usize, from: usize) -> Register<S> {
-        Register { simd, value: S::as_simd_f64s(&self.numbers[k][from..from + S::F64_LANES]).0[0] }
+        Register::load(simd, &self.numbers[k], from)
     }
 
     #[inline(always)]

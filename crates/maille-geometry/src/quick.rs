@@ -32,24 +32,24 @@ fn rough_step<T: Lane>(pair: &Reduced<T>, at: Angle<T>) -> Angle<T> {
     at.ahead(top.max(-limit).min(limit), bottom)
 }
 
-/// The roots of h′ in brackets, found together; and which are good (1, else 0).
+/// The roots of h′ in brackets of these pairs, found together; and which are good (1, else 0).
 #[inline(always)]
 pub(crate) fn roots<T: Lane, const N: usize>(
-    pair: &Reduced<T>,
+    pairs: [&Reduced<T>; N],
     brackets: &[Bracket<T>; N],
     used: usize,
 ) -> ([Angle<T>; N], [T; N]) {
-    let (zero, one) = (pair.radius.like(0.0), pair.radius.like(1.0));
+    let (zero, one) = (pairs[0].radius.like(0.0), pairs[0].radius.like(1.0));
     let mut at = [brackets[0].middle; N];
     for k in 0..used {
-        at[k] = rough_step(pair, brackets[k].seed(pair));
+        at[k] = rough_step(pairs[k], brackets[k].seed(pairs[k]));
     }
     let mut good = [zero; N];
     let mut open = [one; N];
     for _ in 0..STEPS {
         let mut left = zero;
         for k in 0..used {
-            let angle = at[k];
+            let (angle, pair) = (at[k], pairs[k]);
             let [h1, h2, h3, rho] = pair.slopes(angle.cos, angle.sin);
             // Half of Halley's step, as the tangent of half the angle; where h is not convex, down the slope.
             let convex = zero.below(h2);
@@ -115,7 +115,7 @@ pub(crate) fn minima(pair: &Reduced<f64>) -> Option<([Direction; MAX_MINIMA], us
     }
     let table = &*TABLE;
     let brackets = Brackets::new(pair, &Counted::new(pair, table), table)?;
-    let (mut angles, good) = roots(pair, &brackets.all, brackets.count);
+    let (mut angles, good) = roots([pair; MAX_MINIMA], &brackets.all, brackets.count);
     for k in (0..brackets.count).filter(|k| good[*k] != 1.0) {
         angles[k] = bisected(pair, &brackets.all[k])?;
     }
