@@ -2,7 +2,7 @@
 //! it does not.
 
 use crate::MAX_MINIMA;
-use crate::count::{ARCS, Arcs, Harmonics, TABLE, changes, halves};
+use crate::count::{ARCS, Arcs, Harmonics, changes, halves};
 use crate::grid::Direction;
 use crate::lane::Lane;
 use crate::relative::Reduced;
@@ -208,32 +208,40 @@ pub(crate) struct Brackets {
 
 impl Brackets {
     /// From the count, arcs in doubt halved as often as it takes; `None` where that does not decide.
+    #[inline(always)]
     pub fn new(pair: &Reduced<f64>, counted: &Counted<f64>, table: &Arcs) -> Option<Self> {
         let mut brackets = Self { all: [Bracket::arc(table, 0, -1.0, 1.0); MAX_MINIMA], count: 0 };
-        let mut turned = None;
         for k in 0..ARCS {
-            let minus = [counted.minus[k], counted.minus[(k + 1) % ARCS]];
-            if counted.excess[k] == 0.0 {
-                if minus[0] < 0.0 && minus[1] >= 0.0 {
-                    brackets.add(Bracket::arc(table, k, minus[0], minus[1]))?;
-                }
-                continue;
+            let [low, high] = [counted.minus[k], counted.minus[(k + 1) % ARCS]];
+            if counted.excess[k] != 0.0 {
+                brackets.halve(pair, counted, k, table)?;
+            } else if low < 0.0 && high >= 0.0 {
+                brackets.add(Bracket::arc(table, k, low, high))?;
             }
-            let (turned, ends, doubt) = turned.get_or_insert_with(|| {
-                let harmonics = Harmonics::new(pair, table);
-                (harmonics.turned(), counted.ends(), harmonics.certain())
-            });
-            let coefficients = turned.coefficients(k % (ARCS / 2), ends, table)[k / (ARCS / 2)];
-            let arc = Arc {
-                from: -1.0,
-                to: 1.0,
-                minus,
-                plus: [counted.plus[k], counted.plus[(k + 1) % ARCS]],
-                coefficients: std::array::from_fn(|i| coefficients[i] * table.weights[i]),
-            };
-            arc.examine(&Doubtful { pair, doubt: *doubt, center: table.centers[k] }, HALVINGS, &mut brackets)?;
         }
         Some(brackets)
+    }
+
+    /// Adds what an arc in doubt has.
+    #[inline(never)]
+    fn halve(&mut self, pair: &Reduced<f64>, counted: &Counted<f64>, k: usize, table: &Arcs) -> Option<()> {
+        let harmonics = Harmonics::new(pair, table);
+        let mut coefficients = harmonics.turned().coefficients(k % (ARCS / 2), &counted.ends(), table)[k / (ARCS / 2)];
+        for i in 0..coefficients.len() {
+            coefficients[i] = coefficients[i] * table.weights[i];
+        }
+        let arc = Arc {
+            from: -1.0,
+            to: 1.0,
+            minus: [counted.minus[k], counted.minus[(k + 1) % ARCS]],
+            plus: [counted.plus[k], counted.plus[(k + 1) % ARCS]],
+            coefficients,
+        };
+        arc.examine(
+            &Doubtful { pair, doubt: harmonics.certain(), center: table.centers[k], edge: table.edge },
+            HALVINGS,
+            self,
+        )
     }
 
     /// `None` if there are too many.
@@ -250,6 +258,7 @@ struct Doubtful<'a> {
     /// Coefficients smaller than this have no certain sign.
     doubt: f64,
     center: Direction,
+    edge: f64,
 }
 
 /// A part of an arc, between the values `from` and `to` of t/T.
@@ -281,7 +290,7 @@ impl Arc {
         }
         let halvings = halvings.checked_sub(1)?;
         let middle = 0.5 * (self.from + self.to);
-        let at = of.center.ahead(middle * TABLE.edge);
+        let at = of.center.ahead(middle * of.edge);
         let [minus, plus] = of.pair.factors(at.cos, at.sin);
         let [left, right] = halves(&self.coefficients);
         let left = Arc {
@@ -303,7 +312,7 @@ impl Arc {
     }
 
     fn bracket(&self, of: &Doubtful<'_>) -> Bracket<f64> {
-        let [first, last] = [self.from, self.to].map(|part| of.center.ahead(part * TABLE.edge));
+        let [first, last] = [self.from, self.to].map(|part| of.center.ahead(part * of.edge));
         let (x, y) = (first.cos + last.cos, first.sin + last.sin);
         let length = (x * x + y * y).sqrt();
         let across = first.cos * last.sin - first.sin * last.cos;

@@ -101,18 +101,19 @@ impl Minima {
         continuum: bool,
         swapped: bool,
     ) -> Self {
-        let mut found = [Minimum::NONE; MAX_MINIMA];
-        let count = directions.len();
-        for (slot, Direction { cos, sin }) in found.iter_mut().zip(directions) {
-            *slot = pair.minimum(cos, sin, swapped);
-        }
-        found[..count].sort_unstable_by(|p, q| p.distance.total_cmp(&q.distance));
         let kind = match pair.kind() {
             PairKind::Coaxial => PairKind::Coaxial,
             _ if continuum => PairKind::Equidistant,
             kind => kind,
         };
-        Self { kind, continuum, found, count }
+        // Filled in place: it is too large to be moved about.
+        let mut minima = Self { kind, continuum, found: [Minimum::NONE; MAX_MINIMA], count: directions.len() };
+        for (slot, Direction { cos, sin }) in minima.found.iter_mut().zip(directions) {
+            *slot = pair.minimum(cos, sin, swapped);
+        }
+        let count = minima.count;
+        minima.found[..count].sort_unstable_by(|p, q| p.distance.total_cmp(&q.distance));
+        minima
     }
 }
 

@@ -12,7 +12,7 @@ use crate::lane::Lane;
 use crate::relative::Reduced;
 
 /// Steps of Halley's iteration at most.
-const STEPS: usize = 7;
+const STEPS: usize = 8;
 /// After a step shorter than this (the tangent of half of it) the cubic rest is below rounding.
 const SHORT: f64 = 5e-6;
 /// No step is longer: the tangent of half of it.
@@ -22,15 +22,6 @@ const BISECTIONS: usize = 60;
 const NEWTON_SHORT: f64 = 1e-9;
 /// A minimum must be this far from the axis of the base, in radii of the moving circle.
 const OFF_AXIS: f64 = 1e-2;
-
-/// A step of Halley's iteration for ρ h′ = pρ − q, without a division: sums of products are as small as they are only
-/// in `h′`, so this is a step on the way.
-#[inline(always)]
-fn rough_step<T: Lane>(pair: &Reduced<T>, at: Angle<T>) -> Angle<T> {
-    let [top, bottom] = pair.rough_step(at.cos, at.sin);
-    let limit = bottom.abs() * LONGEST_HALF;
-    at.ahead(top.max(-limit).min(limit), bottom)
-}
 
 /// The roots of h′ in brackets of these pairs, found together; and which are good (1, else 0).
 #[inline(always)]
@@ -42,7 +33,7 @@ pub(crate) fn roots<T: Lane, const N: usize>(
     let (zero, one) = (pairs[0].radius.like(0.0), pairs[0].radius.like(1.0));
     let mut at = [brackets[0].middle; N];
     for k in 0..used {
-        at[k] = rough_step(pairs[k], brackets[k].seed(pairs[k]));
+        at[k] = brackets[k].seed(pairs[k]);
     }
     let mut good = [zero; N];
     let mut open = [one; N];
@@ -50,19 +41,15 @@ pub(crate) fn roots<T: Lane, const N: usize>(
         let mut left = zero;
         for k in 0..used {
             let (angle, pair) = (at[k], pairs[k]);
-            let [h1, h2, h3, rho] = pair.slopes(angle.cos, angle.sin);
-            // Half of Halley's step, as the tangent of half the angle; where h is not convex, down the slope.
-            let convex = zero.below(h2);
-            let top = T::pick(convex, h1 * h2, h1);
-            let bottom = T::pick(convex, h1 * h3 - h2 * h2 * 2.0, -(h1.abs() * 8.0));
+            let ([top, bottom], rho) = pair.step(angle.cos, angle.sin);
             let size = bottom.abs();
             let limit = size * LONGEST_HALF;
             let turned = angle.ahead(top.max(-limit).min(limit), bottom);
             // A root that is found stays: other lanes of the register do not move it.
             let moves = zero.below(open[k]);
             at[k] = Angle::pick(moves, turned, angle);
-            let sound = T::both(convex, (pair.radius * OFF_AXIS).below(rho));
-            good[k] = T::pick(moves, T::pick(sound, one, zero), good[k]);
+            let sound = T::pick((pair.radius * OFF_AXIS).below(rho), one, zero);
+            good[k] = T::pick(moves, sound, good[k]);
             open[k] = T::pick(top.abs().below(size * SHORT), zero, open[k]);
             left = left.max(open[k]);
         }

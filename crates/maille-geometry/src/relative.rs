@@ -108,11 +108,16 @@ impl<T: Lane> Reduced<T> {
         ]
     }
 
-    /// Halley's step for `f = pρ − q`, as a fraction that is the tangent of half of it: `−f f′ / (2 f′² − f f″)` times
-    /// ρ³ above and below, so that it takes no division. `R e·e′ = q`. No step where f does not rise.
+    /// Halley's step for `f = ρ h′ = ρ z z′ + (ρ − R) e·e′`, as a fraction that is the tangent of half of it:
+    /// `−f f′ / (2 f′² − f f″)` times ρ³ above and below, so that it takes no division; and ρ, negative where f does not
+    /// rise: there the step goes down the slope.
+    ///
+    /// The products keep f accurate, see [`Relative::at`]; its derivatives are those of `pρ − q`, with `R e·e′ = q`.
     #[inline(always)]
-    pub fn rough_step(&self, cos: T, sin: T) -> [T; 2] {
+    pub fn step(&self, cos: T, sin: T) -> ([T; 2], T) {
+        let rise = self.radius * self.tilt_sin;
         let (x, y) = (self.x0 + self.radius * self.tilt_cos * cos, self.y0 + self.radius * sin);
+        let (z, z1) = (self.z0 + rise * cos, -(rise * sin));
         let square = x * x + y * y;
         let rho = square.sqrt();
         let (twice_sin, twice_cos) = (sin * cos * 2.0, (cos - sin) * (cos + sin));
@@ -122,13 +127,14 @@ impl<T: Lane> Reduced<T> {
         let q1 = self.q[1] * cos - self.q[0] * sin + self.q[2] * twice_cos * 2.0;
         let q2 = -(odd + even * 4.0);
         let (ee, ee1) = (q * self.inverse, q1 * self.inverse);
-        let f = p * rho - q;
+        let f = rho * (z * z1) + (rho - self.base_radius) * ee;
         // ρ f′ and ρ³ f″
         let first = p1 * square + p * ee - q1 * rho;
         let second = square * (p1 * ee * 2.0 + p * ee1 - p * square - q2 * rho) - p * (ee * ee);
         let rises = square.like(0.0).below(first);
-        let bottom = first * first * rho * 2.0 - f * second;
-        [T::pick(rises, -(f * first * square), square.like(0.0)), bottom]
+        let top = T::pick(rises, f * first * square, f);
+        let bottom = T::pick(rises, f * second - first * first * rho * 2.0, -(f.abs() * 8.0));
+        ([top, bottom], T::pick(rises, rho, -rho))
     }
 
     /// How large the slope could be: the sum of its harmonics' amplitudes.
@@ -207,6 +213,7 @@ impl<'a> Relative<'a> {
         let tilt_sin = y.dot(&cross);
         let offset = [x.dot(&offset) / scale, y.dot(&offset) / scale, n.dot(&offset) / scale];
         let radius = moving.radius / scale;
+        let (across, along) = (tilt_cos * offset[0], offset[1]);
         Self {
             base,
             moving,
@@ -218,7 +225,7 @@ impl<'a> Relative<'a> {
             tilt_sin,
             axes: [x, y],
             steepest: y.cross(m),
-            direct_below: (tilt_cos * offset[0]).hypot(offset[1]) + radius * tilt_sin * tilt_sin,
+            direct_below: (across * across + along * along).sqrt() + radius * tilt_sin * tilt_sin,
         }
     }
 
