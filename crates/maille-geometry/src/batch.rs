@@ -7,8 +7,9 @@
 //! No closures in the kernels: what is not inlined into the function of an instruction set cannot use it.
 
 use crate::brackets::{Bracket, Brackets, Counted, SLOTS, is_steep};
-use crate::count::{ARCS, TABLE};
+use crate::count::{ARCS, Harmonics, TABLE};
 use crate::grid::Direction;
+use crate::halving::halved;
 use crate::lane::{Lane, Register};
 use crate::placed::{Block, Row, WIDTH};
 use crate::quick::{self, roots};
@@ -213,7 +214,28 @@ impl Rows {
         }
     }
 
-    /// The brackets of a register with arcs in doubt: those pairs leave it for a while.
+    /// The brackets of a register, and how many.
+    #[inline(always)]
+    fn rising<S: Simd>(
+        &mut self,
+        simd: S,
+        from: usize,
+        pair: &Reduced<Register<S>>,
+    ) -> ([Bracket<Register<S>>; SLOTS], Register<S>) {
+        let (table, zero) = (&*TABLE, pair.radius.like(0.0));
+        let harmonics = Harmonics::new(pair, table);
+        let counted = Counted::new(pair, &harmonics, table);
+        let mut rising = counted.rising(table);
+        if <Register<S>>::any(zero.below(counted.doubts())) {
+            let left = halved(pair, &harmonics, &counted, &mut rising, table);
+            if <Register<S>>::any(zero.below(left)) {
+                self.decided(simd, from, pair, &counted, left, &mut rising);
+            }
+        }
+        rising
+    }
+
+    /// The brackets of a register with pairs that are still in doubt: those leave it for a while.
     #[inline(always)]
     fn decided<S: Simd>(
         &mut self,
@@ -221,6 +243,7 @@ impl Rows {
         from: usize,
         pair: &Reduced<Register<S>>,
         counted: &Counted<Register<S>>,
+        left: Register<S>,
         (brackets, count): &mut ([Bracket<Register<S>>; SLOTS], Register<S>),
     ) {
         for k in 0..ARCS {
@@ -238,7 +261,7 @@ impl Rows {
             }
         }
         let mut doubts = [0.0; WIDTH];
-        counted.doubts().store(&mut doubts, 0);
+        left.store(&mut doubts, 0);
         for lane in 0..S::F64_LANES {
             if doubts[lane] != 0.0 {
                 self.decide(from + lane);
@@ -322,20 +345,12 @@ impl WithSimd for Solve<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Solve { block, rows, pairs, out } = self;
-        let table = &*TABLE;
         for from in (0..block.count).step_by(ABREAST * S::F64_LANES) {
             let second = from + S::F64_LANES;
             let framed = [block.load(simd, from).framed(), block.load(simd, second).framed()];
             let zero = framed[0].pair.radius.like(0.0);
             let [first, last] = &framed;
-            let (counted, other) = (Counted::new(&first.pair, table), Counted::new(&last.pair, table));
-            let mut rising = [counted.rising(table), other.rising(table)];
-            if <Register<S>>::any(zero.below(counted.doubts())) {
-                rows.decided(simd, from, &first.pair, &counted, &mut rising[0]);
-            }
-            if <Register<S>>::any(zero.below(other.doubts())) {
-                rows.decided(simd, second, &last.pair, &other, &mut rising[1]);
-            }
+            let rising = [rows.rising(simd, from, &first.pair), rows.rising(simd, second, &last.pair)];
             let [([a, b], _), ([c, d], _)] = rising;
             let (angles, good) = roots([&first.pair, &first.pair, &last.pair, &last.pair], &[a, b, c, d], 4);
             for half in 0..ABREAST {

@@ -67,12 +67,11 @@ impl<T: Lane> Bracket<T> {
         Bracket { middle: Angle { cos, sin }, edge, low, high }
     }
 
-    /// Of two arcs of a table.
     #[inline(always)]
-    fn pick(mask: T::Mask, yes: Self, no: Self) -> Self {
+    pub fn pick(mask: T::Mask, yes: Self, no: Self) -> Self {
         Bracket {
             middle: Angle::pick(mask, yes.middle, no.middle),
-            edge: no.edge,
+            edge: T::pick(mask, yes.edge, no.edge),
             low: T::pick(mask, yes.low, no.low),
             high: T::pick(mask, yes.high, no.high),
         }
@@ -111,10 +110,9 @@ pub(crate) struct Counted<T> {
 
 impl<T: Lane> Counted<T> {
     #[inline(always)]
-    pub fn new(pair: &Reduced<T>, table: &Arcs) -> Self {
+    pub fn new(pair: &Reduced<T>, harmonics: &Harmonics<T>, table: &Arcs) -> Self {
         let (zero, one) = (pair.radius.like(0.0), pair.radius.like(1.0));
         let [minus, plus] = at_ends(pair, table);
-        let harmonics = Harmonics::new(pair, table);
         let (turned, doubt) = (harmonics.turned(), harmonics.doubt());
         let mut counted = Self { excess: [zero; ARCS], minus, plus };
         let ends = counted.ends();

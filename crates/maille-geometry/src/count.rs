@@ -37,6 +37,12 @@ pub(crate) struct Arcs {
     pub centers: [Direction; ARCS],
     /// T: tan of a quarter of the width.
     pub edge: f64,
+    /// tan of an eighth of the width.
+    pub half_edge: f64,
+    /// A quarter of the width.
+    pub half_turn: Direction,
+    /// cos and sin of the turns from the first arc to each.
+    pub eighths: [[f64; 2]; ARCS],
     /// cos and sin of k times the angle of the first centre, k = 1 … 4.
     turn: [Direction; 4],
     /// Bernstein coefficients of 1, divided out of the next two.
@@ -60,6 +66,12 @@ pub(crate) static TABLE: LazyLock<Arcs> = LazyLock::new(|| {
         ends: std::array::from_fn(|i| at(i as f64)),
         centers: std::array::from_fn(|i| at(i as f64 + 0.5)),
         edge,
+        half_edge: (width / 8.0).tan(),
+        half_turn: Direction::at(width / 4.0),
+        eighths: std::array::from_fn(|k| {
+            let Direction { cos, sin } = Direction::at(k as f64 * width);
+            [cos, sin]
+        }),
         turn: std::array::from_fn(|k| Direction::at((k as f64 + 1.0) * (START_RAD + 0.5 * width))),
         weights,
         cosines: std::array::from_fn(|i| std::array::from_fn(|k| part(k + 1, 0, i))),
@@ -170,6 +182,34 @@ impl<T: Lane> Harmonics<T> {
         }
     }
 
+    /// The coefficients of the arc that is turned by an angle from the first one, divided by [`Arcs::weights`], with the
+    /// values of H at its ends.
+    #[inline(always)]
+    pub fn around(&self, turn: [T; 2], ends: [T; 2], table: &Arcs) -> [T; 9] {
+        let [cos, sin] = turn;
+        let mut by = turn;
+        let mut modes = [[self.mean; 2]; 4];
+        for k in 0..4 {
+            modes[k] = [self.cosine[k] * by[0] + self.sine[k] * by[1], self.sine[k] * by[0] - self.cosine[k] * by[1]];
+            by = [by[0] * cos - by[1] * sin, by[1] * cos + by[0] * sin];
+        }
+        let mut out = [ends[0]; 9];
+        out[8] = ends[1];
+        for i in 1..5 {
+            let a = &table.cosines[i];
+            let even =
+                self.mean + (modes[0][0] * a[0] + modes[1][0] * a[1] + (modes[2][0] * a[2] + modes[3][0] * a[3]));
+            if i == 4 {
+                out[4] = even;
+                continue;
+            }
+            let b = &table.sines[i];
+            let odd = modes[0][1] * b[0] + modes[1][1] * b[1] + (modes[2][1] * b[2] + modes[3][1] * b[3]);
+            (out[i], out[8 - i]) = (even + odd, even - odd);
+        }
+        out
+    }
+
     /// A coefficient is certain if it is larger than this.
     #[inline(always)]
     pub fn certain(&self) -> T {
@@ -231,13 +271,13 @@ pub(crate) fn changes<T: Lane>(coefficients: &[T; 9], doubt: T) -> T {
 }
 
 /// The coefficients of the two halves of an arc (de Casteljau).
-#[inline]
-pub(crate) fn halves(coefficients: &[f64; 9]) -> [[f64; 9]; 2] {
+#[inline(always)]
+pub(crate) fn halves<T: Lane>(coefficients: &[T; 9]) -> [[T; 9]; 2] {
     let (mut row, mut left) = (*coefficients, *coefficients);
     for k in 1..9 {
         // In place, of constant length: what lies behind 8 − k is the right half.
         for i in 0..9 - k {
-            row[i] = 0.5 * (row[i] + row[i + 1]);
+            row[i] = (row[i] + row[i + 1]) * 0.5;
         }
         left[k] = row[0];
     }

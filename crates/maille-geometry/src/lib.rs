@@ -27,6 +27,7 @@ mod circle;
 mod count;
 mod floor;
 mod grid;
+mod halving;
 mod lane;
 mod linking;
 mod minima;

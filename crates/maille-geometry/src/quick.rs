@@ -6,7 +6,7 @@
 
 use crate::MAX_MINIMA;
 use crate::brackets::{Angle, Bracket, Brackets, Counted, is_steep};
-use crate::count::TABLE;
+use crate::count::{Harmonics, TABLE};
 use crate::grid::Direction;
 use crate::lane::Lane;
 use crate::relative::Reduced;
@@ -101,7 +101,8 @@ pub(crate) fn minima(pair: &Reduced<f64>) -> Option<([Direction; MAX_MINIMA], us
         return None;
     }
     let table = &*TABLE;
-    let brackets = Brackets::new(pair, &Counted::new(pair, table), table)?;
+    let counted = Counted::new(pair, &Harmonics::new(pair, table), table);
+    let brackets = Brackets::new(pair, &counted, table)?;
     let (mut angles, good) = roots([pair; MAX_MINIMA], &brackets.all, brackets.count);
     for k in (0..brackets.count).filter(|k| good[*k] != 1.0) {
         angles[k] = bisected(pair, &brackets.all[k])?;
