@@ -1,8 +1,8 @@
-//! Arcs of the moving circle with one minimum each: what the count ([`crate::count`]) proves, and the halving of arcs where
-//! it does not.
+//! Arcs of the moving circle with one minimum each: what the count ([`crate::count`]) proves of eight arcs.
+//!
+//! Where it proves nothing, [`crate::halving`] goes on.
 
-use crate::MAX_MINIMA;
-use crate::count::{ARCS, Arcs, Harmonics, changes, halves};
+use crate::count::{ARCS, Arcs, Harmonics, changes};
 use crate::grid::Direction;
 use crate::lane::Lane;
 use crate::relative::Reduced;
@@ -11,8 +11,6 @@ use crate::relative::Reduced;
 pub(crate) const SLOTS: usize = 2;
 /// The slope and its parts must be larger than this, in units of the pair's scale.
 const LEAST_SLOPE: f64 = 1e-10;
-/// Halvings of an arc at most.
-const HALVINGS: usize = 6;
 
 /// An angle as its cosine and sine.
 #[derive(Clone, Copy)]
@@ -50,7 +48,7 @@ pub(crate) struct Bracket<T> {
 impl<T: Lane> Bracket<T> {
     /// The arc number `k` of a table.
     #[inline(always)]
-    fn arc(table: &Arcs, k: usize, low: T, high: T) -> Self {
+    pub fn arc(table: &Arcs, k: usize, low: T, high: T) -> Self {
         let Direction { cos, sin } = table.centers[k];
         Bracket { middle: Angle { cos: low.like(cos), sin: low.like(sin) }, edge: low.like(table.edge), low, high }
     }
@@ -131,7 +129,7 @@ impl<T: Lane> Counted<T> {
 
     /// H at the first ends of the arcs.
     #[inline(always)]
-    fn ends(&self) -> [T; ARCS] {
+    pub fn ends(&self) -> [T; ARCS] {
         let mut ends = self.minus;
         for k in 0..ARCS {
             ends[k] = ends[k] * self.plus[k];
@@ -196,127 +194,4 @@ fn at_ends<T: Lane>(pair: &Reduced<T>, table: &Arcs) -> [[T; ARCS]; 2] {
 #[inline(always)]
 pub(crate) fn is_steep<T: Lane>(pair: &Reduced<T>) -> T::Mask {
     pair.radius.like(LEAST_SLOPE).below(pair.steepness())
-}
-
-/// The arcs of one pair on which G₋ rises through 0.
-pub(crate) struct Brackets {
-    pub all: [Bracket<f64>; MAX_MINIMA],
-    pub count: usize,
-}
-
-impl Brackets {
-    /// From the count, arcs in doubt halved as often as it takes; `None` where that does not decide.
-    #[inline(always)]
-    pub fn new(pair: &Reduced<f64>, counted: &Counted<f64>, table: &Arcs) -> Option<Self> {
-        let mut brackets = Self { all: [Bracket::arc(table, 0, -1.0, 1.0); MAX_MINIMA], count: 0 };
-        for k in 0..ARCS {
-            let [low, high] = [counted.minus[k], counted.minus[(k + 1) % ARCS]];
-            if counted.excess[k] != 0.0 {
-                brackets.halve(pair, counted, k, table)?;
-            } else if low < 0.0 && high >= 0.0 {
-                brackets.add(Bracket::arc(table, k, low, high))?;
-            }
-        }
-        Some(brackets)
-    }
-
-    /// Adds what an arc in doubt has.
-    #[inline(never)]
-    fn halve(&mut self, pair: &Reduced<f64>, counted: &Counted<f64>, k: usize, table: &Arcs) -> Option<()> {
-        let harmonics = Harmonics::new(pair, table);
-        let mut coefficients = harmonics.turned().coefficients(k % (ARCS / 2), &counted.ends(), table)[k / (ARCS / 2)];
-        for i in 0..coefficients.len() {
-            coefficients[i] = coefficients[i] * table.weights[i];
-        }
-        let arc = Arc {
-            from: -1.0,
-            to: 1.0,
-            minus: [counted.minus[k], counted.minus[(k + 1) % ARCS]],
-            plus: [counted.plus[k], counted.plus[(k + 1) % ARCS]],
-            coefficients,
-        };
-        arc.examine(
-            &Doubtful { pair, doubt: harmonics.certain(), center: table.centers[k], edge: table.edge },
-            HALVINGS,
-            self,
-        )
-    }
-
-    /// `None` if there are too many.
-    fn add(&mut self, bracket: Bracket<f64>) -> Option<()> {
-        *self.all.get_mut(self.count)? = bracket;
-        self.count += 1;
-        Some(())
-    }
-}
-
-/// What the parts of an arc have in common.
-struct Doubtful<'a> {
-    pair: &'a Reduced<f64>,
-    /// Coefficients smaller than this have no certain sign.
-    doubt: f64,
-    center: Direction,
-    edge: f64,
-}
-
-/// A part of an arc, between the values `from` and `to` of t/T.
-struct Arc {
-    from: f64,
-    to: f64,
-    minus: [f64; 2],
-    plus: [f64; 2],
-    coefficients: [f64; 9],
-}
-
-impl Arc {
-    /// Adds what the arc has, halving it as often as it takes; `None` where that does not decide.
-    fn examine(&self, of: &Doubtful<'_>, halvings: usize, brackets: &mut Brackets) -> Option<()> {
-        let change = |g: &[f64; 2]| usize::from((g[0] < 0.0) != (g[1] < 0.0));
-        // No branches: what is found here is anyone's guess.
-        let mut certain = self.coefficients[8].abs() > of.doubt;
-        let mut changes = 0;
-        for i in 0..8 {
-            let [b, next] = [self.coefficients[i], self.coefficients[i + 1]];
-            certain &= b.abs() > of.doubt;
-            changes += usize::from((b < 0.0) != (next < 0.0));
-        }
-        if !certain {
-            return None;
-        }
-        if changes == change(&self.minus) + change(&self.plus) {
-            return if self.minus[0] < 0.0 && self.minus[1] >= 0.0 { brackets.add(self.bracket(of)) } else { Some(()) };
-        }
-        let halvings = halvings.checked_sub(1)?;
-        let middle = 0.5 * (self.from + self.to);
-        let at = of.center.ahead(middle * of.edge);
-        let [minus, plus] = of.pair.factors(at.cos, at.sin);
-        let [left, right] = halves(&self.coefficients);
-        let left = Arc {
-            from: self.from,
-            to: middle,
-            minus: [self.minus[0], minus],
-            plus: [self.plus[0], plus],
-            coefficients: left,
-        };
-        left.examine(of, halvings, brackets)?;
-        let right = Arc {
-            from: middle,
-            to: self.to,
-            minus: [minus, self.minus[1]],
-            plus: [plus, self.plus[1]],
-            coefficients: right,
-        };
-        right.examine(of, halvings, brackets)
-    }
-
-    fn bracket(&self, of: &Doubtful<'_>) -> Bracket<f64> {
-        let [first, last] = [self.from, self.to].map(|part| of.center.ahead(part * of.edge));
-        let (x, y) = (first.cos + last.cos, first.sin + last.sin);
-        let length = (x * x + y * y).sqrt();
-        let across = first.cos * last.sin - first.sin * last.cos;
-        // With φ the width, length = 2 cos φ/2: tan φ/4 = sin φ/2/(1 + cos φ/2), and sin φ/2 = sin φ/length.
-        let edge = across / (length * (1.0 + 0.5 * length));
-        let middle = Angle { cos: x / length, sin: y / length };
-        Bracket { middle, edge, low: self.minus[0], high: self.minus[1] }
-    }
 }

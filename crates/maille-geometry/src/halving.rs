@@ -1,9 +1,15 @@
-//! One halving of an arc in doubt in every lane of a register: settles two in three of the pairs that the count leaves.
+//! Arcs in doubt, halved until the count agrees: the first one of every lane of a register once, which settles most
+//! of the pairs; and those of one pair as often as it takes.
 
+use crate::MAX_MINIMA;
 use crate::brackets::{Angle, Bracket, Counted, SLOTS};
 use crate::count::{ARCS, Arcs, Harmonics, changes, halves};
+use crate::grid::Direction;
 use crate::lane::Lane;
 use crate::relative::Reduced;
+
+/// Halvings of an arc at most.
+const HALVINGS: usize = 6;
 
 /// The first arc in doubt of each lane.
 struct Chosen<T> {
@@ -97,4 +103,127 @@ pub(crate) fn halved<T: Lane>(
     slots[1] = Bracket::pick(extra, there, slots[1]);
     *count = *count + T::pick(extra, one, zero);
     T::pick(settled, zero, doubts)
+}
+
+/// The arcs of one pair on which G₋ rises through 0.
+pub(crate) struct Brackets {
+    pub all: [Bracket<f64>; MAX_MINIMA],
+    pub count: usize,
+}
+
+impl Brackets {
+    /// From the count, arcs in doubt halved as often as it takes; `None` where that does not decide.
+    #[inline(always)]
+    pub fn new(pair: &Reduced<f64>, counted: &Counted<f64>, table: &Arcs) -> Option<Self> {
+        let mut brackets = Self { all: [Bracket::arc(table, 0, -1.0, 1.0); MAX_MINIMA], count: 0 };
+        for k in 0..ARCS {
+            let [low, high] = [counted.minus[k], counted.minus[(k + 1) % ARCS]];
+            if counted.excess[k] != 0.0 {
+                brackets.halve(pair, counted, k, table)?;
+            } else if low < 0.0 && high >= 0.0 {
+                brackets.add(Bracket::arc(table, k, low, high))?;
+            }
+        }
+        Some(brackets)
+    }
+
+    /// Adds what an arc in doubt has.
+    #[inline(never)]
+    fn halve(&mut self, pair: &Reduced<f64>, counted: &Counted<f64>, k: usize, table: &Arcs) -> Option<()> {
+        let harmonics = Harmonics::new(pair, table);
+        let mut coefficients = harmonics.turned().coefficients(k % (ARCS / 2), &counted.ends(), table)[k / (ARCS / 2)];
+        for i in 0..coefficients.len() {
+            coefficients[i] *= table.weights[i];
+        }
+        let arc = Arc {
+            from: -1.0,
+            to: 1.0,
+            minus: [counted.minus[k], counted.minus[(k + 1) % ARCS]],
+            plus: [counted.plus[k], counted.plus[(k + 1) % ARCS]],
+            coefficients,
+        };
+        arc.examine(
+            &Doubtful { pair, doubt: harmonics.certain(), center: table.centers[k], edge: table.edge },
+            HALVINGS,
+            self,
+        )
+    }
+
+    /// `None` if there are too many.
+    fn add(&mut self, bracket: Bracket<f64>) -> Option<()> {
+        *self.all.get_mut(self.count)? = bracket;
+        self.count += 1;
+        Some(())
+    }
+}
+
+/// What the parts of an arc have in common.
+struct Doubtful<'a> {
+    pair: &'a Reduced<f64>,
+    /// Coefficients smaller than this have no certain sign.
+    doubt: f64,
+    center: Direction,
+    edge: f64,
+}
+
+/// A part of an arc, between the values `from` and `to` of t/T.
+struct Arc {
+    from: f64,
+    to: f64,
+    minus: [f64; 2],
+    plus: [f64; 2],
+    coefficients: [f64; 9],
+}
+
+impl Arc {
+    /// Adds what the arc has, halving it as often as it takes; `None` where that does not decide.
+    fn examine(&self, of: &Doubtful<'_>, halvings: usize, brackets: &mut Brackets) -> Option<()> {
+        let change = |g: &[f64; 2]| usize::from((g[0] < 0.0) != (g[1] < 0.0));
+        // No branches: what is found here is anyone's guess.
+        let mut certain = self.coefficients[8].abs() > of.doubt;
+        let mut changes = 0;
+        for i in 0..8 {
+            let [b, next] = [self.coefficients[i], self.coefficients[i + 1]];
+            certain &= b.abs() > of.doubt;
+            changes += usize::from((b < 0.0) != (next < 0.0));
+        }
+        if !certain {
+            return None;
+        }
+        if changes == change(&self.minus) + change(&self.plus) {
+            return if self.minus[0] < 0.0 && self.minus[1] >= 0.0 { brackets.add(self.bracket(of)) } else { Some(()) };
+        }
+        let halvings = halvings.checked_sub(1)?;
+        let middle = 0.5 * (self.from + self.to);
+        let at = of.center.ahead(middle * of.edge);
+        let [minus, plus] = of.pair.factors(at.cos, at.sin);
+        let [left, right] = halves(&self.coefficients);
+        let left = Arc {
+            from: self.from,
+            to: middle,
+            minus: [self.minus[0], minus],
+            plus: [self.plus[0], plus],
+            coefficients: left,
+        };
+        left.examine(of, halvings, brackets)?;
+        let right = Arc {
+            from: middle,
+            to: self.to,
+            minus: [minus, self.minus[1]],
+            plus: [plus, self.plus[1]],
+            coefficients: right,
+        };
+        right.examine(of, halvings, brackets)
+    }
+
+    fn bracket(&self, of: &Doubtful<'_>) -> Bracket<f64> {
+        let [first, last] = [self.from, self.to].map(|part| of.center.ahead(part * of.edge));
+        let (x, y) = (first.cos + last.cos, first.sin + last.sin);
+        let length = (x * x + y * y).sqrt();
+        let across = first.cos * last.sin - first.sin * last.cos;
+        // With φ the width, length = 2 cos φ/2: tan φ/4 = sin φ/2/(1 + cos φ/2), and sin φ/2 = sin φ/length.
+        let edge = across / (length * (1.0 + 0.5 * length));
+        let middle = Angle { cos: x / length, sin: y / length };
+        Bracket { middle, edge, low: self.minus[0], high: self.minus[1] }
+    }
 }

@@ -5,9 +5,10 @@
 //! what comes near them) it says so of, and [`crate::search`] takes them.
 
 use crate::MAX_MINIMA;
-use crate::brackets::{Angle, Bracket, Brackets, Counted, is_steep};
+use crate::brackets::{Angle, Bracket, Counted, is_steep};
 use crate::count::{Harmonics, TABLE};
 use crate::grid::Direction;
+use crate::halving::Brackets;
 use crate::lane::Lane;
 use crate::relative::Reduced;
 
@@ -71,7 +72,7 @@ fn bisected(pair: &Reduced<f64>, bracket: &Bracket<f64>) -> Option<Angle<f64>> {
     let mut shorter = f64::INFINITY;
     let mut at = first;
     for _ in 0..BISECTIONS {
-        let [h1, h2, _, rho] = pair.slopes(at.cos, at.sin);
+        let [h1, h2, rho] = pair.slopes(at.cos, at.sin);
         let half = -0.5 * h1 / h2;
         let there = at.ahead(half);
         let inside =

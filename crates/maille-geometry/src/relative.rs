@@ -84,28 +84,18 @@ impl<T: Lane> Reduced<T> {
         [p - q, p + q]
     }
 
-    /// `h′`, `h″`, `h‴` and ρ, from the products that keep `h′` accurate, see [`Relative::at`].
-    #[inline(always)]
-    pub fn slopes(&self, cos: T, sin: T) -> [T; 4] {
+    /// `h′`, `h″` and ρ, from the products that keep `h′` accurate, see [`Relative::at`].
+    pub fn slopes(&self, cos: T, sin: T) -> [T; 3] {
         let (r, c) = (self.radius, self.tilt_cos);
         let rise = r * self.tilt_sin;
-        let (x, y) = (self.x0 + r * c * cos, self.y0 + r * sin);
-        let rho = (x * x + y * y).sqrt();
+        let rho = self.foot(cos, sin)[2];
         let inverse = rho.like(1.0) / rho;
         let (z, z1, z2) = (self.z0 + rise * cos, -(rise * sin), -(rise * cos));
-        let odd = r * (self.y0 * cos - c * self.x0 * sin);
-        let even = rise * rise * (sin * cos);
         let ee2 = rise * rise * ((cos - sin) * (cos + sin)) - r * (self.y0 * sin + c * self.x0 * cos);
-        let rho1 = (odd + even) * inverse;
+        let rho1 = (r * (self.y0 * cos - c * self.x0 * sin) + rise * rise * (sin * cos)) * inverse;
         let rho2 = (ee2 - rho1 * rho1) * inverse;
-        let rho3 = -(odd + even * 4.0 + rho1 * rho2 * 3.0) * inverse;
         let radial = rho - self.base_radius;
-        [
-            z * z1 + radial * rho1,
-            z1 * z1 + z * z2 + rho1 * rho1 + radial * rho2,
-            (z1 * z2 + rho1 * rho2) * 3.0 - z * z1 + radial * rho3,
-            rho,
-        ]
+        [z * z1 + radial * rho1, z1 * z1 + z * z2 + rho1 * rho1 + radial * rho2, rho]
     }
 
     /// Halley's step for `f = ρ h′ = ρ z z′ + (ρ − R) e·e′`, as a fraction that is the tangent of half of it:
