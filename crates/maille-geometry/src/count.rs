@@ -37,6 +37,12 @@ pub(crate) struct Arcs {
     pub centers: [Direction; ARCS],
     /// T: tan of a quarter of the width.
     pub edge: f64,
+    /// tan of an eighth of the width.
+    pub half_edge: f64,
+    /// A quarter of the width.
+    pub half_turn: Direction,
+    /// cos and sin of the turns from the first arc to each.
+    pub eighths: [[f64; 2]; ARCS],
     /// cos and sin of k times the angle of the first centre, k = 1 … 4.
     turn: [Direction; 4],
     /// Bernstein coefficients of 1, divided out of the next two.
@@ -60,6 +66,12 @@ pub(crate) static TABLE: LazyLock<Arcs> = LazyLock::new(|| {
         ends: std::array::from_fn(|i| at(i as f64)),
         centers: std::array::from_fn(|i| at(i as f64 + 0.5)),
         edge,
+        half_edge: (width / 8.0).tan(),
+        half_turn: Direction::at(width / 4.0),
+        eighths: std::array::from_fn(|k| {
+            let Direction { cos, sin } = Direction::at(k as f64 * width);
+            [cos, sin]
+        }),
         turn: std::array::from_fn(|k| Direction::at((k as f64 + 1.0) * (START_RAD + 0.5 * width))),
         weights,
         cosines: std::array::from_fn(|i| std::array::from_fn(|k| part(k + 1, 0, i))),
@@ -152,79 +164,124 @@ impl<T: Lane> Harmonics<T> {
         Self { mean, cosine, sine, size }
     }
 
-    /// The coefficients of every arc, divided by [`Arcs::weights`].
+    /// Turned to the centres of the first four arcs.
     ///
-    /// From an arc to the next the harmonics turn by 45°, 90°, 135° and 180°, and those of arcs on opposite sides differ
-    /// in the sign of the odd ones.
+    /// From an arc to the next the harmonics turn by 45°, 90°, 135° and 180°.
     #[inline(always)]
-    pub fn coefficients(&self, table: &Arcs) -> [[T; 9]; ARCS] {
+    pub fn turned(&self) -> Turned<T> {
         let ([c1, c2, c3, c4], [s1, s2, s3, s4]) = (self.cosine, self.sine);
         let (t1, t3) = (eighth(c1, s1), eighth(c3, s3));
-        let first = [[c1, s1], t1, [s1, -c1], [t1[1], -t1[0]]];
-        let second = [[c2, s2], [s2, -c2], [-c2, -s2], [-s2, c2]];
-        let third = [[c3, s3], [t3[1], -t3[0]], [-s3, c3], t3];
-        let mut out = [[self.mean; 9]; ARCS];
-        for m in 0..ARCS / 2 {
-            let fourth = if m % 2 == 0 { [c4, s4] } else { [-c4, -s4] };
-            for i in 0..5 {
-                let a = &table.cosines[i];
-                let even = self.mean + second[m][0] * a[1] + fourth[0] * a[3];
-                let odd = first[m][0] * a[0] + third[m][0] * a[2];
-                if i == 4 {
-                    out[m][4] = even + odd;
-                    out[m + 4][4] = even - odd;
-                    continue;
-                }
-                let b = &table.sines[i];
-                let even_sine = second[m][1] * b[1] + fourth[1] * b[3];
-                let odd_sine = first[m][1] * b[0] + third[m][1] * b[2];
-                let (left, right) = (even + even_sine, even - even_sine);
-                let (odd_left, odd_right) = (odd + odd_sine, odd - odd_sine);
-                out[m][i] = left + odd_left;
-                out[m][8 - i] = right + odd_right;
-                out[m + 4][i] = left - odd_left;
-                out[m + 4][8 - i] = right - odd_right;
+        Turned {
+            mean: self.mean,
+            modes: [
+                [[c1, s1], t1, [s1, -c1], [t1[1], -t1[0]]],
+                [[c2, s2], [s2, -c2], [-c2, -s2], [-s2, c2]],
+                [[c3, s3], [t3[1], -t3[0]], [-s3, c3], t3],
+                [[c4, s4], [-c4, -s4], [c4, s4], [-c4, -s4]],
+            ],
+        }
+    }
+
+    /// The coefficients of the arc that is turned by an angle from the first one, divided by [`Arcs::weights`], with the
+    /// values of H at its ends.
+    #[inline(always)]
+    pub fn around(&self, turn: [T; 2], ends: [T; 2], table: &Arcs) -> [T; 9] {
+        let [cos, sin] = turn;
+        let mut by = turn;
+        let mut modes = [[self.mean; 2]; 4];
+        for k in 0..4 {
+            modes[k] = [self.cosine[k] * by[0] + self.sine[k] * by[1], self.sine[k] * by[0] - self.cosine[k] * by[1]];
+            by = [by[0] * cos - by[1] * sin, by[1] * cos + by[0] * sin];
+        }
+        let mut out = [ends[0]; 9];
+        out[8] = ends[1];
+        for i in 1..5 {
+            let a = &table.cosines[i];
+            let even =
+                self.mean + (modes[0][0] * a[0] + modes[1][0] * a[1] + (modes[2][0] * a[2] + modes[3][0] * a[3]));
+            if i == 4 {
+                out[4] = even;
+                continue;
             }
+            let b = &table.sines[i];
+            let odd = modes[0][1] * b[0] + modes[1][1] * b[1] + (modes[2][1] * b[2] + modes[3][1] * b[3]);
+            (out[i], out[8 - i]) = (even + odd, even - odd);
         }
         out
     }
 
-    /// Changes of sign in all arcs together, doubtful ones counted as changes.
+    /// A coefficient is certain if it is larger than this.
     #[inline(always)]
-    pub fn changes(&self, coefficients: &[[T; 9]; ARCS]) -> T {
-        let (zero, one) = (self.mean.like(0.0), self.mean.like(1.0));
-        let doubt = self.size * self.size * CERTAIN;
-        let mut sums = [zero; ARCS];
-        for k in 0..ARCS {
-            for i in 0..8 {
-                let product = coefficients[k][i] * coefficients[k][i + 1];
-                sums[k] = sums[k] + T::pick(product.below(doubt), one, zero);
-            }
-        }
-        (sums[0] + sums[1] + (sums[2] + sums[3])) + (sums[4] + sums[5] + (sums[6] + sums[7]))
+    pub fn certain(&self) -> T {
+        self.size * CERTAIN
+    }
+
+    /// The products of neighbouring coefficients below which they count as a change of sign.
+    #[inline(always)]
+    pub fn doubt(&self) -> T {
+        self.size * self.size * CERTAIN
     }
 }
 
-impl Harmonics<f64> {
-    /// Changes of sign of these coefficients, or `None` where one of them is in doubt.
-    pub fn certain_changes(&self, coefficients: &[f64; 9]) -> Option<usize> {
-        let doubt = self.size * CERTAIN;
-        let certain = coefficients.iter().all(|b| b.abs() > doubt);
-        certain.then(|| coefficients.windows(2).filter(|w| (w[0] < 0.0) != (w[1] < 0.0)).count())
+/// H around the centres of the first four arcs: cosine and sine part by harmonic and arc.
+pub(crate) struct Turned<T> {
+    mean: T,
+    modes: [[[T; 2]; ARCS / 2]; 4],
+}
+
+impl<T: Lane> Turned<T> {
+    /// The coefficients of an arc `m < ARCS / 2` and of the opposite one, divided by [`Arcs::weights`]. The two differ in
+    /// the sign of the odd harmonics. The first and the last are the values of H at the ends, given by arc.
+    #[inline(always)]
+    pub fn coefficients(&self, m: usize, ends: &[T; ARCS], table: &Arcs) -> [[T; 9]; 2] {
+        let [first, second, third, fourth] = [self.modes[0][m], self.modes[1][m], self.modes[2][m], self.modes[3][m]];
+        let mut out = [[self.mean; 9]; 2];
+        (out[0][0], out[0][8]) = (ends[m], ends[m + 1]);
+        (out[1][0], out[1][8]) = (ends[m + ARCS / 2], ends[(m + ARCS / 2 + 1) % ARCS]);
+        for i in 1..5 {
+            let a = &table.cosines[i];
+            let even = self.mean + second[0] * a[1] + fourth[0] * a[3];
+            let odd = first[0] * a[0] + third[0] * a[2];
+            if i == 4 {
+                (out[0][4], out[1][4]) = (even + odd, even - odd);
+                continue;
+            }
+            let b = &table.sines[i];
+            let even_sine = second[1] * b[1] + fourth[1] * b[3];
+            let odd_sine = first[1] * b[0] + third[1] * b[2];
+            let (left, right) = (even + even_sine, even - even_sine);
+            let (odd_left, odd_right) = (odd + odd_sine, odd - odd_sine);
+            (out[0][i], out[0][8 - i]) = (left + odd_left, right + odd_right);
+            (out[1][i], out[1][8 - i]) = (left - odd_left, right - odd_right);
+        }
+        out
     }
+}
+
+/// Changes of sign in the coefficients of an arc, doubtful ones counted as changes.
+#[inline(always)]
+pub(crate) fn changes<T: Lane>(coefficients: &[T; 9], doubt: T) -> T {
+    let (zero, one) = (doubt.like(0.0), doubt.like(1.0));
+    let mut sums = [zero; 2];
+    for i in 0..8 {
+        let product = coefficients[i] * coefficients[i + 1];
+        sums[i % 2] = sums[i % 2] + T::pick(product.below(doubt), one, zero);
+    }
+    sums[0] + sums[1]
 }
 
 /// The coefficients of the two halves of an arc (de Casteljau).
-pub(crate) fn halves(coefficients: &[f64; 9]) -> [[f64; 9]; 2] {
-    let (mut row, mut left, mut right) = (*coefficients, [0.0; 9], [0.0; 9]);
-    for k in 0..9 {
-        left[k] = row[0];
-        right[8 - k] = row[8 - k];
-        for i in 0..8 - k {
-            row[i] = 0.5 * (row[i] + row[i + 1]);
+#[inline(always)]
+pub(crate) fn halves<T: Lane>(coefficients: &[T; 9]) -> [[T; 9]; 2] {
+    let (mut row, mut left) = (*coefficients, *coefficients);
+    for k in 1..9 {
+        // In place, of constant length: what lies behind 8 − k is the right half.
+        for i in 0..9 - k {
+            row[i] = (row[i] + row[i + 1]) * 0.5;
         }
+        left[k] = row[0];
     }
-    [left, right]
+    [left, row]
 }
 
 #[cfg(test)]
@@ -244,8 +301,13 @@ mod tests {
             let b = Circle::new(vector(2.0), unit(vector(1.0)), rng.random_range(0.1..1.0));
             let pair = Relative::new(&a, &b).reduced();
             let harmonics = Harmonics::new(&pair, &TABLE);
-            let arcs = harmonics.coefficients(&TABLE);
-            for (arc, center) in arcs.iter().zip(TABLE.centers) {
+            let turned = harmonics.turned();
+            let ends: [f64; ARCS] = std::array::from_fn(|k| {
+                let [minus, plus] = pair.factors(TABLE.ends[k].cos, TABLE.ends[k].sin);
+                minus * plus
+            });
+            for (k, center) in TABLE.centers.into_iter().enumerate() {
+                let arc = turned.coefficients(k % 4, &ends, &TABLE)[k / 4];
                 let whole: [f64; 9] = std::array::from_fn(|i| arc[i] * TABLE.weights[i]);
                 let [left, right] = halves(&whole);
                 for (b, from, to) in [(whole, -1.0, 1.0), (left, -1.0, 0.0), (right, 0.0, 1.0)] {

@@ -23,6 +23,7 @@ pub(crate) trait Lane:
     fn sqrt(self) -> Self;
     fn abs(self) -> Self;
     fn max(self, other: Self) -> Self;
+    fn min(self, other: Self) -> Self;
     fn below(self, other: Self) -> Self::Mask;
     fn pick(mask: Self::Mask, yes: Self, no: Self) -> Self;
     fn both(p: Self::Mask, q: Self::Mask) -> Self::Mask;
@@ -50,6 +51,11 @@ impl Lane for f64 {
     #[inline(always)]
     fn max(self, other: f64) -> f64 {
         f64::max(self, other)
+    }
+
+    #[inline(always)]
+    fn min(self, other: f64) -> f64 {
+        f64::min(self, other)
     }
 
     #[inline(always)]
@@ -85,6 +91,19 @@ pub(crate) struct Register<S: Simd> {
 pub(crate) struct Truth<S: Simd> {
     simd: S,
     value: S::m64s,
+}
+
+impl<S: Simd> Register<S> {
+    /// Some of the numbers of a row.
+    #[inline(always)]
+    pub fn load(simd: S, row: &[f64], from: usize) -> Self {
+        Self { simd, value: S::as_simd_f64s(&row[from..from + S::F64_LANES]).0[0] }
+    }
+
+    #[inline(always)]
+    pub fn store(self, row: &mut [f64], from: usize) {
+        S::as_mut_simd_f64s(&mut row[from..from + S::F64_LANES]).0[0] = self.value;
+    }
 }
 
 macro_rules! operator {
@@ -144,6 +163,11 @@ impl<S: Simd> Lane for Register<S> {
     #[inline(always)]
     fn max(self, other: Self) -> Self {
         Self { simd: self.simd, value: self.simd.max_f64s(self.value, other.value) }
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self { simd: self.simd, value: self.simd.min_f64s(self.value, other.value) }
     }
 
     #[inline(always)]

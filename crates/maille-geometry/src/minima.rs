@@ -101,18 +101,19 @@ impl Minima {
         continuum: bool,
         swapped: bool,
     ) -> Self {
-        let mut found = [Minimum::NONE; MAX_MINIMA];
-        let count = directions.len();
-        for (slot, Direction { cos, sin }) in found.iter_mut().zip(directions) {
-            *slot = pair.minimum(cos, sin, swapped);
-        }
-        found[..count].sort_unstable_by(|p, q| p.distance.total_cmp(&q.distance));
         let kind = match pair.kind() {
             PairKind::Coaxial => PairKind::Coaxial,
             _ if continuum => PairKind::Equidistant,
             kind => kind,
         };
-        Self { kind, continuum, found, count }
+        // Filled in place: it is too large to be moved about.
+        let mut minima = Self { kind, continuum, found: [Minimum::NONE; MAX_MINIMA], count: directions.len() };
+        for (slot, Direction { cos, sin }) in minima.found.iter_mut().zip(directions) {
+            *slot = pair.minimum(cos, sin, swapped);
+        }
+        let count = minima.count;
+        minima.found[..count].sort_unstable_by(|p, q| p.distance.total_cmp(&q.distance));
+        minima
     }
 }
 
@@ -132,8 +133,9 @@ impl Minima {
 /// kink, is a maximum or no extremum and never among the answers, except for equal circles' meridian, a continuum.
 /// Two minima closer than `2.4e-5` rad, which differ by rounding only, are one.
 ///
-/// **Cost.** Half a microsecond, no heap; [`circle_distance_approaches`](crate::circle_distance_approaches) takes many pairs
-/// at a fraction of it. Pairs that are close to an equidistant one without a common axis (within
+/// **Cost.** No heap; times are those of `cargo bench -p maille-geometry --bench pair`, some in the repository's
+/// `docs/decisions/0010-batch-kernel.md`; [`circle_distance_approaches`](crate::circle_distance_approaches) takes many pairs
+/// at a quarter of it. Pairs that are close to an equidistant one without a common axis (within
 /// about `1e-3`), where nothing can be proven cheaply, some 100 µs.
 ///
 /// **Tested** on 120,000 pairs of six families against dense sampling: no minimum missed, none too many, never more than

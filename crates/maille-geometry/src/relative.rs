@@ -51,6 +51,8 @@ pub(crate) struct Reduced<T> {
     pub p: [T; 2],
     /// `R e·e′ = q₀ cos θ + q₁ sin θ + q₂ sin 2θ`.
     pub q: [T; 3],
+    /// `1/R`.
+    inverse: T,
 }
 
 impl<T: Lane> Reduced<T> {
@@ -59,7 +61,18 @@ impl<T: Lane> Reduced<T> {
         let (cx0, rise) = (tilt_cos * x0, radius * tilt_sin);
         let p = [radius * y0, -(radius * (cx0 + tilt_sin * z0))];
         let q = [base_radius * p[0], -(base_radius * (radius * cx0)), base_radius * (rise * rise) * 0.5];
-        Self { base_radius, radius, x0, y0, z0, tilt_cos, tilt_sin, p, q }
+        Self { base_radius, radius, x0, y0, z0, tilt_cos, tilt_sin, p, q, inverse: radius.like(1.0) / base_radius }
+    }
+
+    /// What it is made of.
+    #[inline(always)]
+    pub fn numbers(&self) -> [T; 7] {
+        [self.base_radius, self.radius, self.x0, self.y0, self.z0, self.tilt_cos, self.tilt_sin]
+    }
+
+    #[inline(always)]
+    pub fn of_numbers([base_radius, radius, x0, y0, z0, tilt_cos, tilt_sin]: [T; 7]) -> Self {
+        Self::new(base_radius, radius, [x0, y0, z0], tilt_cos, tilt_sin)
     }
 
     /// `ρ h′ = pρ − q` and its companion `pρ + q`.
@@ -71,28 +84,47 @@ impl<T: Lane> Reduced<T> {
         [p - q, p + q]
     }
 
-    /// `h′`, `h″`, `h‴` and ρ, from the products that keep `h′` accurate, see [`Relative::at`].
-    #[inline(always)]
-    pub fn slopes(&self, cos: T, sin: T) -> [T; 4] {
+    /// `h′`, `h″` and ρ, from the products that keep `h′` accurate, see [`Relative::at`].
+    pub fn slopes(&self, cos: T, sin: T) -> [T; 3] {
         let (r, c) = (self.radius, self.tilt_cos);
         let rise = r * self.tilt_sin;
-        let (x, y) = (self.x0 + r * c * cos, self.y0 + r * sin);
-        let rho = (x * x + y * y).sqrt();
+        let rho = self.foot(cos, sin)[2];
         let inverse = rho.like(1.0) / rho;
         let (z, z1, z2) = (self.z0 + rise * cos, -(rise * sin), -(rise * cos));
-        let odd = r * (self.y0 * cos - c * self.x0 * sin);
-        let even = rise * rise * (sin * cos);
         let ee2 = rise * rise * ((cos - sin) * (cos + sin)) - r * (self.y0 * sin + c * self.x0 * cos);
-        let rho1 = (odd + even) * inverse;
+        let rho1 = (r * (self.y0 * cos - c * self.x0 * sin) + rise * rise * (sin * cos)) * inverse;
         let rho2 = (ee2 - rho1 * rho1) * inverse;
-        let rho3 = -(odd + even * 4.0 + rho1 * rho2 * 3.0) * inverse;
         let radial = rho - self.base_radius;
-        [
-            z * z1 + radial * rho1,
-            z1 * z1 + z * z2 + rho1 * rho1 + radial * rho2,
-            (z1 * z2 + rho1 * rho2) * 3.0 - z * z1 + radial * rho3,
-            rho,
-        ]
+        [z * z1 + radial * rho1, z1 * z1 + z * z2 + rho1 * rho1 + radial * rho2, rho]
+    }
+
+    /// Halley's step for `f = ρ h′ = ρ z z′ + (ρ − R) e·e′`, as a fraction that is the tangent of half of it:
+    /// `−f f′ / (2 f′² − f f″)` times ρ³ above and below, so that it takes no division; and ρ, negative where f does not
+    /// rise: there the step goes down the slope.
+    ///
+    /// The products keep f accurate, see [`Relative::at`]; its derivatives are those of `pρ − q`, with `R e·e′ = q`.
+    #[inline(always)]
+    pub fn step(&self, cos: T, sin: T) -> ([T; 2], T) {
+        let rise = self.radius * self.tilt_sin;
+        let (x, y) = (self.x0 + self.radius * self.tilt_cos * cos, self.y0 + self.radius * sin);
+        let (z, z1) = (self.z0 + rise * cos, -(rise * sin));
+        let square = x * x + y * y;
+        let rho = square.sqrt();
+        let (twice_sin, twice_cos) = (sin * cos * 2.0, (cos - sin) * (cos + sin));
+        let (p, p1) = (self.p[0] * cos + self.p[1] * sin, self.p[1] * cos - self.p[0] * sin);
+        let (odd, even) = (self.q[0] * cos + self.q[1] * sin, self.q[2] * twice_sin);
+        let q = odd + even;
+        let q1 = self.q[1] * cos - self.q[0] * sin + self.q[2] * twice_cos * 2.0;
+        let q2 = -(odd + even * 4.0);
+        let (ee, ee1) = (q * self.inverse, q1 * self.inverse);
+        let f = rho * (z * z1) + (rho - self.base_radius) * ee;
+        // ρ f′ and ρ³ f″
+        let first = p1 * square + p * ee - q1 * rho;
+        let second = square * (p1 * ee * 2.0 + p * ee1 - p * square - q2 * rho) - p * (ee * ee);
+        let rises = square.like(0.0).below(first);
+        let top = T::pick(rises, f * first * square, f);
+        let bottom = T::pick(rises, f * second - first * first * rho * 2.0, -(f.abs() * 8.0));
+        ([top, bottom], T::pick(rises, rho, -rho))
     }
 
     /// How large the slope could be: the sum of its harmonics' amplitudes.
@@ -171,6 +203,7 @@ impl<'a> Relative<'a> {
         let tilt_sin = y.dot(&cross);
         let offset = [x.dot(&offset) / scale, y.dot(&offset) / scale, n.dot(&offset) / scale];
         let radius = moving.radius / scale;
+        let (across, along) = (tilt_cos * offset[0], offset[1]);
         Self {
             base,
             moving,
@@ -182,7 +215,7 @@ impl<'a> Relative<'a> {
             tilt_sin,
             axes: [x, y],
             steepest: y.cross(m),
-            direct_below: (tilt_cos * offset[0]).hypot(offset[1]) + radius * tilt_sin * tilt_sin,
+            direct_below: (across * across + along * along).sqrt() + radius * tilt_sin * tilt_sin,
         }
     }
 

@@ -1,0 +1,187 @@
+//! Pairs side by side in registers: the structure of arrays, and the vectors that reduce a pair to six numbers.
+
+use crate::Circle;
+use crate::brackets::Angle;
+use crate::lane::{Lane, Register};
+use crate::relative::Reduced;
+use pulp::Simd;
+
+/// Pairs side by side: two registers of the widest kind.
+pub(crate) const WIDTH: usize = 16;
+/// One number of each.
+pub(crate) type Row = [f64; WIDTH];
+/// Numbers of a pair: centre, normal and radius of A, then of B.
+const NUMBERS: usize = 14;
+
+/// Pairs as a structure of arrays.
+pub(crate) struct Block {
+    numbers: [Row; NUMBERS],
+    pub index: [usize; WIDTH],
+    pub count: usize,
+}
+
+impl Block {
+    /// Full of one harmless pair.
+    pub fn new() -> Self {
+        let one = [0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0];
+        Self { numbers: one.map(|x| [x; WIDTH]), index: [0; WIDTH], count: 0 }
+    }
+
+    #[inline(always)]
+    pub fn push(&mut self, index: usize, (a, b): &(Circle, Circle)) {
+        let lane = self.count % WIDTH;
+        for (k, circle) in [(0, a), (7, b)] {
+            let numbers = [
+                circle.center.x,
+                circle.center.y,
+                circle.center.z,
+                circle.normal.x,
+                circle.normal.y,
+                circle.normal.z,
+                circle.radius,
+            ];
+            for (number, x) in self.numbers[k..].iter_mut().zip(numbers) {
+                number[lane] = x;
+            }
+        }
+        self.index[lane] = index;
+        self.count = lane + 1;
+    }
+
+    #[inline(always)]
+    pub fn load<S: Simd>(&self, simd: S, from: usize) -> Placed<Register<S>> {
+        Placed {
+            between: minus(self.vector(simd, 7, from), self.vector(simd, 0, from)),
+            normals: [self.vector(simd, 3, from), self.vector(simd, 10, from)],
+            radii: [self.number(simd, 6, from), self.number(simd, 13, from)],
+        }
+    }
+
+    #[inline(always)]
+    fn number<S: Simd>(&self, simd: S, k: usize, from: usize) -> Register<S> {
+        Register::load(simd, &self.numbers[k], from)
+    }
+
+    #[inline(always)]
+    fn vector<S: Simd>(&self, simd: S, k: usize, from: usize) -> Vector<Register<S>> {
+        [self.number(simd, k, from), self.number(simd, k + 1, from), self.number(simd, k + 2, from)]
+    }
+}
+
+type Vector<T> = [T; 3];
+
+#[inline(always)]
+fn minus<T: Lane>(p: Vector<T>, q: Vector<T>) -> Vector<T> {
+    [p[0] - q[0], p[1] - q[1], p[2] - q[2]]
+}
+
+#[inline(always)]
+fn dot<T: Lane>(p: Vector<T>, q: Vector<T>) -> T {
+    p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
+}
+
+#[inline(always)]
+fn cross<T: Lane>(p: Vector<T>, q: Vector<T>) -> Vector<T> {
+    [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]]
+}
+
+#[inline(always)]
+fn sum<T: Lane>(p: Vector<T>, by: T, q: Vector<T>, times: T) -> Vector<T> {
+    [p[0] * by + q[0] * times, p[1] * by + q[1] * times, p[2] * by + q[2] * times]
+}
+
+#[inline(always)]
+fn choose<T: Lane>(mask: T::Mask, yes: Vector<T>, no: Vector<T>) -> Vector<T> {
+    [T::pick(mask, yes[0], no[0]), T::pick(mask, yes[1], no[1]), T::pick(mask, yes[2], no[2])]
+}
+
+/// The pairs of a register: from the centre of A to that of B, normals and radii.
+pub(crate) struct Placed<T> {
+    between: Vector<T>,
+    normals: [Vector<T>; 2],
+    radii: [T; 2],
+}
+
+/// Sines of the planes' angle below this go to the single kernel.
+const LEAST_TILT: f64 = 1e-7;
+
+impl<T: Lane> Placed<T> {
+    /// [`crate::circle_distance_floor`].
+    #[inline(always)]
+    pub fn floor(&self) -> T {
+        let zero = self.radii[0].like(0.0);
+        let apart_sq = dot(self.between, self.between);
+        let apart = apart_sq.sqrt();
+        let cos = dot(self.normals[0], self.normals[1]);
+        let sin = (zero.like(1.0) - cos * cos).max(zero).sqrt();
+        let mut over = [zero; 2];
+        for (base, moving) in [(0, 1), (1, 0)] {
+            let height = dot(self.normals[base], self.between);
+            let from_axis = (apart_sq - height * height).max(zero).sqrt();
+            let rise = (height.abs() - self.radii[moving] * sin).max(zero);
+            let radial = ((from_axis - self.radii[base]).abs() - self.radii[moving]).max(zero);
+            over[base] = rise * rise + radial * radial;
+        }
+        let size = apart + self.radii[0] + self.radii[1];
+        let spheres = apart - self.radii[0] - self.radii[1];
+        let inside = (self.radii[0] - self.radii[1]).abs() - apart;
+        let floor = spheres.max(inside).max(over[0].max(over[1]).sqrt()) - size * 1e-7;
+        floor.max(zero)
+    }
+
+    /// The numbers of [`crate::relative::Relative`].
+    #[inline(always)]
+    pub fn framed(&self) -> Framed<T> {
+        let one = self.radii[0].like(1.0);
+        // The smaller circle moves; B, if they are equal.
+        let swapped = self.radii[0].below(self.radii[1]);
+        let base_normal = choose(swapped, self.normals[1], self.normals[0]);
+        let normal = choose(swapped, self.normals[0], self.normals[1]);
+        let base_radius = T::pick(swapped, self.radii[1], self.radii[0]);
+        let radius = T::pick(swapped, self.radii[0], self.radii[1]);
+        let [bx, by, bz] = self.between;
+        let between = choose(swapped, [-bx, -by, -bz], self.between);
+        let scale = dot(between, between).sqrt().max(base_radius).max(radius);
+        let inverse = one / scale;
+        let tilt = cross(normal, base_normal);
+        let flat = sum(tilt, one, base_normal, -dot(base_normal, tilt));
+        let length = dot(flat, flat).sqrt();
+        let along = one / length;
+        let y = [flat[0] * along, flat[1] * along, flat[2] * along];
+        let x = cross(y, base_normal);
+        let offset = [dot(x, between) * inverse, dot(y, between) * inverse, dot(base_normal, between) * inverse];
+        let pair =
+            Reduced::new(base_radius * inverse, radius * inverse, offset, dot(base_normal, normal), dot(y, tilt));
+        Framed { pair, axes: [x, y], steepest: cross(y, normal), scale, swapped, length }
+    }
+}
+
+/// Pairs of a register, reduced to six numbers each.
+pub(crate) struct Framed<T: Lane> {
+    pub pair: Reduced<T>,
+    axes: [Vector<T>; 2],
+    steepest: Vector<T>,
+    scale: T,
+    swapped: T::Mask,
+    /// Sine of the planes' angle.
+    length: T,
+}
+
+impl<T: Lane> Framed<T> {
+    /// The planes are not so nearly parallel that rounding turns the axes.
+    #[inline(always)]
+    pub fn is_tilted(&self) -> T::Mask {
+        self.length.like(LEAST_TILT).below(self.length)
+    }
+
+    /// The distance at an angle, and the direction on circle B.
+    #[inline(always)]
+    pub fn approach(&self, Angle { cos, sin }: Angle<T>) -> (T, Vector<T>) {
+        let [x, y] = self.axes;
+        let moving = sum(self.steepest, cos, y, sin);
+        let [ex, ey, rho] = self.pair.foot(cos, sin);
+        let foot = rho.like(1.0) / rho;
+        let base = sum(x, ex * foot, y, ey * foot);
+        (self.pair.distance(cos, sin) * self.scale, choose(self.swapped, base, moving))
+    }
+}
