@@ -4,11 +4,13 @@ use crate::{
     exit::{self, wrong},
     numbers::positive,
     output,
+    progress::Spinner,
     source::{Source, SourceArgs, Wanted},
 };
 use maille_io::{
+    film,
     mesh::Tile,
-    render::{Background, ColorBy, Extent, Forces, RenderError, RenderOptions, Subject, View, render},
+    render::{Background, ColorBy, Extent, Forces, Picture, RenderError, RenderOptions, Subject, View, render_frames},
     with_palette,
 };
 use miette::{IntoDiagnostic, Report, Result, WrapErr};
@@ -17,7 +19,7 @@ use std::{
     time::Instant,
 };
 
-/// A picture of a sheet, as PNG
+/// A picture of a sheet, as PNG, or a film, as GIF
 ///
 /// Draws a patch of the starting state, or of a locked state from a record with its contact forces. The rings are exact
 /// tori, drawn without a graphics card; the same command gives the same picture on any number of threads.
@@ -30,6 +32,8 @@ Examples:
   maille render 1.1 --at direction=30,l2=-0.125                   a limit of maille-out/1.1, with its forces
   maille render --from results/weave --at direction=0,l2=0 --color load --forces none
   maille render --from maille-out/1.1-simulate --at frame=3       a state of a simulated sheet
+  maille render --from maille-out/1.1-simulate --frames 40        maille-out/1.1-simulate.gif
+  maille render 1.1 --at direction=30 --frames 30                 from the starting state to the limit, interpolated
   maille render 1.1 --size 300x225 --no-scale-bar --out -         to standard output
 
 Colours: elements that differ by a translation alone share one. With --color load, from yellow to violet by the sum of
@@ -75,7 +79,10 @@ pub struct Args {
     /// 256 colours, chosen for the picture: a third of the bytes, for web pages
     #[arg(long)]
     palette: bool,
-    /// The file, or - for standard output [default: maille-out/DESIGN.png, with the state in its name]
+    /// A film of N frames, as GIF: the states of a simulation, or from the starting state to the record's, interpolated
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=2_000), conflicts_with = "palette")]
+    frames: Option<u32>,
+    /// The file, or - for standard output [default: maille-out/DESIGN.png (.gif), with the state in its name]
     #[arg(long)]
     out: Option<PathBuf>,
     /// Threads [default: all cores]; the picture does not depend on it
@@ -124,9 +131,12 @@ fn parse_patch(text: &str) -> Result<[f64; 2], String> {
     }
 }
 
+/// How long a film shows a frame.
+const FRAME_CENTISECONDS: u16 = 8;
+
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
-    let source = args.source.read(Wanted { locked: false, overlaps: true })?;
+    let source = args.source.read(Wanted { locked: args.frames.is_some(), overlaps: true })?;
     let contacts = source.contacts();
     if let Some(caution) = source.caution().filter(|_| !args.quiet) {
         eprintln!("note: {caution}");
@@ -154,7 +164,7 @@ pub fn run(args: &Args) -> Result<()> {
         },
         forces: match args.forces {
             Some(ForcesArg::Arrows) => Forces::Arrows,
-            None if !contacts.is_empty() => Forces::Arrows,
+            None if !contacts.is_empty() && args.frames.is_none() => Forces::Arrows,
             Some(ForcesArg::None) | None => Forces::None,
         },
         cell: args.cell,
@@ -162,43 +172,57 @@ pub fn run(args: &Args) -> Result<()> {
         shadow: !args.no_shadow,
         ..RenderOptions::new(extent)
     };
-    let out = destination(args.out.as_deref(), &source)?;
-    let subject =
-        Subject { model: &source.model, state: source.state(), contacts, unit: source.design.unit.as_deref() };
+    let kind = if args.frames.is_some() { "gif" } else { "png" };
+    let out = destination(args.out.as_deref(), &source, kind)?;
+    let frames = source.frames(args.frames);
+    let unit = source.design.unit.as_deref();
+    let subjects: Vec<Subject<'_>> =
+        frames.iter().map(|frame| Subject { model: &source.model, state: &frame.state, contacts, unit }).collect();
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(args.threads.map_or(0, usize::from))
         .build()
         .into_diagnostic()
         .wrap_err("cannot start the threads")?;
     let begun = Instant::now();
-    let picture = pool.install(|| render(&subject, &options)).map_err(|e| match e {
+    let progress = Spinner::new(args.quiet || args.frames.is_none());
+    let mut pictures = Vec::with_capacity(subjects.len());
+    let all = pool.install(|| {
+        render_frames(&subjects, &options, |picture| {
+            pictures.push(picture);
+            progress.says(|| format!("frame {} of {}", pictures.len(), subjects.len()));
+        })
+    });
+    progress.finish();
+    all.map_err(|e| match e {
         RenderError::NoForces => args.source.no_forces(&source),
         e => Report::new(e),
     })?;
-    let mut png = picture.to_png()?;
-    if args.palette {
-        png = with_palette(&png).into_diagnostic()?;
-    }
-    output::write(&out, &png)?;
+    let bytes = match (&pictures[..], args.frames, args.palette) {
+        (pictures, Some(_), _) => film(pictures, FRAME_CENTISECONDS).into_diagnostic()?,
+        ([picture], None, true) => with_palette(&picture.to_png()?).into_diagnostic()?,
+        (pictures, None, _) => pictures.first().map_or(Ok(Vec::new()), Picture::to_png)?,
+    };
+    output::write(&out, &bytes)?;
     if !args.quiet && !output::is_standard(&out) {
-        let ([w, h], rings) = (args.size, picture.rings);
-        output::say!("{}  {w} × {h}, {rings} rings, {:.1} s", out.display(), begun.elapsed().as_secs_f64());
+        let ([w, h], rings) = (args.size, pictures.first().map_or(0, |picture| picture.rings));
+        let frames = args.frames.map_or(String::new(), |_| format!("{} frames, ", pictures.len()));
+        output::say!("{}  {frames}{w} × {h}, {rings} rings, {:.1} s", out.display(), begun.elapsed().as_secs_f64());
     }
     Ok(())
 }
 
 /// The file to write, or `-`.
-fn destination(out: Option<&Path>, source: &Source) -> Result<PathBuf> {
+fn destination(out: Option<&Path>, source: &Source, kind: &str) -> Result<PathBuf> {
     let Some(out) = out else {
-        return Ok(PathBuf::from("maille-out").join(source.stem() + ".png"));
+        return Ok(PathBuf::from("maille-out").join(format!("{}.{kind}", source.stem())));
     };
-    let png = out.extension().is_some_and(|e| e.eq_ignore_ascii_case("png"));
-    match png || output::is_standard(out) {
+    let right = out.extension().is_some_and(|e| e.eq_ignore_ascii_case(kind));
+    match right || output::is_standard(out) {
         true => Ok(out.to_owned()),
         false => Err(wrong(
             exit::USAGE,
-            format!("{} is no name of a PNG", out.display()),
-            "give a name that ends in .png, or - for standard output",
+            format!("{} is no name of a {}", out.display(), kind.to_uppercase()),
+            format!("give a name that ends in .{kind}, or - for standard output"),
         )),
     }
 }

@@ -263,15 +263,6 @@ impl SourceArgs {
 }
 
 impl Source {
-    /// The state that is shown.
-    pub fn state(&self) -> &State {
-        match (&self.locked, &self.simulated) {
-            (Some((_, state)), _) => state,
-            (None, Some((states, shown))) => &states[*shown],
-            (None, None) => &self.model.start,
-        }
-    }
-
     /// Its contacts that carry force.
     pub fn contacts(&self) -> &[ContactRecord] {
         self.locked.as_ref().map_or(&[], |(record, _)| &record.contacts)

@@ -19,4 +19,4 @@ pub mod weave;
 
 pub use builtin::{Builtin, builtin, builtin_designs, nearest_builtin};
 pub use design_toml::{DESIGN_JSON_SCHEMA, DesignError, DesignProblem, DesignSource, read_design, write_design};
-pub use palette::with_palette;
+pub use palette::{film, with_palette};

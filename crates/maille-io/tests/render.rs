@@ -4,6 +4,7 @@ use maille::{lattice::Cell, model::Model, record::ContactRecord};
 use maille_geometry::{Circle, Torus, Vec3};
 use maille_io::render::{
     Background, ColorBy, Extent, Forces, Picture, Ray, RenderError, RenderOptions, Subject, View, first_hit, render,
+    render_frames,
 };
 use nalgebra::Unit;
 use std::f64::consts::PI;
@@ -133,6 +134,38 @@ fn a_ring_from_the_side_is_a_stadium() {
     let picture = render(&subject(&model), &plain(Extent::Cells([1, 1]), View::SIDE)).unwrap();
     let area = 4.0 * 2.0 * r + PI * r * r;
     assert!((covered(&picture) - area).abs() < 0.004 * area, "{} instead of {area}", covered(&picture));
+}
+
+/// One camera for the whole film: a ring that rises keeps its size, and all of its way is in view.
+#[test]
+fn a_film_has_one_camera_and_all_frames() {
+    let model = one_ring(0.4);
+    let states: Vec<_> = (0..3)
+        .map(|k| {
+            let mut state = model.start.clone();
+            state.poses[0].position.z += 3.0 * f64::from(k);
+            state
+        })
+        .collect();
+    let subjects: Vec<_> = states.iter().map(|state| Subject { state, ..subject(&model) }).collect();
+    let mut pictures = Vec::new();
+    render_frames(&subjects, &plain(Extent::Cells([1, 1]), View::SIDE), |picture| pictures.push(picture)).unwrap();
+    let area = 4.0 * 2.0 * 0.4 + PI * 0.4 * 0.4;
+    for picture in &pictures {
+        assert!((covered(picture) - area).abs() < 0.02 * area, "{} instead of {area}", covered(picture));
+    }
+    let bytes = maille_io::film(&pictures, 8).unwrap();
+    let mut film = gif::DecodeOptions::new().read_info(&bytes[..]).unwrap();
+    let size = pictures[0].size().map(|side| side as u16);
+    assert_eq!([film.width(), film.height()], size);
+    let mut first_rows = Vec::new();
+    while let Some(frame) = film.read_next_frame().unwrap() {
+        let background = frame.buffer[0];
+        first_rows.push(frame.buffer.iter().position(|index| *index != background).unwrap() / usize::from(size[0]));
+    }
+    assert_eq!(first_rows.len(), 3);
+    assert!(first_rows[0] > first_rows[1] && first_rows[1] > first_rows[2], "it rises: {first_rows:?}");
+    assert!(maille_io::film(&[], 8).is_err());
 }
 
 #[test]

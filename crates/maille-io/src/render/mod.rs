@@ -27,6 +27,7 @@ use crate::plot::svg_to_png;
 use camera::Camera;
 use color::Light;
 use film::{Pixel, Stage};
+use maille_geometry::Torus;
 use miette::Diagnostic;
 use overlay::Overlay;
 use resvg::tiny_skia::{Pixmap, PixmapPaint, PremultipliedColorU8, Transform};
@@ -199,17 +200,47 @@ impl Picture {
 
 /// Draws `subject`.
 pub fn render(subject: &Subject<'_>, options: &RenderOptions) -> Result<Picture, RenderError> {
+    let scene = Scene::new(subject, options)?;
+    let camera = camera(std::slice::from_ref(&scene), options)?;
+    draw(subject, &scene, &camera, options)
+}
+
+/// Draws `subjects` as the frames of a film, seen by one camera that has all of them in view, and gives each to `each`.
+pub fn render_frames(
+    subjects: &[Subject<'_>],
+    options: &RenderOptions,
+    mut each: impl FnMut(Picture),
+) -> Result<(), RenderError> {
+    let scenes = subjects.iter().map(|subject| Scene::new(subject, options)).collect::<Result<Vec<_>, _>>()?;
+    let camera = camera(&scenes, options)?;
+    for (subject, scene) in subjects.iter().zip(&scenes) {
+        each(draw(subject, scene, &camera, options)?);
+    }
+    Ok(())
+}
+
+fn camera(scenes: &[Scene], options: &RenderOptions) -> Result<Camera, RenderError> {
     let [width, height] = options.size;
     if !(16..=MOST_SIDE).contains(&width) || !(16..=MOST_SIDE).contains(&height) {
         return Err(RenderError::Size { width, height });
     }
-    let scene = Scene::new(subject, options)?;
     let margin = overlay::margin(options.size);
-    let written = options.scale_bar || scene.most_load.is_some() || scene.most_force.is_some();
+    let written = |scene: &Scene| scene.most_load.is_some() || scene.most_force.is_some();
+    let written = options.scale_bar || scenes.iter().any(written);
     let strip = if written { overlay::strip(options.size) } else { 0.0 };
     let frame = [margin, margin, f64::from(width) - margin, f64::from(height) - margin - strip];
-    let camera = Camera::fit(options.view, options.perspective, &scene.tori, frame)?;
-    let stage = Stage::new(&scene, &camera, options.shadow);
+    let tori: Vec<Torus> = scenes.iter().flat_map(|scene| &scene.tori).copied().collect();
+    Camera::fit(options.view, options.perspective, &tori, frame)
+}
+
+fn draw(
+    subject: &Subject<'_>,
+    scene: &Scene,
+    camera: &Camera,
+    options: &RenderOptions,
+) -> Result<Picture, RenderError> {
+    let [width, height] = options.size;
+    let stage = Stage::new(scene, camera, options.shadow);
     let pixels = stage.draw(width as usize, height as usize);
 
     let mut pixmap = Pixmap::new(width, height).ok_or(RenderError::Size { width, height })?;
@@ -221,8 +252,8 @@ pub fn render(subject: &Subject<'_>, options: &RenderOptions) -> Result<Picture,
         None => (1.0, "R".to_owned()),
     };
     let overlay = Overlay {
-        scene: &scene,
-        camera: &camera,
+        scene,
+        camera,
         size: options.size,
         background: options.background,
         scale: options.scale_bar.then_some(scale),
