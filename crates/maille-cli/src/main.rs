@@ -13,6 +13,7 @@ mod extreme;
 mod input;
 mod inspect;
 mod interrupt;
+mod limit;
 mod map;
 mod new;
 mod numbers;
@@ -47,6 +48,7 @@ Examples:
   maille replay maille-out/1.3            solve the rows without a limit again
   maille sweep radius.toml                many designs, radii and spacings
   maille reproduce --quick                chapter 6 of the thesis, computed anew
+  maille limit 1.1 --maximize exx --free eyy,exy    one strain as large as can be
   maille tightest european-4-in-1         the thickest wire
   maille simulate 1.1 --fix left --pull right=5,0,0    a finite sheet
   maille new shirt --weave european-4-in-1 --wire 16swg --id 5/16in
@@ -76,6 +78,7 @@ enum Command {
     Designs(designs::Args),
     Replay(replay::Args),
     Sweep(sweep::Args),
+    Limit(limit::Args),
     Tightest(extreme::TightestArgs),
     Roomiest(extreme::RoomiestArgs),
     Reproduce(reproduce::Args),
@@ -100,6 +103,7 @@ fn main() -> ExitCode {
         Command::New(args) => done(new::run(&args)),
         Command::Replay(args) => replay::run(&args),
         Command::Sweep(args) => sweep::run(&args),
+        Command::Limit(args) => limit::run(&args),
         Command::Tightest(args) => extreme::tightest(&args),
         Command::Roomiest(args) => extreme::roomiest(&args),
         Command::Reproduce(args) => reproduce::run(&args),

@@ -14,7 +14,8 @@ use nalgebra::Matrix2;
 use std::sync::{Mutex, atomic::AtomicBool};
 
 fn model(name: &str) -> Model {
-    Model::compile(&maille_io::builtin::load(name).unwrap(), Cell::PRIMITIVE).unwrap()
+    let design = maille_io::read_design(name, maille_io::builtin(name).unwrap()).unwrap();
+    Model::compile(&design, Cell::PRIMITIVE).unwrap()
 }
 
 fn rows(model: &Model, directions: &[f64], l2: &[f64], across: Across) -> Vec<LimitRow> {

@@ -418,7 +418,7 @@ impl<'a> ExactMethod<'a> {
         let family = Family::new(model, direction_deg, across);
         let gradient = family.gradient(&best.x.p, l2);
         if across.any() && best.certified {
-            let (free, more) = family.ranges(model, &best, l2, self.options.seed, cancel);
+            let (free, more) = family.ranges(model, &best, l2, cancel);
             figures.free = Some(free);
             iterations += more;
         }

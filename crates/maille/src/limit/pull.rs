@@ -4,25 +4,23 @@
 //! l2 and γ as further unknowns. At a limit they need not be unique, so two more solves for each give the least and the
 //! largest value that was found with l1 held at the limit.
 
-use super::{
-    FreeRanges,
-    climb::{Solve, climb},
-    exact::FREE_SLACK,
-};
+use super::{FreeRanges, climb::Solve, exact::FREE_SLACK};
 use crate::{
     constraint::{Parameter, Pull, SheetProgram},
     lattice::{Across, direction},
     model::Model,
+    solve::sqp::{SqpOptions, maximize},
     state::State,
+    topology,
 };
 use maille_geometry::Vec3;
 use nalgebra::{Matrix2, Vector2};
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 use std::sync::atomic::AtomicBool;
 
-/// Kicks of a solve for a range.
-const KICKS: usize = 1;
+/// Solves for an end of a range, each from where the last one paused.
+const ROUNDS: usize = 3;
+/// Violation that such an end may have.
+const FEASIBLE: f64 = 1e-9;
 
 /// A state with the strains of its lattice in one direction.
 #[derive(Clone)]
@@ -132,7 +130,6 @@ impl Family {
         model: &Model,
         limit: &Solve,
         l2: f64,
-        seed: u64,
         cancel: &AtomicBool,
     ) -> (FreeRanges, u64) {
         let l1 = limit.x.p[0] - FREE_SLACK * (1.0 + limit.x.p[0]);
@@ -142,6 +139,7 @@ impl Family {
         let mut iterations = 0;
         let mut ends = [[l2; 2], [shear; 2]];
         for (k, end) in ends.iter_mut().enumerate().filter(|(k, _)| wanted[*k].0) {
+            let from = end[0];
             for (side, sign) in [-1.0, 1.0].into_iter().enumerate() {
                 // The wanted one first, then the other if it is free.
                 let order = [k, 1 - k].into_iter().filter(|m| wanted[*m].0);
@@ -151,13 +149,20 @@ impl Family {
                     ..Parameter::default()
                 });
                 let pull = Pull { base: self.lattice(l1, l2, shear), parameters: parameters.collect(), metric: None };
-                let mut program = SheetProgram::new(model, &pull);
-                let start = program.posed(limit.x.state.clone(), vec![0.0; pull.parameters.len()]);
-                let mut rng = ChaCha8Rng::seed_from_u64(seed);
-                let found = climb(model, &mut program, start, KICKS, &mut rng, cancel);
-                iterations += found.iterations;
-                if let Some(best) = found.best.filter(|best| best.links_ok) {
-                    end[side] += sign * best.x.p[0].max(0.0);
+                let program = SheetProgram::new(model, &pull);
+                // Not certified: each end is a state that was found, so the range is an inner one.
+                let mut x = program.posed(limit.x.state.clone(), vec![0.0; pull.parameters.len()]);
+                let mut known = Vec::new();
+                for _ in 0..ROUNDS {
+                    let found = maximize(&program, x, known, &SqpOptions::default(), cancel);
+                    iterations += found.iterations as u64;
+                    (x, known) = (found.point, found.multipliers);
+                    if found.violation < FEASIBLE && topology::links_kept(model, &x.state) {
+                        end[side] = from + sign * x.p[0].max(0.0);
+                    }
+                    if found.settled {
+                        break;
+                    }
                 }
             }
         }

@@ -193,7 +193,7 @@ impl<'a> StrainMethod<'a> {
     /// Starts of a cell, all of them with the written lattice; a larger cell's first one is the smaller cell's answer.
     fn starts(&self, cell: usize, best: &State, from: &[State]) -> Vec<State> {
         let model = &self.models[cell];
-        let mut rng = |k: usize| {
+        let rng = |k: usize| {
             ChaCha8Rng::seed_from_u64(self.options.seed.wrapping_mul(0x9e37_79b9).wrapping_add((1000 * cell + k) as u64))
         };
         let shaken = |k: usize| shaken_from(model, &model.start, SHAKES[k % SHAKES.len()], &mut rng(k));
