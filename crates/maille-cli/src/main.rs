@@ -1,6 +1,7 @@
 //! The `maille` program: arguments, progress and exit codes. The mechanics are in the `maille` crate.
 
 mod at;
+mod boundary;
 mod characterize;
 mod check;
 mod completions;
@@ -49,6 +50,7 @@ Examples:
   maille sweep radius.toml                many designs, radii and spacings
   maille reproduce --quick                chapter 6 of the thesis, computed anew
   maille limit 1.1 --maximize exx --free eyy,exy    one strain as large as can be
+  maille boundary european-4-in-1         all in-plane strains, as a surface
   maille tightest european-4-in-1         the thickest wire
   maille simulate 1.1 --fix left --pull right=5,0,0    a finite sheet
   maille new shirt --weave european-4-in-1 --wire 16swg --id 5/16in
@@ -79,6 +81,7 @@ enum Command {
     Replay(replay::Args),
     Sweep(sweep::Args),
     Limit(limit::Args),
+    Boundary(boundary::Args),
     Tightest(extreme::TightestArgs),
     Roomiest(extreme::RoomiestArgs),
     Reproduce(reproduce::Args),
@@ -104,6 +107,7 @@ fn main() -> ExitCode {
         Command::Replay(args) => replay::run(&args),
         Command::Sweep(args) => sweep::run(&args),
         Command::Limit(args) => limit::run(&args),
+        Command::Boundary(args) => boundary::run(&args),
         Command::Tightest(args) => extreme::tightest(&args),
         Command::Roomiest(args) => extreme::roomiest(&args),
         Command::Reproduce(args) => reproduce::run(&args),

@@ -1,5 +1,6 @@
 //! Plots of records, as SVG and PNG. Each kind is a file.
 
+mod boundary;
 mod canvas;
 mod chart;
 mod compare;
@@ -16,6 +17,7 @@ mod scale;
 mod steps;
 mod times;
 
+pub use boundary::boundary_svg;
 pub use compare::parameter_words;
 pub use curve::{Curve, CurveKind};
 pub use difference::{Spread, difference_svg};

@@ -4,7 +4,9 @@ mod climb;
 pub mod energy;
 pub mod exact;
 pub mod extreme;
+pub mod boundary;
 mod pull;
+pub mod sphere;
 pub mod strain;
 
 use crate::{
