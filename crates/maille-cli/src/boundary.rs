@@ -154,7 +154,11 @@ fn open(out: &Path, head: &BoundaryHead, overwrite: bool) -> Result<(BTreeMap<us
             Some((old, vertices)) if old == *head => known = vertices,
             Some(_) => {
                 let problem = format!("{} holds a surface of other inputs", out.display());
-                return Err(wrong(exit::RECORD, problem, "name another folder with --out, or replace it with --overwrite"));
+                return Err(wrong(
+                    exit::RECORD,
+                    problem,
+                    "name another folder with --out, or replace it with --overwrite",
+                ));
             }
             None => {
                 let problem = format!("{} is damaged", path.display());
@@ -211,5 +215,9 @@ fn summary(out: &Path, input: &Input, surface: &Boundary, known: usize, wall_s: 
     let count = vertices.iter().filter(apart).count();
     say!("  {count} rays go further than where the straight way is first stopped");
     say!("  largest expected distance between surface and triangles {:.2e}", surface.arch);
-    say!("{} rays in {wall_s:.1} s; look at {}", vertices.len().saturating_sub(known), out.join("boundary.png").display());
+    say!(
+        "{} rays in {wall_s:.1} s; look at {}",
+        vertices.len().saturating_sub(known),
+        out.join("boundary.png").display()
+    );
 }

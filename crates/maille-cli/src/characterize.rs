@@ -188,9 +188,11 @@ fn held(args: &Args) -> Result<(Across, Vec<f64>)> {
         return Err(wrong(exit::USAGE, "the energy method holds width and shear", help));
     }
     match (&args.l2, across.lateral_free) {
-        (Some(_), true) => {
-            Err(wrong(exit::USAGE, "--l2 holds the width that --lateral free leaves to the sheet", "leave one of them out"))
-        }
+        (Some(_), true) => Err(wrong(
+            exit::USAGE,
+            "--l2 holds the width that --lateral free leaves to the sheet",
+            "leave one of them out",
+        )),
         (None, true) => Ok((across, vec![0.0])),
         (Some(l2), false) => Ok((across, l2.0.clone())),
         (None, false) => Ok((across, USUAL_L2.into())),

@@ -132,7 +132,11 @@ fn query(args: &Args) -> Result<(StrainQuery, Strain, f64)> {
     for strain in fixed.chain(args.free.iter().copied()) {
         if named.contains(&strain) {
             let problem = format!("{} is named twice", strain.name());
-            return Err(wrong(exit::USAGE, problem, "a strain is sought, held with --fix, or left to the sheet with --free"));
+            return Err(wrong(
+                exit::USAGE,
+                problem,
+                "a strain is sought, held with --fix, or left to the sheet with --free",
+            ));
         }
         named.push(strain);
     }
@@ -209,14 +213,19 @@ impl Answer<'_> {
             _ => {}
         }
         for strain in Strain::ALL {
-            say!("  {}   {:>15.9}  {}", strain.name(), strain.of(&found.strain), self.role(strain));
+            // Rounding shows no sign of a 0.
+            let value = (strain.of(&found.strain) * 1e9).round() / 1e9 + 0.0;
+            say!("  {}   {value:>15.9}  {}", strain.name(), self.role(strain));
         }
         if let Some(bound) = found.bound {
             say!("  bound {:>15.9}  proved by the chains of links", self.sign * bound);
         }
         let kept = if found.links_ok { "kept" } else { "LOST" };
         let (starts, distinct) = (found.n_starts, found.n_distinct);
-        say!("  cell {}; {starts} starts led to {distinct} certified values; links {kept}; {wall_s:.2} s", self.model.cell);
+        say!(
+            "  cell {}; {starts} starts led to {distinct} certified values; links {kept}; {wall_s:.2} s",
+            self.model.cell
+        );
         if let Some(c) = &found.certificate {
             let curvature = c.min_curvature.map_or("none free".into(), |x| format!("least curvature {x:.2e}"));
             say!("  smallest gap {:.1e}, residual {:.1e}, {curvature}", c.smallest_gap, c.dual_residual);

@@ -44,8 +44,9 @@ pub(crate) fn point(vertex: &BoundaryVertex) -> [f64; 3] {
 
 /// The table: a line a vertex.
 pub fn boundary_csv(boundary: &Boundary) -> String {
-    let mut out = "vertex,direction_xx,direction_yy,direction_xy,status,distance,exx,eyy,exy,first_exit,bound,n_distinct\n"
-        .to_owned();
+    let mut out =
+        "vertex,direction_xx,direction_yy,direction_xy,status,distance,exx,eyy,exy,first_exit,bound,n_distinct\n"
+            .to_owned();
     let cell = |x: Option<f64>| x.map_or(String::new(), |x| format!("{x:?}"));
     for (k, v) in boundary.vertices.iter().enumerate() {
         let [x, y, z] = v.direction;

@@ -4,6 +4,7 @@ use maille::{
     characterize::{Method, characterize},
     lattice::{Across, Cell},
     limit::{
+        boundary::{BoundaryOptions, BoundaryVertex, boundary},
         exact::ExactOptions,
         strain::{StrainMethod, StrainOptions, StrainOutcome, StrainQuery},
     },
@@ -11,7 +12,10 @@ use maille::{
     record::{LimitRow, Status},
 };
 use nalgebra::Matrix2;
-use std::sync::{Mutex, atomic::AtomicBool};
+use std::{
+    collections::BTreeMap,
+    sync::{Mutex, atomic::AtomicBool},
+};
 
 fn model(name: &str) -> Model {
     let design = maille_io::read_design(name, maille_io::builtin(name).unwrap()).unwrap();
@@ -32,7 +36,9 @@ const LATERAL: Across = Across { lateral_free: true, shear_free: false };
 /// Never below the best of a scan of l2, and not above it by more than the scan can miss.
 #[test]
 fn free_width_is_the_best_of_a_scan() {
-    for (name, direction, step) in [("1.1", 0.0, 0.05), ("1.1", 45.0, 0.02), ("3.1", 45.0, 0.02), ("european-4-in-1", 45.0, 0.005)] {
+    for (name, direction, step) in
+        [("1.1", 0.0, 0.05), ("1.1", 45.0, 0.02), ("3.1", 45.0, 0.02), ("european-4-in-1", 45.0, 0.005)]
+    {
         let model = model(name);
         let free = &rows(&model, &[direction], &[0.0], LATERAL)[0];
         let l1 = free.l1.unwrap_or_else(|| panic!("{name} {direction}: {:?}", free.status));
@@ -52,8 +58,7 @@ fn free_width_is_the_best_of_a_scan() {
 fn freeing_more_is_never_less() {
     let model = model("1.1");
     let both = Across { lateral_free: true, shear_free: true };
-    let [held, free, all] =
-        [Across::HELD, LATERAL, both].map(|across| rows(&model, &[0.0], &[0.0], across).remove(0));
+    let [held, free, all] = [Across::HELD, LATERAL, both].map(|across| rows(&model, &[0.0], &[0.0], across).remove(0));
     assert_eq!([held.status, free.status, all.status], [Status::Global; 3]);
     let ends = (free.l2_min.unwrap(), free.l2_max.unwrap());
     assert!(ends.0 < -0.3 && ends.1 > 0.439, "{ends:?}");
@@ -107,10 +112,36 @@ fn european_4_in_1_reaches_the_published_strains() {
         let query = StrainQuery { held: Matrix2::zeros(), free: std::iter::once(unit(i, j)).chain(others).collect() };
         let found = solve(&model, &query);
         let value = found.value.unwrap();
-        println!("E_{name} {value} {:?} bound {:?} distinct {} strain {}", found.status, found.bound, found.n_distinct, found.strain);
         assert!(value >= mark, "E_{name} = {value}");
         assert!(matches!(found.status, Status::Local | Status::Global), "{:?}", found.status);
         assert!(found.links_ok && found.certificate.unwrap().smallest_gap > -1e-12);
         assert!(found.bound.unwrap() >= value - 1e-9);
     }
+}
+
+/// Each ray ends within its bound, the axes where queries end, and a run that goes on from some vertices gives the same.
+#[test]
+fn the_surface_is_that_of_its_rays_and_goes_on() {
+    let model = model("1.1");
+    let options = BoundaryOptions { tolerance: 0.05, most: 200, starts: 1, seed: 1 };
+    let (cancel, planned) = (AtomicBool::new(false), Mutex::new(0));
+    let run = |known: &BTreeMap<usize, BoundaryVertex>| {
+        boundary(&model, &options, known, &cancel, &mut |n| *planned.lock().unwrap() += n, &|_, _| {})
+    };
+    let surface = run(&BTreeMap::new());
+    assert!(surface.complete && surface.vertices.len() > 162 && surface.vertices.len() <= 200);
+    assert_eq!(*planned.lock().unwrap(), surface.vertices.len());
+    for vertex in &surface.vertices {
+        let (distance, bound) = (vertex.distance.unwrap(), vertex.bound.unwrap());
+        assert!(distance > 0.0 && distance <= bound + 1e-9, "{vertex:?}");
+        assert!(vertex.first.unwrap() <= distance + 1e-9);
+        // No chain along x is longer than 3.6 for 2.5.
+        assert!(vertex.point(distance)[0] <= 0.44 + 0.5 * 0.44 * 0.44 + 1e-9);
+    }
+    let global = surface.vertices.iter().filter(|v| v.status == Status::Global).count();
+    assert!(global > surface.vertices.len() / 4, "{global}");
+    let known = surface.vertices.iter().cloned().enumerate().step_by(2).collect();
+    *planned.lock().unwrap() = 0;
+    assert_eq!(run(&known).vertices, surface.vertices);
+    assert_eq!(*planned.lock().unwrap(), surface.vertices.len() / 2);
 }

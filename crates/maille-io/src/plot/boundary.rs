@@ -34,7 +34,8 @@ pub fn boundary_svg(boundary: &Boundary, title: &str, caption: Vec<String>) -> S
     let labels = ["proved: the bound is attained", "certified", "not certified"];
     let there = |status: Status| boundary.vertices.iter().any(|v| colour(v.status) == colour(status));
     let mut legend = vec![Entry::Heading("Surface".into())];
-    legend.extend(statuses.into_iter().zip(labels).filter(|(s, _)| there(*s)).map(|(s, label)| sample(colour(s), label)));
+    legend
+        .extend(statuses.into_iter().zip(labels).filter(|(s, _)| there(*s)).map(|(s, label)| sample(colour(s), label)));
     legend.push(Entry::Sample {
         look: Look { color: BOUND.into(), width: 1.4, dash: "5 4", ..look::hollow() },
         line: true,
@@ -97,9 +98,8 @@ fn section(
     let span = 1.16 * (of_x.1 - of_x.0).max(of_y.1 - of_y.0).max(1e-9);
     let middle = [0.5 * (of_x.0 + of_x.1), 0.5 * (of_y.0 + of_y.1)];
     let unit = SIDE / span;
-    let at = |p: &[f64; 3]| {
-        [left + SIDE / 2.0 + (p[x] - middle[0]) * unit, top + SIDE / 2.0 - (p[y] - middle[1]) * unit]
-    };
+    let at =
+        |p: &[f64; 3]| [left + SIDE / 2.0 + (p[x] - middle[0]) * unit, top + SIDE / 2.0 - (p[y] - middle[1]) * unit];
     let scale = Scale::new(0.0, [-span / 2.0, span / 2.0].into_iter(), 3);
     let step = scale.ticks.windows(2).map(|w| w[1] - w[0]).next().unwrap_or(span);
     for k in -40..=40 {
@@ -158,8 +158,7 @@ fn view(canvas: &mut Canvas, [left, top]: [f64; 2], boundary: &Boundary, points:
     faces.sort_by(|a, b| a.0.total_cmp(&b.0));
     for (_, corners) in faces {
         let [a, b, c] = corners.map(|k| seen(&points[k]));
-        let (e, f): ([f64; 3], [f64; 3]) =
-            (std::array::from_fn(|i| b[i] - a[i]), std::array::from_fn(|i| c[i] - a[i]));
+        let (e, f): ([f64; 3], [f64; 3]) = (std::array::from_fn(|i| b[i] - a[i]), std::array::from_fn(|i| c[i] - a[i]));
         let n = [e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]];
         let length = n.iter().map(|x| x * x).sum::<f64>().sqrt().max(1e-300);
         let light = 0.5 + 0.5 * (0.3 * n[0] + 0.4 * n[1] + 0.87 * n[2]).abs() / length;

@@ -48,7 +48,7 @@ pub fn poisson_svg(records: &[NamedRecord], layout: Layout) -> Option<String> {
     let mut legend = vec![Entry::Heading(if records.len() > 1 { apart } else { "Design".into() })];
     legend.extend(looks.iter().zip(&labels).map(|(look, label)| sample(look, true, true, label)));
     let mut caption = captions(records, &labels);
-    caption.push("Where the two curves of a record part, each width in between was reached or lies between two that were.".into());
+    caption.push("Where the two curves of a record part, the width at the limit is not unique: the sheet was found at both ends.".into());
     let directions: Vec<f64> = records.iter().flat_map(|n| &n.record.rows).map(|row| row.direction_deg).collect();
     let chart = Chart {
         frame: Frame {

@@ -62,8 +62,7 @@ impl SheetProgram<'_> {
     /// The unknowns that move the pair, with their motions.
     pub(super) fn pair_map(&self, pair: &RingPair, turns: &[Vec<Vec3>], factored: Option<&Factored>) -> PairMap {
         let (i, j) = (self.model.rings[pair.ring_a].element, self.model.rings[pair.ring_b].element);
-        let mut map =
-            PairMap { columns: Vec::with_capacity(14), motions: Vec::with_capacity(14), bends: Vec::new() };
+        let mut map = PairMap { columns: Vec::with_capacity(14), motions: Vec::with_capacity(14), bends: Vec::new() };
         let axes = [Vec3::x(), Vec3::y(), Vec3::z()];
         if i != j {
             for (element, sign) in [(i, -1.0), (j, 1.0)] {

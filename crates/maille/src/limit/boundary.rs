@@ -105,10 +105,8 @@ pub fn boundary(
     planned: &mut dyn FnMut(usize),
     found: &(dyn Fn(usize, &BoundaryVertex) + Sync),
 ) -> Boundary {
-    let method = StrainMethod::new(
-        std::slice::from_ref(model),
-        StrainOptions { starts: options.starts, seed: options.seed },
-    );
+    let method =
+        StrainMethod::new(std::slice::from_ref(model), StrainOptions { starts: options.starts, seed: options.seed });
     let mut sphere = Sphere::new(FIRST);
     let mut vertices: Vec<BoundaryVertex> = Vec::new();
     loop {
@@ -128,12 +126,12 @@ pub fn boundary(
         let count = solved.len();
         vertices.extend(solved.into_iter().map_while(|vertex| vertex));
         let complete = vertices.len() == sphere.directions.len();
-        let points: Vec<Vec3> =
-            vertices.iter().map(|v| Vec3::from(v.point(v.distance.unwrap_or_default()))).collect();
+        let points: Vec<Vec3> = vertices.iter().map(|v| Vec3::from(v.point(v.distance.unwrap_or_default()))).collect();
         let bent = if complete { sphere.bent(&points, options.tolerance) } else { Vec::new() };
         let room = options.most.saturating_sub(vertices.len());
         if !complete || bent.is_empty() || room == 0 || count == 0 {
-            let arch = if complete { sphere.bent(&points, 0.0).first().map_or(0.0, |(_, arch)| *arch) } else { f64::NAN };
+            let arch =
+                if complete { sphere.bent(&points, 0.0).first().map_or(0.0, |(_, arch)| *arch) } else { f64::NAN };
             return Boundary { vertices, triangles: sphere.triangles, arch, complete };
         }
         let marked: Vec<[usize; 2]> = bent.into_iter().take(room).map(|(edge, _)| edge).collect();

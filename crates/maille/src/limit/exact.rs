@@ -222,7 +222,10 @@ impl<'a> ExactMethod<'a> {
         let mut trend = vec![(0, tally.l1())];
         let mut cell = 0;
         // Under lateral compression a larger cell can fold where this one cannot.
-        let asks = tally.best.as_ref().map_or(l2 < 0.0, |best| own_image_force(&self.models[0], &best.contacts) > OWN_IMAGE_FORCE);
+        let asks = tally
+            .best
+            .as_ref()
+            .map_or(l2 < 0.0, |best| own_image_force(&self.models[0], &best.contacts) > OWN_IMAGE_FORCE);
         let last = self.models.len() - 1;
         for larger in 1..self.models.len() {
             // The last cell is for limits that have grown.

@@ -1,10 +1,10 @@
 //! The limit of one pull, by the thesis's energy method or by the exact one; and extremes that are no pulls.
 
+pub mod boundary;
 mod climb;
 pub mod energy;
 pub mod exact;
 pub mod extreme;
-pub mod boundary;
 mod pull;
 pub mod sphere;
 pub mod strain;

@@ -125,13 +125,7 @@ impl Family {
 
     /// Least and largest l2 and γ that are found from the state of a limit, with l1 held there less a slack of
     /// [`FREE_SLACK`] (1 + l1); with the quadratic programs that it took.
-    pub fn ranges(
-        &self,
-        model: &Model,
-        limit: &Solve,
-        l2: f64,
-        cancel: &AtomicBool,
-    ) -> (FreeRanges, u64) {
+    pub fn ranges(&self, model: &Model, limit: &Solve, l2: f64, cancel: &AtomicBool) -> (FreeRanges, u64) {
         let l1 = limit.x.p[0] - FREE_SLACK * (1.0 + limit.x.p[0]);
         let [l2, shear] = self.free_of(&limit.x.p, l2);
         let [_, lateral_rate, shear_rate] = self.rates();

@@ -22,14 +22,40 @@ impl Sphere {
     pub fn new(times: usize) -> Self {
         let g = (1.0 + 5f64.sqrt()) / 2.0;
         let corners = [
-            [-1.0, g, 0.0], [1.0, g, 0.0], [-1.0, -g, 0.0], [1.0, -g, 0.0],
-            [0.0, -1.0, g], [0.0, 1.0, g], [0.0, -1.0, -g], [0.0, 1.0, -g],
-            [g, 0.0, -1.0], [g, 0.0, 1.0], [-g, 0.0, -1.0], [-g, 0.0, 1.0],
+            [-1.0, g, 0.0],
+            [1.0, g, 0.0],
+            [-1.0, -g, 0.0],
+            [1.0, -g, 0.0],
+            [0.0, -1.0, g],
+            [0.0, 1.0, g],
+            [0.0, -1.0, -g],
+            [0.0, 1.0, -g],
+            [g, 0.0, -1.0],
+            [g, 0.0, 1.0],
+            [-g, 0.0, -1.0],
+            [-g, 0.0, 1.0],
         ];
         let triangles = [
-            [0, 11, 5], [0, 5, 1], [0, 1, 7], [0, 7, 10], [0, 10, 11], [1, 5, 9], [5, 11, 4], [11, 10, 2], [10, 7, 6],
-            [7, 1, 8], [3, 9, 4], [3, 4, 2], [3, 2, 6], [3, 6, 8], [3, 8, 9], [4, 9, 5], [2, 4, 11], [6, 2, 10],
-            [8, 6, 7], [9, 8, 1],
+            [0, 11, 5],
+            [0, 5, 1],
+            [0, 1, 7],
+            [0, 7, 10],
+            [0, 10, 11],
+            [1, 5, 9],
+            [5, 11, 4],
+            [11, 10, 2],
+            [10, 7, 6],
+            [7, 1, 8],
+            [3, 9, 4],
+            [3, 4, 2],
+            [3, 2, 6],
+            [3, 6, 8],
+            [3, 8, 9],
+            [4, 9, 5],
+            [2, 4, 11],
+            [6, 2, 10],
+            [8, 6, 7],
+            [9, 8, 1],
         ];
         let mut out = Sphere {
             directions: corners.map(|c| Vec3::from(c).normalize()).into(),
@@ -66,9 +92,9 @@ impl Sphere {
         let mut triangles = Vec::new();
         for &[a, b, c] in &self.triangles {
             // Turned so that a divided edge comes first, and of two the pair is a–b, b–c.
-            let turned = [[a, b, c], [b, c, a], [c, a, b]].into_iter().max_by_key(|[a, b, c]| {
-                (middle(*a, *b).is_some(), middle(*b, *c).is_some())
-            });
+            let turned = [[a, b, c], [b, c, a], [c, a, b]]
+                .into_iter()
+                .max_by_key(|[a, b, c]| (middle(*a, *b).is_some(), middle(*b, *c).is_some()));
             let [a, b, c] = turned.unwrap_or([a, b, c]);
             match (middle(a, b), middle(b, c), middle(c, a)) {
                 (Some(d), Some(e), Some(f)) => triangles.extend([[a, d, f], [d, b, e], [f, e, c], [d, e, f]]),

@@ -194,7 +194,9 @@ impl<'a> StrainMethod<'a> {
     fn starts(&self, cell: usize, best: &State, from: &[State]) -> Vec<State> {
         let model = &self.models[cell];
         let rng = |k: usize| {
-            ChaCha8Rng::seed_from_u64(self.options.seed.wrapping_mul(0x9e37_79b9).wrapping_add((1000 * cell + k) as u64))
+            ChaCha8Rng::seed_from_u64(
+                self.options.seed.wrapping_mul(0x9e37_79b9).wrapping_add((1000 * cell + k) as u64),
+            )
         };
         let shaken = |k: usize| shaken_from(model, &model.start, SHAKES[k % SHAKES.len()], &mut rng(k));
         if cell > 0 {
