@@ -182,7 +182,7 @@ fn write(out: &Path, input: &Input, surface: &Boundary, options: &BoundaryOption
     let title = format!("Attainable strains of {name}");
     let caption = vec![format!(
         "{} rays, {} triangles; between the rays the surface is expected within {:.1e} of the triangles (asked: {:.1e}). \
-         Grey lines: no state of any cell lies outside.",
+         Beyond its bound no state of any cell lies on a ray.",
         surface.vertices.len(),
         surface.triangles.len(),
         surface.arch,

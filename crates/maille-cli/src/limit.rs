@@ -28,7 +28,8 @@ use std::{process::ExitCode, str::FromStr, time::Instant};
 ///
 /// Strains are Green strains of the sheet, E = (C - 1)/2 with C = F^T F, relative to the spacing of the design: exx and eyy
 /// along its axes, exy the tensor shear (half the engineering shear). exx = s + s^2/2 where lines along x are stretched by 1 + s.
-/// What is named by neither --fix nor --free is held at 0.
+/// What is named by neither --fix nor --free is held at 0. With --minimize all cells up to 3x3 are solved and listed, as a
+/// larger one can fold further; such an answer is the best that was found, and never proved.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -56,7 +57,8 @@ pub struct Args {
     /// Minor radius of every ring that gives none, in the file's unit
     #[arg(long, value_parser = positive)]
     minor_radius: Option<f64>,
-    /// Cell: 1x1, 2x1, …, an integer matrix as "1,0;-1,2", or auto: larger cells where an element presses on its own image
+    /// Cell: 1x1, 2x1, …, an integer matrix as "1,0;-1,2", or auto: larger cells where an element presses on its own image, and all
+    /// up to 3x3 with --minimize
     #[arg(long, default_value = "auto", value_parser = cell_choice)]
     cell: CellChoice,
     /// Starts of a query whose bound is not attained
@@ -157,10 +159,10 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let models = cells.iter().map(|cell: &Cell| input.compile(&input.design, *cell)).collect::<Result<Vec<Model>>>()?;
     let cancel = interrupt::flag()?;
     let begun = Instant::now();
-    let options = StrainOptions { starts: args.starts as usize, seed: args.seed };
+    let options = StrainOptions { starts: args.starts as usize, seed: args.seed, all_cells: args.minimize.is_some() };
     let found = StrainMethod::new(&models, options).solve(&query, &[], &cancel);
     let model = &models[found.cell];
-    let answer = Answer { args, input: &input, model, found: &found, goal, sign };
+    let answer = Answer { args, cells: &cells, input: &input, model, found: &found, goal, sign };
     let wall_s = begun.elapsed().as_secs_f64();
     match args.json {
         true => output::print_json(&answer.json(wall_s))?,
@@ -175,6 +177,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 
 struct Answer<'a> {
     args: &'a Args,
+    cells: &'a [Cell],
     input: &'a Input,
     model: &'a Model,
     found: &'a StrainOutcome,
@@ -226,6 +229,11 @@ impl Answer<'_> {
             "  cell {}; {starts} starts led to {distinct} certified values; links {kept}; {wall_s:.2} s",
             self.model.cell
         );
+        if found.trend.len() > 1 {
+            let reached = |p: Option<f64>| p.map_or("none".into(), |p| format!("{:.6}", self.sign * p));
+            let cells = found.trend.iter().map(|(cell, p)| format!("{} {}", self.cells[*cell], reached(*p)));
+            say!("  by cell: {}", cells.collect::<Vec<_>>().join(", "));
+        }
         if let Some(c) = &found.certificate {
             let curvature = c.min_curvature.map_or("none free".into(), |x| format!("least curvature {x:.2e}"));
             say!("  smallest gap {:.1e}, residual {:.1e}, {curvature}", c.smallest_gap, c.dual_residual);
@@ -258,6 +266,7 @@ impl Answer<'_> {
             "bound": found.bound.map(|bound| self.sign * bound),
             "strains": Strain::ALL.map(strain).into_iter().collect::<serde_json::Map<_, _>>(),
             "cell": self.model.cell.to_string(),
+            "by_cell": found.trend.iter().map(|(cell, p)| json!({ "cell": self.cells[*cell].to_string(), "value": p.map(|p| self.sign * p) })).collect::<Vec<_>>(),
             "a1": solved.then(|| vector(found.state.a1)),
             "a2": solved.then(|| vector(found.state.a2)),
             "poses": solved.then(|| pose_records(self.model, &found.state)),

@@ -37,10 +37,10 @@ pub fn boundary_svg(boundary: &Boundary, title: &str, caption: Vec<String>) -> S
     legend
         .extend(statuses.into_iter().zip(labels).filter(|(s, _)| there(*s)).map(|(s, label)| sample(colour(s), label)));
     legend.push(Entry::Sample {
-        look: Look { color: BOUND.into(), width: 1.4, dash: "5 4", ..look::hollow() },
+        look: Look { color: BOUND.into(), width: 1.4, dash: "", ..look::hollow() },
         line: true,
         marker: false,
-        label: "proven outer bound".into(),
+        label: "proven bounds of the rays, joined".into(),
     });
     legend.push(Entry::Note("circle: the sheet as written".into()));
     let frame = Frame {
@@ -100,7 +100,7 @@ fn section(
     let unit = SIDE / span;
     let at =
         |p: &[f64; 3]| [left + SIDE / 2.0 + (p[x] - middle[0]) * unit, top + SIDE / 2.0 - (p[y] - middle[1]) * unit];
-    let scale = Scale::new(0.0, [-span / 2.0, span / 2.0].into_iter(), 3);
+    let scale = Scale::new(0.0, [-span / 2.0, span / 2.0].into_iter(), 5);
     let step = scale.ticks.windows(2).map(|w| w[1] - w[0]).next().unwrap_or(span);
     for k in -40..=40 {
         let value = f64::from(k) * step;

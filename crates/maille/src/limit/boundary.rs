@@ -105,8 +105,10 @@ pub fn boundary(
     planned: &mut dyn FnMut(usize),
     found: &(dyn Fn(usize, &BoundaryVertex) + Sync),
 ) -> Boundary {
-    let method =
-        StrainMethod::new(std::slice::from_ref(model), StrainOptions { starts: options.starts, seed: options.seed });
+    let method = StrainMethod::new(
+        std::slice::from_ref(model),
+        StrainOptions { starts: options.starts, seed: options.seed, ..StrainOptions::default() },
+    );
     let mut sphere = Sphere::new(FIRST);
     let mut vertices: Vec<BoundaryVertex> = Vec::new();
     loop {

@@ -39,11 +39,13 @@ pub struct StrainOptions {
     pub starts: usize,
     /// Seed of the shaking.
     pub seed: u64,
+    /// Whether all cells are solved, as compression needs: a fold can be larger than a cell that shows no sign of it.
+    pub all_cells: bool,
 }
 
 impl Default for StrainOptions {
     fn default() -> Self {
-        StrainOptions { starts: 8, seed: 1 }
+        StrainOptions { starts: 8, seed: 1, all_cells: false }
     }
 }
 
@@ -77,6 +79,8 @@ pub struct StrainOutcome {
     pub n_starts: u64,
     /// Distinct certified values among them, apart by more than 1e-7.
     pub n_distinct: u64,
+    /// Largest p₀ found in each cell that was solved.
+    pub trend: Vec<(usize, Option<f64>)>,
     /// Quadratic programs.
     pub iterations: u64,
 }
@@ -89,6 +93,8 @@ const ATTAINED: f64 = 1e-9;
 const SHAKES: [f64; 6] = [0.003, 0.1, 0.3, 0.03, 0.2, 0.05];
 /// Kicks of a solve whose certificate stays incomplete.
 const KICKS: usize = 4;
+/// Starts of its own of each larger cell, where all cells are solved.
+const LARGER_STARTS: usize = 5;
 /// A force between an element and its own image above this calls for a larger cell.
 const OWN_IMAGE_FORCE: f64 = 1e-6;
 
@@ -128,6 +134,7 @@ impl<'a> StrainMethod<'a> {
             own_image_force: 0.0,
             n_starts: 0,
             n_distinct: 0,
+            trend: Vec::new(),
             iterations: 0,
         };
         match self.bound(query) {
@@ -136,11 +143,14 @@ impl<'a> StrainMethod<'a> {
             MetricBound::Nothing => {}
         }
         let mut distinct: Vec<f64> = Vec::new();
+        let mut smallest = self.models[0].start.clone();
         for cell in 0..self.models.len() {
-            if cell > 0 && (out.status == Status::Global || out.own_image_force <= OWN_IMAGE_FORCE) {
+            let asks = self.options.all_cells || out.own_image_force > OWN_IMAGE_FORCE;
+            if cell > 0 && (out.status == Status::Global || !asks) {
                 break;
             }
-            for start in self.starts(cell, &out.state, from) {
+            let mut reached: Option<f64> = None;
+            for start in self.starts(cell, &smallest, from) {
                 if cancel.load(Ordering::Relaxed) {
                     return StrainOutcome { status: Status::Interrupted, ..out };
                 }
@@ -149,6 +159,7 @@ impl<'a> StrainMethod<'a> {
                 out.iterations += iterations;
                 let Some(solve) = found else { continue };
                 let value = solve.x.p[0];
+                reached = Some(reached.map_or(value, |reached| reached.max(value)));
                 if out.n_starts == 1 {
                     out.first = Some(value);
                 }
@@ -163,6 +174,10 @@ impl<'a> StrainMethod<'a> {
                     break;
                 }
             }
+            if cell == 0 {
+                smallest = out.state.clone();
+            }
+            out.trend.push((cell, reached));
         }
         out.n_distinct = distinct.len() as u64;
         if out.value.is_none() {
@@ -190,8 +205,8 @@ impl<'a> StrainMethod<'a> {
         out.state = solve.x.state;
     }
 
-    /// Starts of a cell, all of them with the written lattice; a larger cell's first one is the smaller cell's answer.
-    fn starts(&self, cell: usize, best: &State, from: &[State]) -> Vec<State> {
+    /// Starts of a cell, all of them with the written lattice; a larger cell's first one is the smallest cell's answer.
+    fn starts(&self, cell: usize, smallest: &State, from: &[State]) -> Vec<State> {
         let model = &self.models[cell];
         let rng = |k: usize| {
             ChaCha8Rng::seed_from_u64(
@@ -200,8 +215,10 @@ impl<'a> StrainMethod<'a> {
         };
         let shaken = |k: usize| shaken_from(model, &model.start, SHAKES[k % SHAKES.len()], &mut rng(k));
         if cell > 0 {
-            let tiled = tiled(model, best);
-            return vec![shaken_from(model, &tiled, SHAKES[1], &mut rng(0))];
+            let tiled = tiled(model, smallest);
+            let own = if self.options.all_cells { LARGER_STARTS.min(self.options.starts) } else { 0 };
+            let fresh = (1..=own).map(shaken);
+            return std::iter::once(shaken_from(model, &tiled, SHAKES[1], &mut rng(0))).chain(fresh).collect();
         }
         let count = self.options.starts.max(1);
         let mut shaken: Vec<State> = (0..count).map(shaken).collect();
