@@ -43,7 +43,7 @@ pub struct Args {
     /// A built-in design (see `maille designs`), a TOML file, or - for standard input
     design: String,
     /// The strain to make as large as can be
-    #[arg(long, value_name = "STRAIN", value_enum, required_unless_present = "minimize", conflicts_with = "minimize")]
+    #[arg(long, value_name = "STRAIN", value_enum, conflicts_with = "minimize")]
     maximize: Option<Strain>,
     /// The strain to make as small as can be
     #[arg(long, value_name = "STRAIN", value_enum)]
