@@ -1,7 +1,7 @@
 //! `maille characterize`: limits over directions and lateral strains, written as a record.
 
 use crate::{
-    exit,
+    exit::{self, wrong},
     input::{Input, file_name},
     interrupt,
     map::{CellChoice, Map, pool, unanswered},
@@ -15,6 +15,7 @@ use crate::{
 use maille::{
     characterize::Method,
     energy::{HessianMethod, MinimaMethod, barrier::ContactLaw, target::Protocol},
+    lattice::Across,
     limit::{
         energy::{EnergyOptions, Minimiser},
         exact::ExactOptions,
@@ -37,6 +38,7 @@ Examples:
   maille characterize 1.2 --minor-radius 0.05 --quantity lambda1
   maille characterize 3.1 --method energy --cell \"1,0;-1,2\" --protocol corners --tau 0.1 --out corners-3.1
   maille characterize my-weave.toml --out results/my-weave
+  maille characterize 1.1 --lateral free --out maille-out/1.1-free
   maille characterize my-weave.toml --directions 0,45,90 --l2 0 --watch
   maille characterize 1.1 --json | jq '.limits[] | .largest.l1'
 
@@ -48,9 +50,15 @@ pub struct Args {
     /// Directions of the pull, degrees counter-clockwise from x: a list, or first:last:step
     #[arg(long, default_value = "0:180:5", value_parser = parse, allow_hyphen_values = true)]
     directions: Numbers,
-    /// Stretch - 1 held across the pull: a list, or first:last:step
-    #[arg(long, default_value = "-0.25:0.25:0.125", value_parser = parse_l2, allow_hyphen_values = true)]
-    l2: Numbers,
+    /// Stretch - 1 held across the pull: a list, or first:last:step [default: -0.25:0.25:0.125; none with --lateral free]
+    #[arg(long, value_parser = parse_l2, allow_hyphen_values = true)]
+    l2: Option<Numbers>,
+    /// The width across the pull: held at each --l2, or left to the sheet as in a pull test (exact method)
+    #[arg(long, value_enum, default_value_t = Held::Fixed)]
+    lateral: Held,
+    /// The shear: held at 0, or left to the sheet (exact method)
+    #[arg(long, value_enum, default_value_t = Held::Fixed)]
+    shear: Held,
     /// Minor radius of every ring that gives none, in the file's unit
     #[arg(long, value_parser = positive)]
     minor_radius: Option<f64>,
@@ -162,6 +170,35 @@ fn small(text: &str, most: usize) -> Result<usize, String> {
     }
 }
 
+/// Whether a strain is held.
+#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Held {
+    Fixed,
+    Free,
+}
+
+/// Lateral strains that are held where the user names none.
+const USUAL_L2: [f64; 5] = [-0.25, -0.125, 0.0, 0.125, 0.25];
+
+/// What is left to the sheet, and the lateral strains that are held.
+fn held(args: &Args) -> Result<(Across, Vec<f64>)> {
+    let across = Across { lateral_free: args.lateral == Held::Free, shear_free: args.shear == Held::Free };
+    if across.any() && matches!(args.method, MethodArg::Energy) {
+        let help = "leave out --lateral and --shear, or --method energy";
+        return Err(wrong(exit::USAGE, "the energy method holds width and shear", help));
+    }
+    match (&args.l2, across.lateral_free) {
+        (Some(_), true) => Err(wrong(
+            exit::USAGE,
+            "--l2 holds the width that --lateral free leaves to the sheet",
+            "leave one of them out",
+        )),
+        (None, true) => Ok((across, vec![0.0])),
+        (Some(l2), false) => Ok((across, l2.0.clone())),
+        (None, false) => Ok((across, USUAL_L2.into())),
+    }
+}
+
 #[derive(Clone, Copy, clap::ValueEnum)]
 enum MethodArg {
     /// Maximises l1 under all gaps, with a certificate and a proven bound
@@ -234,15 +271,16 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 }
 
 fn once(args: &Args) -> Result<ExitCode> {
+    let (across, l2) = held(args)?;
     let input = Input::read(&args.design, args.minor_radius)?;
     let map = Map {
         method: match args.method {
-            MethodArg::Exact => Method::Exact(ExactOptions { starts: args.starts.max(1), seed: args.seed }),
+            MethodArg::Exact => Method::Exact(ExactOptions { starts: args.starts.max(1), seed: args.seed, across }),
             MethodArg::Energy => Method::Energy(args.energy.options(args.seed)),
         },
         cell: args.cell,
         directions_deg: args.directions.0.clone(),
-        l2: args.l2.0.clone(),
+        l2,
         quantity: args.quantity.into(),
         out: args.out.clone().unwrap_or_else(|| PathBuf::from("maille-out").join(file_name(&input.design.name))),
         overwrite: args.overwrite || args.watch,
@@ -261,7 +299,10 @@ fn once(args: &Args) -> Result<ExitCode> {
     let pool = pool(args.threads)?;
     let (left, total) = (open.left(), open.total());
     let progress = Progress::new(left as u64, args.quiet);
-    let found = |row: &LimitRow| progress.step(format!("{}°, l2 = {}", row.direction_deg, row.l2));
+    let found = |row: &LimitRow| {
+        let width = if across.lateral_free { "width free".into() } else { format!("l2 = {}", row.l2) };
+        progress.step(format!("{}°, {width}", row.direction_deg));
+    };
     let rows = pool.install(|| open.run(&cancel, &found));
     progress.finish();
     let rows = rows?;

@@ -1,6 +1,7 @@
 //! The `maille` program: arguments, progress and exit codes. The mechanics are in the `maille` crate.
 
 mod at;
+mod boundary;
 mod characterize;
 mod check;
 mod completions;
@@ -13,6 +14,7 @@ mod extreme;
 mod input;
 mod inspect;
 mod interrupt;
+mod limit;
 mod map;
 mod new;
 mod numbers;
@@ -47,6 +49,8 @@ Examples:
   maille replay maille-out/1.3            solve the rows without a limit again
   maille sweep radius.toml                many designs, radii and spacings
   maille reproduce --quick                chapter 6 of the thesis, computed anew
+  maille limit 1.1 --maximize exx --free eyy,exy    one strain as large as can be
+  maille boundary european-4-in-1         all in-plane strains, as a surface
   maille tightest european-4-in-1         the thickest wire
   maille simulate 1.1 --fix left --pull right=5,0,0    a finite sheet
   maille new shirt --weave european-4-in-1 --wire 16swg --id 5/16in
@@ -76,6 +80,8 @@ enum Command {
     Designs(designs::Args),
     Replay(replay::Args),
     Sweep(sweep::Args),
+    Limit(limit::Args),
+    Boundary(boundary::Args),
     Tightest(extreme::TightestArgs),
     Roomiest(extreme::RoomiestArgs),
     Reproduce(reproduce::Args),
@@ -100,6 +106,8 @@ fn main() -> ExitCode {
         Command::New(args) => done(new::run(&args)),
         Command::Replay(args) => replay::run(&args),
         Command::Sweep(args) => sweep::run(&args),
+        Command::Limit(args) => limit::run(&args),
+        Command::Boundary(args) => boundary::run(&args),
         Command::Tightest(args) => extreme::tightest(&args),
         Command::Roomiest(args) => extreme::roomiest(&args),
         Command::Reproduce(args) => reproduce::run(&args),

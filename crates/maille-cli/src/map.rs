@@ -41,7 +41,7 @@ const MOST_ELEMENTS: usize = 40;
 
 impl CellChoice {
     /// The cells to compile: for the energy method `auto` is the design's own.
-    fn cells(self, method: &Method, elements: usize) -> Vec<Cell> {
+    pub fn cells(self, method: &Method, elements: usize) -> Vec<Cell> {
         match (self, method) {
             (CellChoice::One(cell), _) => vec![cell],
             (CellChoice::Auto, Method::Energy(_)) => vec![Cell::PRIMITIVE],

@@ -9,8 +9,8 @@ use crate::{
 };
 use maille_io::{
     plot::{
-        Layout, PolarPlot, Quantity, Spread, difference_svg, parameter_words, polar_svg, steps_svg, svg_to_png,
-        times_svg,
+        Layout, PolarPlot, Quantity, Spread, difference_svg, parameter_words, poisson_svg, polar_svg, steps_svg,
+        svg_to_png, times_svg,
     },
     record::NamedRecord,
     with_palette,
@@ -30,10 +30,11 @@ Examples:
   maille plot exact-3.1 energy-3.1 --kind steps -o steps.png
   maille plot 1.1 -o small.png --scale 0.75 --palette   645 pixels wide, in few bytes
   maille plot r-0.05 r-0.1 r-0.2 --kind difference --quantity l1 -o spread.svg -o spread.png
+  maille plot 1.1-free --kind poisson                  of `maille characterize 1.1 --lateral free --out maille-out/1.1-free`
   maille plot maille-out/1.1 --kind times --where 'direction<=90'
 
 Kinds: polar shows limits against the direction of the pull, 0\u{b0} right, counter-clockwise; difference the largest \
-less the smallest limit of all directions, against l2; steps and times the solver's iterations and the wall time of \
+less the smallest limit of all directions, against l2; poisson the ratio of width to length where the width was free; steps and times the solver's iterations and the wall time of \
 each limit. --where takes the conditions of `maille table`.")]
 pub struct Args {
     /// Folders of records; NAME stands for maille-out/NAME
@@ -65,6 +66,8 @@ enum Kind {
     Polar,
     /// Largest less smallest limit of all directions, against l2
     Difference,
+    /// Kinematic Poisson ratio -ln(1+l2)/ln(1+l1) where the width was free
+    Poisson,
     /// Iterations of the solver
     Steps,
     /// Wall time
@@ -103,10 +106,10 @@ const MANY: usize = 12;
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
-    if args.quantity.is_some() && matches!(args.kind, Kind::Steps | Kind::Times) {
+    if args.quantity.is_some() && matches!(args.kind, Kind::Poisson | Kind::Steps | Kind::Times) {
         return Err(wrong(
             exit::USAGE,
-            "steps and times have no --quantity",
+            "poisson, steps and times have no --quantity",
             "leave --quantity out, or choose --kind polar or difference",
         ));
     }
@@ -128,7 +131,7 @@ pub fn run(args: &Args) -> Result<()> {
         }
         some
     });
-    let svg = svg(args, &records);
+    let svg = svg(args, &records)?;
     let default: Vec<PathBuf> = match outputs.is_empty() {
         true => ["svg", "png"].map(|ending| usual(args.kind, &records, ending)).into(),
         false => Vec::new(),
@@ -149,7 +152,7 @@ pub fn run(args: &Args) -> Result<()> {
     Ok(())
 }
 
-fn svg(args: &Args, records: &[NamedRecord]) -> String {
+fn svg(args: &Args, records: &[NamedRecord]) -> Result<String> {
     let l2 = |named: &NamedRecord| {
         let mut l2: Vec<u64> = named.record.rows.iter().map(|row| row.l2.to_bits()).collect();
         l2.sort_unstable();
@@ -160,7 +163,7 @@ fn svg(args: &Args, records: &[NamedRecord]) -> String {
     if args.kind != Kind::Difference && records.len() > 1 && curves > MANY {
         eprintln!("note: {curves} curves are many for one figure; --where l2=0 shows those of one l2");
     }
-    match (args.kind, records) {
+    Ok(match (args.kind, records) {
         (Kind::Polar, [one]) => {
             let (run, rows) = (&one.record.run, &one.record.rows);
             let quantity = args.quantity.map_or_else(Quantity::default, Into::into);
@@ -182,9 +185,13 @@ fn svg(args: &Args, records: &[NamedRecord]) -> String {
             },
             Layout::Beside,
         ),
+        (Kind::Poisson, records) => poisson_svg(records, Layout::Beside).ok_or_else(|| {
+            let help = "`maille characterize DESIGN --lateral free` leaves the width to the sheet";
+            wrong(exit::USAGE, "no limit of these records has a free width", help)
+        })?,
         (Kind::Steps, records) => steps_svg(records, Layout::Beside),
         (Kind::Times, records) => times_svg(records, Layout::Beside),
-    }
+    })
 }
 
 fn format(file: &Path) -> Result<Format> {
@@ -205,6 +212,7 @@ fn usual(kind: Kind, records: &[NamedRecord], ending: &str) -> PathBuf {
     let kind = match kind {
         Kind::Polar => "polar",
         Kind::Difference => "difference",
+        Kind::Poisson => "poisson",
         Kind::Steps => "steps",
         Kind::Times => "times",
     };

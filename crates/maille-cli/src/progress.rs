@@ -3,14 +3,17 @@
 use indicatif::{ProgressBar, ProgressStyle};
 use std::{
     io::IsTerminal,
-    sync::Mutex,
+    sync::{
+        Mutex,
+        atomic::{AtomicU64, Ordering},
+    },
     time::{Duration, Instant},
 };
 
 /// Progress of a number of limits.
 pub struct Progress {
     bar: ProgressBar,
-    total: u64,
+    total: AtomicU64,
     plain: Option<Mutex<(u64, Instant)>>,
 }
 
@@ -28,7 +31,7 @@ impl Progress {
             bar.enable_steady_tick(Duration::from_millis(200));
         }
         let plain = (!quiet && !terminal).then(|| Mutex::new((0, Instant::now())));
-        Progress { bar, total, plain }
+        Progress { bar, total: AtomicU64::new(total), plain }
     }
 
     /// One limit is done; `what` names it.
@@ -38,11 +41,17 @@ impl Progress {
             plain.0 += 1;
             if plain.1.elapsed() >= PLAIN_INTERVAL {
                 plain.1 = Instant::now();
-                eprintln!("{} of {} limits, last {what}", plain.0, self.total);
+                eprintln!("{} of {} limits, last {what}", plain.0, self.total.load(Ordering::Relaxed));
             }
         }
         self.bar.set_message(what);
         self.bar.inc(1);
+    }
+
+    /// There are more than were known.
+    pub fn more(&self, count: u64) {
+        self.total.fetch_add(count, Ordering::Relaxed);
+        self.bar.inc_length(count);
     }
 
     /// Removes the bar.

@@ -14,6 +14,7 @@ use std::{
 pub struct Summary {
     design: String,
     record: PathBuf,
+    lateral_free: bool,
     limits: Vec<OfL2>,
     statuses: BTreeMap<&'static str, usize>,
     solved: usize,
@@ -62,6 +63,7 @@ impl Summary {
         Summary {
             design: design.into(),
             record: record.into(),
+            lateral_free: rows.iter().any(|r| r.lateral.as_deref() == Some("free")),
             limits: l2.into_iter().map(of).collect(),
             statuses: Status::ALL.iter().map(|s| (s.name(), count(*s))).filter(|(_, n)| *n > 0).collect(),
             solved,
@@ -76,7 +78,8 @@ impl Summary {
         let show = |x: &Option<Extreme>| x.map_or("-".into(), |x| format!("{:.4} at {}°", x.l1, x.direction_deg));
         for of in &self.limits {
             let (least, largest) = (show(&of.least), show(&of.largest));
-            output::say!("{:>8}  {least:>20}  {largest:>20}  {:>3}/{:<3}", of.l2, of.found, of.asked);
+            let l2 = if self.lateral_free { "free".into() } else { of.l2.to_string() };
+            output::say!("{l2:>8}  {least:>20}  {largest:>20}  {:>3}/{:<3}", of.found, of.asked);
         }
         for status in Status::ALL {
             if let Some(count) = self.statuses.get(status.name()) {

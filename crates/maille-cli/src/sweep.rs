@@ -187,6 +187,7 @@ fn plan(study: &Study, folder: &Path, out: &Path, overwrite: bool) -> Result<Vec
                     method: Method::Exact(ExactOptions {
                         starts: study.starts.unwrap_or(ExactOptions::default().starts),
                         seed: study.seed,
+                        ..ExactOptions::default()
                     }),
                     cell: study.cell.map_or(CellChoice::Auto, CellChoice::One),
                     directions_deg: study.directions_deg.clone(),

@@ -125,7 +125,7 @@ fn a_damaged_table_is_named_by_line_column_and_value() {
         broken("lambda1,lambda2", "lambda2,lambda1"),
         "out/limits.csv:1: column 9 is \"lambda2\", expected \"lambda1\""
     );
-    assert_eq!(broken(",0.25,", ","), "out/limits.csv:2: 29 columns, expected 30");
+    assert_eq!(broken(",0.25,", ","), "out/limits.csv:2: 35 columns, expected 36");
     assert_eq!(
         message(read_limits("limits.csv", &text[..text.len() - 3])),
         "limits.csv:3: the file ends within this line"
@@ -251,4 +251,18 @@ fn a_damaged_record_is_reported_and_can_be_replaced() {
 fn a_record_of_another_schema_is_refused() {
     let found = message(read_run("run.json", "{ \"schema\": 2, \"new\": true }"));
     assert_eq!(found, "run.json:1: schema 2; this program reads schema 1");
+}
+
+/// A table of the first version ends after thirty columns.
+#[test]
+fn a_table_without_the_later_columns_is_read() {
+    let (rows, _) = two();
+    let table = write_limits(&rows).unwrap().replace("\"1,0;-1,2\"", "2x1");
+    let old: String = table.lines().map(|line| line.split(',').take(30).collect::<Vec<_>>().join(",") + "\n").collect();
+    let read = read_limits("limits.csv", &old).unwrap();
+    assert_eq!(read, rows.into_iter().map(|row| LimitRow { cell: "2x1".into(), ..row }).collect::<Vec<_>>());
+    assert_eq!((&read[0].lateral, read[0].l2_min), (&None, None));
+    // One column less is no table of any version.
+    let cut: String = table.lines().map(|line| line.split(',').take(31).collect::<Vec<_>>().join(",") + "\n").collect();
+    assert!(message(read_limits("limits.csv", &cut)).contains("column 32"));
 }

@@ -1,9 +1,9 @@
 //! Characterisation: limits over directions and lateral strains, as rows and states of a record.
 
 use crate::{
-    lattice::direction,
+    lattice::{Across, direction},
     limit::{
-        LimitOutcome,
+        FreeRanges, LimitOutcome,
         energy::{EnergyMethod, EnergyOptions},
         exact::{ExactMethod, ExactOptions},
     },
@@ -28,6 +28,14 @@ pub enum Method {
 }
 
 impl Method {
+    /// What is left to the sheet.
+    pub fn across(&self) -> Across {
+        match self {
+            Method::Energy(_) => Across::HELD,
+            Method::Exact(options) => options.across,
+        }
+    }
+
     /// The name in tables.
     pub fn name(&self) -> &'static str {
         match self {
@@ -79,7 +87,7 @@ pub fn characterize(
 ) {
     let report = |task: Task, outcome: &LimitOutcome, begun: Instant| {
         let model = &models[outcome.exact.as_ref().map_or(0, |e| e.cell)];
-        let (row, state) = report(model, minor_radius, method.name(), &task, outcome, begun.elapsed().as_secs_f64());
+        let (row, state) = report(model, minor_radius, method, &task, outcome, begun.elapsed().as_secs_f64());
         finished(Finished { row, state });
     };
     match method {
@@ -115,7 +123,7 @@ pub fn characterize(
 fn report(
     model: &Model,
     minor_radius: Option<f64>,
-    method: &str,
+    method: &Method,
     task: &Task,
     outcome: &LimitOutcome,
     wall_s: f64,
@@ -134,12 +142,16 @@ fn report(
     let exact = outcome.exact.as_ref();
     let bound = exact.and_then(|e| e.bound);
     let certificate = exact.and_then(|e| e.certificate.as_ref());
+    let across = method.across();
+    let word = |free: bool| if free { "free" } else { "fixed" }.to_owned();
+    let held = FreeRanges { l2: [task.l2; 2], shear: [0.0; 2] };
+    let ranges = if across.any() { exact.and_then(|e| e.free) } else { Some(held) }.filter(|_| earned);
     let row = LimitRow {
         design: model.name.clone(),
         minor_radius,
         direction_deg: task.direction_deg,
         l2: task.l2,
-        method: method.into(),
+        method: method.name().into(),
         cell: model.cell.to_string(),
         status: outcome.status,
         l1,
@@ -165,6 +177,12 @@ fn report(
         n_distinct: exact.map(|e| e.n_distinct),
         own_image_force: exact.and_then(|e| e.own_image_force),
         l1_uncertified: exact.and_then(|e| e.l1_uncertified),
+        lateral: Some(word(across.lateral_free)),
+        shear: Some(word(across.shear_free)),
+        l2_min: ranges.map(|r| r.l2[0]),
+        l2_max: ranges.map(|r| r.l2[1]),
+        shear_min: ranges.map(|r| r.shear[0]),
+        shear_max: ranges.map(|r| r.shear[1]),
     };
     let position = |v: Vec3| -> [f64; 3] { (v * model.unit).into() };
     let poses = pose_records(model, &outcome.state);

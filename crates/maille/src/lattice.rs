@@ -3,6 +3,7 @@
 use crate::error::InvalidInput;
 use maille_geometry::Vec3;
 use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
 use std::{fmt, str::FromStr};
 
 /// Shift of an image: the number of lattice vectors a1 and a2 from the main cell.
@@ -115,6 +116,30 @@ impl FromStr for Cell {
             Ok([integer(a)?, integer(b)?])
         };
         Cell::new([row(first)?, row(second)?])
+    }
+}
+
+/// What of a pull is left to the sheet. With D at the left of D⊥,
+///
+/// F = (1 + l1) D Dᵀ + (1 + l2) D⊥ D⊥ᵀ + γ D D⊥ᵀ:
+///
+/// lines along D stay along D and are stretched by 1 + l1; 1 + l2 is the width across them, γ how far a line across the pull
+/// comes to lean along it, for each unit of its length.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Across {
+    /// Whether l2 is free.
+    pub lateral_free: bool,
+    /// Whether γ is free; otherwise it is 0.
+    pub shear_free: bool,
+}
+
+impl Across {
+    /// Width and shear held.
+    pub const HELD: Across = Across { lateral_free: false, shear_free: false };
+
+    /// Whether something is free.
+    pub fn any(self) -> bool {
+        self != Self::HELD
     }
 }
 

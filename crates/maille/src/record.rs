@@ -131,6 +131,24 @@ pub struct LimitRow {
     pub own_image_force: Option<f64>,
     /// Best feasible l1 where the certificate is incomplete.
     pub l1_uncertified: Option<f64>,
+    /// `fixed` or `free`: l2. Empty in records older than the column.
+    #[serde(default)]
+    pub lateral: Option<String>,
+    /// `fixed` (at 0) or `free`: the shear.
+    #[serde(default)]
+    pub shear: Option<String>,
+    /// Least l2 found at the limit; l2 itself where it is fixed.
+    #[serde(default)]
+    pub l2_min: Option<f64>,
+    /// Largest l2 found at the limit.
+    #[serde(default)]
+    pub l2_max: Option<f64>,
+    /// Least shear found at the limit, 0 where it is fixed.
+    #[serde(default)]
+    pub shear_min: Option<f64>,
+    /// Largest shear found at the limit.
+    #[serde(default)]
+    pub shear_max: Option<f64>,
 }
 
 /// Pose of one element: `position + rotation · (offset in the design)`.

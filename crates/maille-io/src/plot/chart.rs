@@ -31,12 +31,18 @@ pub(super) struct Chart {
     /// Name and unit of each axis.
     pub(super) names: [String; 2],
     pub(super) series: Vec<Series>,
+    /// Areas below the curves: points once around, and the colour with its opacity.
+    pub(super) bands: Vec<(Vec<Point>, String)>,
 }
 
 impl Chart {
     pub(super) fn svg(&self, layout: Layout) -> String {
         self.frame.svg(layout, BOTTOM + 52.0, |canvas| {
             self.draw_grid(canvas);
+            for (points, color) in &self.bands {
+                let around: Vec<[f64; 2]> = points.iter().filter_map(|point| self.at(point)).collect();
+                canvas.path(&around, true, color, Stroke::solid("none", 0.0));
+            }
             for series in &self.series {
                 for run in series.points.split(|point| point.y.is_none()) {
                     let run: Vec<[f64; 2]> = run.iter().filter_map(|point| self.at(point)).collect();

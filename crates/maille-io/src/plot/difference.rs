@@ -73,6 +73,7 @@ pub fn difference_svg(records: &[NamedRecord], spread: Spread, layout: Layout) -
             format!("Largest less smallest {} of all directions (no unit)", spread.symbol()),
         ],
         series,
+        bands: Vec::new(),
     }
     .svg(layout)
 }

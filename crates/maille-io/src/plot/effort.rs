@@ -73,6 +73,7 @@ pub(super) fn svg(records: &[NamedRecord], effort: Effort, layout: Layout) -> St
         names: ["Direction of the pull, counter-clockwise from x".into(), format!("{}{scale}", effort.axis)],
         y,
         series,
+        bands: Vec::new(),
     }
     .svg(layout)
 }

@@ -83,6 +83,8 @@ pub struct PolarPlot {
     pub check: String,
     /// Paragraphs below the plot.
     pub caption: Vec<String>,
+    /// Whether the width was left to the sheet in all limits.
+    pub lateral_free: bool,
 }
 
 /// A direction that a plot marks, with its opposite.
@@ -153,6 +155,7 @@ impl PolarPlot {
             rays: Vec::new(),
             check: String::new(),
             caption,
+            lateral_free: lateral_free(rows.iter()),
         }
     }
 
@@ -174,6 +177,7 @@ impl PolarPlot {
             rays: Vec::new(),
             check: String::new(),
             caption,
+            lateral_free: lateral_free(records.iter().flat_map(|named| &named.record.rows)),
         }
     }
 
@@ -220,6 +224,11 @@ fn limits(record: usize, rows: &[LimitRow], l2: f64, quantity: Quantity) -> Curv
     let of_l2 = rows.iter().filter(|row| row.l2 == l2);
     let points: Vec<_> = of_l2.map(|row| (row.direction_deg, quantity.of(row))).collect();
     Curve::new(record, l2, CurveKind::Limits, &points)
+}
+
+/// Whether the width was left to the sheet in all of them.
+fn lateral_free<'a>(mut rows: impl Iterator<Item = &'a LimitRow>) -> bool {
+    rows.all(|row| row.lateral.as_deref() == Some("free"))
 }
 
 /// Why the plot goes all the way round.
@@ -391,9 +400,11 @@ fn legend(input: &PolarPlot, looks: &[Look], scale: &Scale) -> Vec<Entry> {
     }
     let empty =
         |l2: f64| input.curves.iter().filter(|curve| curve.l2 == l2).all(|curve| curve.values().next().is_none());
-    let label = |l2: f64| format!("{}{}", l2_label(l2), if empty(l2) { ", no limit" } else { "" });
+    let name = |l2: f64| if input.lateral_free { "free".into() } else { l2_label(l2) };
+    let label = |l2: f64| format!("{}{}", name(l2), if empty(l2) { ", no limit" } else { "" });
     if let ([only], false) = (&l2[..], labels.is_empty()) {
-        out.push(Entry::Heading(format!("l₂ = {}", label(*only))));
+        let is = if input.lateral_free { "" } else { "= " };
+        out.push(Entry::Heading(format!("l₂ {is}{}", label(*only))));
     } else {
         out.push(Entry::Heading("l₂ across the pull".into()));
     }

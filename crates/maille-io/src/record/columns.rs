@@ -102,13 +102,16 @@ const fn column(name: &'static str, unit: Unit, values: Values, meaning: &'stati
 use Unit::{Degree, Length, None as Word, One, Second};
 use Values::{Count, Flag, Number, Text};
 
+/// Columns of the first version: a table that ends after them is read too, the others being empty.
+pub(super) const FIRST_COLUMNS: usize = 30;
+
 /// The columns, in order. A later version may add columns at the end; it renames and moves none.
 #[rustfmt::skip] // a table
-pub const LIMIT_COLUMNS: [Column; 30] = [
+pub const LIMIT_COLUMNS: [Column; 36] = [
     column("design", Word, Text(|r| Some(&r.design)), "name of the design; text, also where it looks like a number"),
     column("minor_radius", Length, Number(|r| r.minor_radius), "common minor radius of the rings; empty where each ring gives its own"),
     column("direction_deg", Degree, Number(|r| Some(r.direction_deg)), "direction of the pull, counter-clockwise from x"),
-    column("l2", One, Number(|r| Some(r.l2)), "stretch held across the pull, less 1"),
+    column("l2", One, Number(|r| Some(r.l2)), "stretch held across the pull, less 1; 0 where lateral is free"),
     column("method", Word, Text(|r| Some(&r.method)), "exact or energy"),
     column("cell", Word, Text(|r| Some(&r.cell)), "the cell that was solved, as 2x1 or 1,0;-1,2"),
     column("status", Word, Text(|r| Some(r.status.name())), "outcome of the search"),
@@ -135,4 +138,10 @@ pub const LIMIT_COLUMNS: [Column; 30] = [
     column("n_distinct", One, Count(|r| r.n_distinct), "distinct certified limits that the starts found"),
     column("own_image_force", One, Number(|r| r.own_image_force), "largest force between an element and its own image, for a unit pull"),
     column("l1_uncertified", One, Number(|r| r.l1_uncertified), "best feasible l1 of a row whose certificate is incomplete"),
+    column("lateral", Word, Text(|r| r.lateral.as_deref()), "fixed or free: whether l2 is held"),
+    column("shear", Word, Text(|r| r.shear.as_deref()), "fixed or free: whether the shear is held at 0"),
+    column("l2_min", One, Number(|r| r.l2_min), "least l2 found at the limit; l2 where it is held"),
+    column("l2_max", One, Number(|r| r.l2_max), "largest l2 found at the limit; l2 where it is held"),
+    column("shear_min", One, Number(|r| r.shear_min), "least shear found at the limit; 0 where it is held"),
+    column("shear_max", One, Number(|r| r.shear_max), "largest shear found at the limit; 0 where it is held"),
 ];

@@ -1,6 +1,6 @@
 //! `limits.csv`.
 
-use super::columns::{Cell, Column, LIMIT_COLUMNS};
+use super::columns::{Cell, Column, FIRST_COLUMNS, LIMIT_COLUMNS};
 use super::error::{RecordError, complete};
 use csv::{ReaderBuilder, StringRecord};
 use maille::record::{LimitRow, Status};
@@ -42,7 +42,8 @@ pub(crate) fn csv_cell(column: &str, cell: Cell<'_>) -> String {
     }
 }
 
-/// Reads the table; `file` is the name to show in errors. Columns after [`LIMIT_COLUMNS`] are ignored.
+/// Reads the table; `file` is the name to show in errors. Columns after [`LIMIT_COLUMNS`] are ignored, and those that an
+/// older table does not have are empty.
 pub fn read_limits(file: &str, text: &str) -> Result<Vec<LimitRow>, RecordError> {
     complete(file, text)?;
     let mut reader = ReaderBuilder::new().has_headers(false).flexible(true).from_reader(text.as_bytes());
@@ -51,7 +52,8 @@ pub fn read_limits(file: &str, text: &str) -> Result<Vec<LimitRow>, RecordError>
         None => return Err(RecordError::malformed(file, 1, "the header is missing")),
         Some(header) => header.map_err(|e| RecordError::malformed(file, 1, e.to_string()))?,
     };
-    for (i, Column { name: expected, .. }) in LIMIT_COLUMNS.iter().enumerate() {
+    let known = if header.len() == FIRST_COLUMNS { FIRST_COLUMNS } else { LIMIT_COLUMNS.len() };
+    for (i, Column { name: expected, .. }) in LIMIT_COLUMNS.iter().enumerate().take(known) {
         let found = header.get(i).unwrap_or_default();
         if found != *expected {
             let problem = format!("column {} is \"{found}\", expected \"{expected}\"", i + 1);
@@ -73,7 +75,7 @@ pub fn read_limits(file: &str, text: &str) -> Result<Vec<LimitRow>, RecordError>
 
 fn row(record: &StringRecord) -> Result<LimitRow, String> {
     let mut cells = LIMIT_COLUMNS.iter().map(|column| column.name).zip(record);
-    // The caller has counted them; a cell that is not there reads as an empty one.
+    // A cell that an older table does not have reads as an empty one.
     let mut next = || cells.next().unwrap_or_default();
     Ok(LimitRow {
         design: next().1.to_owned(),
@@ -106,6 +108,12 @@ fn row(record: &StringRecord) -> Result<LimitRow, String> {
         n_distinct: some(next(), "a whole number")?,
         own_image_force: optional(next())?,
         l1_uncertified: optional(next())?,
+        lateral: some(next(), "a word")?,
+        shear: some(next(), "a word")?,
+        l2_min: optional(next())?,
+        l2_max: optional(next())?,
+        shear_min: optional(next())?,
+        shear_max: optional(next())?,
     })
 }
 

@@ -79,6 +79,28 @@ impl ChainBound {
         self.vertices.iter().map(|v| &v.chain)
     }
 
+    /// x = v/d of the chains that can bind: |F x| ≤ 1 for each of them.
+    pub fn directions(&self) -> impl Iterator<Item = Vector2<f64>> {
+        self.vertices.iter().map(|v| v.x)
+    }
+
+    /// A stretch that no line in the sheet exceeds; infinite where all chains are parallel.
+    ///
+    /// With two chains e = α x + β x′ for a unit vector e, so |F e| ≤ |α| + |β|.
+    pub fn largest_stretch(&self) -> f64 {
+        let mut least = f64::INFINITY;
+        for (k, a) in self.vertices.iter().enumerate() {
+            for b in &self.vertices[..k] {
+                let det = a.x.x * b.x.y - a.x.y * b.x.x;
+                if det.abs() > ACROSS * a.x.norm() * b.x.norm() {
+                    // |α|, |β| ≤ |x′|/|det|, |x|/|det|.
+                    least = least.min((a.x.norm() + b.x.norm()) / det.abs());
+                }
+            }
+        }
+        least
+    }
+
     /// The bound of l1 along `direction_deg` with l2 held.
     pub fn limit(&self, direction_deg: f64, l2: f64) -> Bound {
         let (along, across) = axes(direction_deg);

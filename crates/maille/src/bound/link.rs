@@ -23,15 +23,20 @@
 //!
 //! Nothing is assumed of y but the balance, which a projection restores to rounding; what it leaves is charged with
 //! the largest distance that the links allow. A value below 0 proves that no state with l1 > −1 has this l2.
+//!
+//! **Free width and shear** ([`Across`]). F = (1 + l1) D Dᵀ + (1 + l2) D⊥ D⊥ᵀ + γ D D⊥ᵀ is linear in what is free, so each is one
+//! more unknown of the same program. With U = Σ (y_k·D)(S_k·D⊥) the left side gains γ U. Forces that prove a bound for
+//! every l2 have T = 0, for every γ U = 0: the projection restores that as it does the balance, and the rest is charged
+//! with the largest stretch that the chains allow.
 
 use super::{
     Bound, ChainBound, axes,
     cone::{Cone, ConeProgram, eigenvalues, pack},
     tie::{self, Tie},
 };
-use crate::model::Model;
+use crate::{lattice::Across, model::Model};
 use maille_geometry::Vec3;
-use nalgebra::{DMatrix, DVector, Matrix3, Matrix4};
+use nalgebra::{DMatrix, DVector, Matrix3, Matrix4, Vector2};
 
 /// What the link bound found for one direction and one l2.
 #[derive(Clone, Debug, PartialEq)]
@@ -101,27 +106,49 @@ impl LinkBound {
         LinkBound { ties, n_links, n_elements, turn, template, chain: chain.clone() }
     }
 
+    /// The program of the chains alone, each of them a tie between a ring and its own image.
+    pub fn of_chains(chain: &ChainBound) -> Self {
+        let tie = |x: Vector2<f64>| Tie { terms: Vec::new(), span: x.push(0.0), length: 1.0 };
+        let ties: Vec<Tie> = chain.directions().map(tie).collect();
+        let template = template(&ties, &[], &[], 1);
+        LinkBound { ties, n_links: 0, n_elements: 0, turn: Vec::new(), template, chain: chain.clone() }
+    }
+
     /// The bound of l1 along `direction_deg` with l2 held.
     pub fn limit(&self, direction_deg: f64, l2: f64) -> LinkSolution {
+        self.limit_across(direction_deg, l2, Across::HELD)
+    }
+
+    /// The bound of l1 along `direction_deg`, with l2 and the shear held or free.
+    pub fn limit_across(&self, direction_deg: f64, l2: f64, free: Across) -> LinkSolution {
         let nothing = LinkSolution {
             l1: f64::INFINITY,
             primal_l1: f64::INFINITY,
             tension: vec![0.0; self.n_links],
             iterations: 0,
         };
-        let ceiling = match self.chain.limit(direction_deg, l2) {
+        let largest_stretch = match self.chain.limit(direction_deg, l2) {
+            _ if free.any() => self.chain.largest_stretch(),
             Bound::Unbounded => return nothing,
-            Bound::Finite { l1, .. } => l1,
-            Bound::L2Unreachable { .. } => 0.0,
+            Bound::Finite { l1, .. } => (1.0 + l1).max(1.0 + l2),
+            Bound::L2Unreachable { .. } => 1.0 + l2.max(0.0),
         };
         let (along, across) = axes(direction_deg);
         let (along, across) = (along.push(0.0), across.push(0.0));
-        let query = Query { bound: self, along, across, l2, largest_stretch: (1.0 + ceiling).max(1.0 + l2) };
+        let query = Query { bound: self, along, across, l2, free, largest_stretch };
         let mut program = self.template.clone();
+        let held = program.cost.len();
+        let axes: Vec<Vec3> = query.free_axes().collect();
+        program.cost.resize_vertically_mut(held + axes.len(), 0.0);
+        program.matrix.resize_horizontally_mut(held + axes.len(), 0.0);
         for (k, tie) in self.ties.iter().enumerate() {
             let pulled = along * tie.span.dot(&along);
-            let fixed = across * (tie.span.dot(&across) * (1.0 + l2));
+            let width = if free.lateral_free { 0.0 } else { 1.0 + l2 };
+            let fixed = across * (tie.span.dot(&across) * width);
             for axis in 0..3 {
+                for (m, free) in axes.iter().enumerate() {
+                    program.matrix[(4 * k + 1 + axis, held + m)] = -free[axis] * tie.span.dot(&across);
+                }
                 program.matrix[(4 * k + 1 + axis, 0)] = -pulled[axis];
                 program.offset[4 * k + 1 + axis] = fixed[axis];
             }
@@ -152,10 +179,26 @@ struct Query<'a> {
     along: Vec3,
     across: Vec3,
     l2: f64,
+    free: Across,
     largest_stretch: f64,
 }
 
 impl Query<'_> {
+    /// Where lines across the pull may be moved: along D⊥ where l2 is free, along D where the shear is.
+    fn free_axes(&self) -> impl Iterator<Item = Vec3> {
+        let lateral = self.free.lateral_free.then_some(self.across);
+        lateral.into_iter().chain(self.free.shear_free.then_some(self.along))
+    }
+
+    /// T and U of what is free: they should be 0.
+    fn unheld(&self, forces: &[Vec3]) -> Vec<f64> {
+        let across = |axis: Vec3| {
+            let ties = self.bound.ties.iter().zip(forces);
+            ties.map(|(tie, y)| y.dot(&axis) * tie.span.dot(&self.across)).sum()
+        };
+        self.free_axes().map(across).collect()
+    }
+
     /// Forces y of the multipliers z: (|y|, −y) in each cone.
     fn forces(&self, z: &DVector<f64>) -> Vec<Vec3> {
         (0..self.bound.ties.len()).map(|k| -Vec3::new(z[4 * k + 1], z[4 * k + 2], z[4 * k + 3])).collect()
@@ -187,7 +230,10 @@ impl Query<'_> {
         let mut moments = vec![Matrix3::zeros(); self.bound.n_elements];
         let mut farthest = 0.0;
         for (tie, y) in self.bound.ties.iter().zip(forces) {
-            total += y.norm() * tie.length - (1.0 + self.l2) * y.dot(&self.across) * tie.span.dot(&self.across);
+            total += y.norm() * tie.length;
+            if !self.free.lateral_free {
+                total -= (1.0 + self.l2) * y.dot(&self.across) * tie.span.dot(&self.across);
+            }
             farthest += tie.length + self.largest_stretch * tie.span.norm();
             for term in &tie.terms {
                 moments[term.element] -= term.weight * y * term.offset.transpose();
@@ -201,6 +247,10 @@ impl Query<'_> {
         }
         // Every centre is within `farthest` of the one that is held: along a path of ties each is used at most once.
         let left: f64 = self.imbalance(forces).iter().map(|r| r.norm()).sum();
+        let unheld: f64 = self.unheld(forces).iter().map(|u| u.abs()).sum();
+        if unheld > 0.0 {
+            total += unheld * self.largest_stretch;
+        }
         let l1 = (total + left * farthest) / pull - 1.0;
         l1.is_finite().then_some(l1)
     }
@@ -232,7 +282,8 @@ impl Query<'_> {
 
     /// The nearest balanced forces that vanish where `kept` is false: y − Bᵀ(B Bᵀ)⁺ B y.
     ///
-    /// B Bᵀ is singular (a connected part moves freely); a small shift and a few rounds give the pseudo-inverse.
+    /// B Bᵀ is singular (a connected part moves freely); a small shift and a few rounds give the pseudo-inverse. The rows of
+    /// what is free couple the three axes of space; without them each axis is solved for itself.
     fn balanced(&self, forces: &[Vec3], kept: &[bool]) -> Vec<Vec3> {
         let n = self.bound.n_elements;
         let mut square = DMatrix::<f64>::identity(n, n) * 1e-6;
@@ -244,6 +295,10 @@ impl Query<'_> {
             }
         }
         let mut out: Vec<Vec3> = forces.iter().zip(kept).map(|(y, k)| if *k { *y } else { Vec3::zeros() }).collect();
+        if self.free.any() {
+            self.balance_all(&mut out, kept);
+            return out;
+        }
         let Some(factor) = square.cholesky() else { return out };
         for _ in 0..4 {
             let left = self.imbalance(&out);
@@ -257,6 +312,37 @@ impl Query<'_> {
             }
         }
         out
+    }
+
+    /// The same with the rows of what is free.
+    fn balance_all(&self, forces: &mut [Vec3], kept: &[bool]) {
+        let n = 3 * self.bound.n_elements;
+        let axes: Vec<Vec3> = self.free_axes().collect();
+        // The rows of B that a tie's force enters, with its part in each of them.
+        let entries = |tie: &Tie| -> Vec<(usize, Vec3)> {
+            let balance = tie.terms.iter().flat_map(|term| {
+                let axis = |k: usize| Vec3::from_fn(|i, _| if i == k { term.weight } else { 0.0 });
+                (0..3).map(move |k| (3 * term.element + k, axis(k)))
+            });
+            let free = axes.iter().enumerate().map(|(m, axis)| (n + m, axis * tie.span.dot(&self.across)));
+            balance.chain(free).collect()
+        };
+        let rows: Vec<Vec<(usize, Vec3)>> = self.bound.ties.iter().map(entries).collect();
+        let mut square = DMatrix::<f64>::identity(n + axes.len(), n + axes.len()) * 1e-6;
+        for (rows, _) in rows.iter().zip(kept).filter(|(_, k)| **k) {
+            for (i, a) in rows {
+                rows.iter().for_each(|(j, b)| square[(*i, *j)] += a.dot(b));
+            }
+        }
+        let Some(factor) = square.cholesky() else { return };
+        for _ in 0..4 {
+            let balance = self.imbalance(forces).into_iter().flat_map(|r| [r.x, r.y, r.z]);
+            let right: Vec<f64> = balance.chain(self.unheld(forces)).collect();
+            let shift = factor.solve(&DVector::from_vec(right));
+            for ((rows, y), _) in rows.iter().zip(&mut *forces).zip(kept).filter(|(_, k)| **k) {
+                rows.iter().for_each(|(i, part)| *y -= part * shift[*i]);
+            }
+        }
     }
 }
 

@@ -23,13 +23,16 @@ mod chain;
 pub mod cone;
 mod image;
 mod link;
+mod metric;
 mod tie;
 
 pub use chain::{BindingChain, ChainBound};
 pub use image::{ImageBound, NearImages};
 pub use link::{LinkBound, LinkSolution};
+pub use metric::{MetricBound, metric_bound};
 pub use tie::crossing_pairs_length;
 
+use crate::lattice::Across;
 use nalgebra::Vector2;
 use std::fmt;
 
@@ -116,6 +119,33 @@ pub fn best_bound(chain: &ChainBound, link: Option<&LinkBound>, direction_deg: f
         Bound::Finite { l1: solution.l1, kind: BoundKind::Link, chain: path.clone() }
     } else {
         first
+    }
+}
+
+/// The lower of the two bounds with the width or the shear free.
+pub fn best_bound_across(
+    chain: &ChainBound,
+    link: Option<&LinkBound>,
+    direction_deg: f64,
+    l2: f64,
+    free: Across,
+) -> Bound {
+    if !free.any() {
+        return best_bound(chain, link, direction_deg, l2);
+    }
+    let of_chains = LinkBound::of_chains(chain).limit_across(direction_deg, l2, free);
+    if of_chains.l2_unreachable() {
+        return Bound::L2Unreachable { kind: BoundKind::Chain, chain: None };
+    }
+    if !of_chains.l1.is_finite() {
+        return Bound::Unbounded;
+    }
+    match link.map(|link| link.limit_across(direction_deg, l2, free)) {
+        Some(solution) if solution.l2_unreachable() => Bound::L2Unreachable { kind: BoundKind::Link, chain: None },
+        Some(solution) if solution.l1 < of_chains.l1 - SAME => {
+            Bound::Finite { l1: solution.l1, kind: BoundKind::Link, chain: None }
+        }
+        _ => Bound::Finite { l1: of_chains.l1, kind: BoundKind::Chain, chain: None },
     }
 }
 

@@ -45,6 +45,7 @@ impl SheetProgram<'_> {
     pub(super) fn curvature_of_flat_pairs(&self, x: &Posed, multipliers: &[Multiplier]) -> Vec<Vec<f64>> {
         let (model, state) = (self.model, &x.state);
         let n = self.first_parameter + self.pull.parameters.len();
+        let factored = self.pull.factored(&x.p);
         let mut out = Vec::new();
         for &key in &self.flat {
             let pair = pair_of_key(key);
@@ -59,7 +60,7 @@ impl SheetProgram<'_> {
                 continue;
             }
             let weight = (force * self.required(x, model.contact_distance(pair.ring_a, pair.ring_b))).sqrt();
-            let map = self.pair_map(&pair, &self.all_turns(state));
+            let map = self.pair_map(&pair, &self.all_turns(state), factored.as_ref());
             let mut term = vec![0.0; n];
             for (&column, motion) in map.columns.iter().zip(&map.motions) {
                 term[column] = (0..3).map(|axis| motion[axis] * moment[axis]).sum::<f64>() / weight;

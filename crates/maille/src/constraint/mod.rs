@@ -2,13 +2,18 @@
 //!
 //! Unknowns of a step: a translation and a turn for every element (the first element's translation is fixed, because
 //! a common translation changes nothing; the turn of a single ring about its own axis is left out for the same
-//! reason), then the free parameters p. The lattice is affine in p: a_k = base_k + Σ p_m rate_mk. So is the core distance
-//! s that two rings must keep: s = (r_a + r_b)(1 + Σ p_m thicken_m) + Σ p_m widen_m.
+//! reason), then the free parameters p. The lattice is affine in p, a_k = base_k + Σ p_m rate_mk, or its metric is (see
+//! [`metric`]). The core distance s that two rings must keep is affine: s = (r_a + r_b)(1 + Σ p_m thicken_m) + Σ p_m
+//! widen_m.
 
 mod flat;
+pub mod metric;
 mod pair;
 
-use self::pair::{bound_key, pair_key, pair_of_key};
+use self::{
+    metric::Factored,
+    pair::{bound_key, pair_key, pair_of_key},
+};
 use crate::{
     model::Model,
     solve::{
@@ -23,6 +28,7 @@ use crate::{
     },
 };
 use maille_geometry::{Vec3, point_circle_distance};
+use nalgebra::Matrix2;
 use std::{cell::OnceCell, collections::BTreeSet, rc::Rc};
 
 /// One free parameter: how fast it moves the lattice vectors or thickens the wire, and its weight in the objective.
@@ -30,6 +36,8 @@ use std::{cell::OnceCell, collections::BTreeSet, rc::Rc};
 pub struct Parameter {
     /// Rates of a1 and a2.
     pub rate: [Vec3; 2],
+    /// Rate of the metric C instead, where the pull has one.
+    pub metric: Matrix2<f64>,
     /// Growth of all minor radii, as a share of them.
     pub thicken: f64,
     /// Growth of the gap that all rings must keep.
@@ -54,6 +62,41 @@ pub struct Pull {
     pub base: [Vec3; 2],
     /// The free parameters.
     pub parameters: Vec<Parameter>,
+    /// The metric C where all parameters are 0, if it is C that is affine in them: the lattice vectors are then F(C) base.
+    pub metric: Option<Matrix2<f64>>,
+}
+
+impl Pull {
+    /// The metric at `p`, where the pull has one.
+    fn metric_at(&self, p: &[f64]) -> Option<Matrix2<f64>> {
+        let moved = self.parameters.iter().zip(p).map(|(parameter, value)| parameter.metric * *value);
+        self.metric.map(|base| base + moved.sum::<Matrix2<f64>>())
+    }
+
+    /// The factor of the metric at `p`, where the pull has one.
+    fn factored(&self, p: &[f64]) -> Option<Factored> {
+        let rates: Vec<Matrix2<f64>> = self.parameters.iter().map(|parameter| parameter.metric).collect();
+        Factored::new(&self.metric_at(p)?, &rates)
+    }
+
+    /// The lattice vectors at `p`. A metric that is not positive definite gives those where all parameters are 0; no step
+    /// leads there.
+    fn lattice(&self, p: &[f64]) -> [Vec3; 2] {
+        if let Some(c) = self.metric_at(p) {
+            return metric::factor(&c).map_or(self.base, |f| self.base.map(|a| metric::apply(&f, &a)));
+        }
+        let moved = |k: usize| {
+            let free = self.parameters.iter().zip(p);
+            self.base[k] + free.map(|(parameter, value)| parameter.rate[k] * *value).sum::<Vec3>()
+        };
+        [moved(0), moved(1)]
+    }
+
+    /// Whether the metric stays positive definite, and far from not being so, on the step from `p` to `to`.
+    fn stays_definite(&self, p: &[f64], to: &[f64]) -> bool {
+        let (Some(from), Some(to)) = (self.metric_at(p), self.metric_at(to)) else { return true };
+        to[(0, 0)] > STEEPEST * from[(0, 0)] && to.determinant() > STEEPEST * from.determinant()
+    }
 }
 
 /// Poses with the values of the strain parameters.
@@ -82,6 +125,11 @@ pub struct SheetProgram<'a> {
 const WIDEST_BAND: f64 = 1.0;
 /// Largest motion of an element in one step, in largest radii.
 const STEP_CAP: f64 = 0.5;
+/// A step may not shrink the metric's determinant below this part.
+const STEEPEST: f64 = 0.25;
+/// Times that a step whose lattice moves on a curve is cut.
+const CUTS: usize = 40;
+
 /// A loaded contact of a locked state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
@@ -119,11 +167,7 @@ impl<'a> SheetProgram<'a> {
 
     /// Poses of `state` with the lattice of the parameters `p`.
     pub fn posed(&self, mut state: State, p: Vec<f64>) -> Posed {
-        let lattice = |k: usize| {
-            let free = self.pull.parameters.iter().zip(&p);
-            self.pull.base[k] + free.map(|(parameter, value)| parameter.rate[k] * *value).sum::<Vec3>()
-        };
-        (state.a1, state.a2) = (lattice(0), lattice(1));
+        [state.a1, state.a2] = self.pull.lattice(&p);
         Posed { state, p, near: OnceCell::new() }
     }
 
@@ -166,21 +210,32 @@ impl<'a> SheetProgram<'a> {
         (0..self.model.elements.len()).map(|e| self.turns(state, e)).collect()
     }
 
-    /// Motion of the step `y` at `state`.
-    fn motion(&self, state: &State, y: &[f64]) -> Motion {
+    /// Motion of the step `y` at `x`. Where the lattice moves on a curve it is the straight way to the curve's end: what the
+    /// step bound asks for is some way on which no circles meet.
+    fn motion(&self, x: &Posed, y: &[f64]) -> Motion {
         let elements = (0..self.model.elements.len())
             .map(|e| {
                 let (translation, turn) = self.columns[e];
                 let shift = translation.map_or(Vec3::zeros(), |t| Vec3::new(y[t], y[t + 1], y[t + 2]));
-                let turn = self.turns(state, e).iter().enumerate().map(|(k, axis)| axis * y[turn + k]).sum();
+                let turn = self.turns(&x.state, e).iter().enumerate().map(|(k, axis)| axis * y[turn + k]).sum();
                 (shift, turn)
             })
             .collect();
-        let lattice = [0, 1].map(|k| {
-            let rates = self.pull.parameters.iter().enumerate();
-            rates.map(|(m, parameter)| parameter.rate[k] * y[self.first_parameter + m]).sum()
-        });
+        let lattice = if self.pull.metric.is_some() {
+            let [a1, a2] = self.pull.lattice(&self.stepped(x, y));
+            [a1 - x.state.a1, a2 - x.state.a2]
+        } else {
+            [0, 1].map(|k| {
+                let rates = self.pull.parameters.iter().enumerate();
+                rates.map(|(m, parameter)| parameter.rate[k] * y[self.first_parameter + m]).sum()
+            })
+        };
         Motion { elements, lattice }
+    }
+
+    /// The parameters after the step `y`.
+    fn stepped(&self, x: &Posed, y: &[f64]) -> Vec<f64> {
+        x.p.iter().zip(&y[self.first_parameter..]).map(|(p, dp)| p + dp).collect()
     }
 }
 
@@ -213,8 +268,9 @@ impl Program for SheetProgram<'_> {
             return rows;
         }
         let turns = self.all_turns(&x.state);
+        let factored = self.pull.factored(&x.p);
         for near in within {
-            self.pair_rows(x, near, band, &turns, derivatives, &mut rows);
+            self.pair_rows(x, near, band, (&turns, factored.as_ref()), derivatives, &mut rows);
         }
         rows
     }
@@ -224,15 +280,29 @@ impl Program for SheetProgram<'_> {
     }
 
     fn largest_step(&self, x: &Posed, guard: &StepBound, step: &[f64]) -> f64 {
-        guard.largest_fraction(self.model, &self.motion(&x.state, step), STEP_CAP * self.model.largest_radius)
+        let allowed = |step: &[f64]| {
+            guard.largest_fraction(self.model, &self.motion(x, step), STEP_CAP * self.model.largest_radius)
+        };
+        if self.pull.metric.is_none() {
+            return allowed(step);
+        }
+        let mut fraction = 1.0;
+        for _ in 0..CUTS {
+            let cut: Vec<f64> = step.iter().map(|s| s * fraction).collect();
+            let part = if self.pull.stays_definite(&x.p, &self.stepped(x, &cut)) { allowed(&cut) } else { 0.5 };
+            if part >= 1.0 {
+                return fraction;
+            }
+            fraction *= 0.99 * part;
+        }
+        0.0
     }
 
     fn moved(&self, x: &Posed, step: &[f64]) -> Posed {
-        let motion = self.motion(&x.state, step);
+        let motion = self.motion(x, step);
         let poses =
             x.state.poses.iter().zip(&motion.elements).map(|(pose, (shift, turn))| pose.moved(shift, turn)).collect();
-        let p = x.p.iter().zip(&step[self.first_parameter..]).map(|(p, dp)| p + dp).collect();
-        self.posed(State { poses, ..x.state.clone() }, p)
+        self.posed(State { poses, ..x.state.clone() }, self.stepped(x, step))
     }
 
     fn hidden_curvature(&self, x: &Posed, multipliers: &[Multiplier]) -> Vec<Vec<f64>> {

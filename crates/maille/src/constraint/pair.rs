@@ -1,6 +1,6 @@
 //! The rows of one pair of rings: gaps at the minima of the distance, beside flat ones, and a flat pair's heights.
 
-use super::{Posed, SheetProgram};
+use super::{Posed, SheetProgram, metric::Factored};
 use crate::{
     contact::kernel::{Grad, Hess, PairFrame, RootMotion},
     solve::rows::{Derivatives, Row, multiplier_at},
@@ -21,6 +21,8 @@ const HEIGHTS: usize = 16;
 pub(super) struct PairMap {
     pub columns: Vec<usize>,
     pub motions: Vec<Grad>,
+    /// Second derivatives of the relative position with two of these columns, where the lattice moves on a curve.
+    bends: Vec<(usize, usize, Vec3)>,
 }
 
 impl PairMap {
@@ -39,7 +41,7 @@ impl PairMap {
         self.motions.iter().map(|motion| motion.dot(grad)).collect()
     }
 
-    fn hessian(&self, hess: &Hess) -> Vec<f64> {
+    fn hessian(&self, grad: &Grad, hess: &Hess) -> Vec<f64> {
         let k = self.columns.len();
         let mut out = vec![0.0; k * k];
         for (c, motion) in self.motions.iter().enumerate() {
@@ -49,15 +51,18 @@ impl PairMap {
                 (out[c * k + r], out[r * k + c]) = (value, value);
             }
         }
+        for (r, c, bend) in &self.bends {
+            out[c * k + r] += (0..3).map(|axis| grad[axis] * bend[axis]).sum::<f64>();
+        }
         out
     }
 }
 
 impl SheetProgram<'_> {
     /// The unknowns that move the pair, with their motions.
-    pub(super) fn pair_map(&self, pair: &RingPair, turns: &[Vec<Vec3>]) -> PairMap {
+    pub(super) fn pair_map(&self, pair: &RingPair, turns: &[Vec<Vec3>], factored: Option<&Factored>) -> PairMap {
         let (i, j) = (self.model.rings[pair.ring_a].element, self.model.rings[pair.ring_b].element);
-        let mut map = PairMap { columns: Vec::with_capacity(14), motions: Vec::with_capacity(14) };
+        let mut map = PairMap { columns: Vec::with_capacity(14), motions: Vec::with_capacity(14), bends: Vec::new() };
         let axes = [Vec3::x(), Vec3::y(), Vec3::z()];
         if i != j {
             for (element, sign) in [(i, -1.0), (j, 1.0)] {
@@ -70,11 +75,17 @@ impl SheetProgram<'_> {
             let first = self.columns[element].1;
             turns[element].iter().enumerate().for_each(|(k, axis)| map.add(first + k, block, axis, 1.0));
         }
+        let image = |[a1, a2]: [Vec3; 2]| a1 * f64::from(pair.shift[0]) + a2 * f64::from(pair.shift[1]);
+        let mut free = Vec::new();
         for (m, parameter) in self.pull.parameters.iter().enumerate() {
-            let rate = parameter.rate[0] * f64::from(pair.shift[0]) + parameter.rate[1] * f64::from(pair.shift[1]);
+            let rate = image(factored.map_or(parameter.rate, |f| self.pull.base.map(|a| f.rate(m, &a))));
             if rate != Vec3::zeros() || parameter.keeps(1.0) != 0.0 {
                 map.add(self.first_parameter + m, 0, &rate, 1.0);
+                free.push((m, map.columns.len() - 1));
             }
+        }
+        for (f, &(m, r)) in factored.iter().flat_map(|f| free.iter().map(move |at| (f, at))) {
+            map.bends.extend(free.iter().map(|&(n, c)| (r, c, image(self.pull.base.map(|a| f.bend(m, n, &a))))));
         }
         map
     }
@@ -97,7 +108,7 @@ impl SheetProgram<'_> {
         x: &Posed,
         near: &NearPair,
         band: f64,
-        turns: &[Vec<Vec3>],
+        (turns, factored): (&[Vec<Vec3>], Option<&Factored>),
         derivatives: Derivatives<'_>,
         rows: &mut Vec<Row>,
     ) {
@@ -106,7 +117,7 @@ impl SheetProgram<'_> {
         let reference_a = state.poses[self.model.rings[pair.ring_a].element].position;
         let reference_b = state.poses[self.model.rings[pair.ring_b].element].position + state.translation(pair.shift);
         let frame = PairFrame::new(&near.a, &reference_a, &near.b, &reference_b);
-        let map = self.pair_map(pair, turns);
+        let map = self.pair_map(pair, turns, factored);
         let required = self.required(x, near.touching);
         let gradient = |grad: &Grad| {
             let mut out = map.gradient(grad);
@@ -126,7 +137,7 @@ impl SheetProgram<'_> {
                 minimum,
                 columns: map.columns.clone(),
                 gradient: gradient(grad),
-                hessian: hess.map_or_else(Vec::new, |h| map.hessian(h)),
+                hessian: hess.map_or_else(Vec::new, |h| map.hessian(grad, h)),
                 ..Row::value(key, angle, distance - required)
             });
         };

@@ -9,7 +9,7 @@ use crate::{
         rows::{Derivatives, Multiplier, violation},
         sqp::{Program, SqpOptions, maximize},
     },
-    state::State,
+    state::{Pose, State},
     topology::{
         self,
         crossing::{Motion, StepBound},
@@ -135,4 +135,22 @@ pub(super) fn shaken_from(model: &Model, state: &State, size: f64, rng: &mut Cha
         .zip(&motion.elements)
         .map(|(p, (shift, turn))| p.moved(&(shift * fraction), &(turn * fraction)));
     State { poses: moved.collect(), ..state.clone() }
+}
+
+/// Largest force between an element and its own image.
+pub(super) fn own_image_force(model: &Model, contacts: &[Contact]) -> f64 {
+    let element = |ring: usize| model.rings[ring].element;
+    let own = contacts.iter().filter(|c| element(c.pair.ring_a) == element(c.pair.ring_b));
+    own.map(|c| c.force).fold(0.0, f64::max)
+}
+
+/// A primitive cell's state repeated over the cell of `model`.
+pub(super) fn tiled(model: &Model, state: &State) -> State {
+    let copies = model.cell.cosets();
+    let poses = copies.iter().flat_map(|&coset| {
+        let shift = state.translation(coset);
+        state.poses.iter().map(move |pose| Pose { position: pose.position + shift, ..*pose })
+    });
+    let [a1, a2] = model.cell.vectors(state.a1, state.a2);
+    State { poses: poses.collect(), a1, a2 }
 }

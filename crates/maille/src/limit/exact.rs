@@ -7,22 +7,21 @@
 
 use super::{
     ExactFigures, LimitOutcome,
-    climb::{ROUNDS, Solve, climb, shaken_from},
+    climb::{ROUNDS, Solve, climb, own_image_force, shaken_from, tiled},
+    pull::{Family, Strained},
 };
 use crate::{
-    bound::{Bound, ChainBound, ImageBound, LinkBound, NearImages, best_bound},
-    constraint::{Parameter, Pull, SheetProgram},
-    energy::target::target_gradient,
-    lattice::direction,
+    bound::{Bound, ChainBound, ImageBound, LinkBound, NearImages, best_bound_across},
+    constraint::SheetProgram,
+    lattice::Across,
     model::Model,
     record::Status,
     solve::{
         certificate::{GAP_TOLERANCE, RESIDUAL_TOLERANCE},
         sqp::{SqpOptions, maximize},
     },
-    state::{Pose, State},
+    state::State,
 };
-use maille_geometry::Vec3;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
@@ -41,6 +40,9 @@ pub struct ExactOptions {
     pub starts: usize,
     /// Seed of the shaking.
     pub seed: u64,
+    /// Whether width and shear are held or left to the sheet.
+    #[serde(default)]
+    pub across: Across,
 }
 
 /// The options with everything that is fixed: what a record needs to repeat a run.
@@ -60,6 +62,9 @@ pub struct ExactParameters {
     cell_shakes: [f64; 1],
     cell_starts: usize,
     own_image_force: f64,
+    free_slack: f64,
+    rung: f64,
+    best_rungs: usize,
 }
 
 impl ExactOptions {
@@ -79,13 +84,16 @@ impl ExactOptions {
             cell_shakes: CELL_SHAKES,
             cell_starts: CELL_STARTS,
             own_image_force: OWN_IMAGE_FORCE,
+            free_slack: FREE_SLACK,
+            rung: RUNG,
+            best_rungs: BEST_RUNGS,
         }
     }
 }
 
 impl Default for ExactOptions {
     fn default() -> Self {
-        ExactOptions { starts: 4, seed: 1 }
+        ExactOptions { starts: 4, seed: 1, across: Across::HELD }
     }
 }
 
@@ -108,6 +116,13 @@ const CELL_SHAKES: [f64; 1] = [0.1];
 /// Starts of a larger cell of its own, at most: its solves are costly.
 const CELL_STARTS: usize = 3;
 
+/// What l1 gives way, relative to 1 + l1, while the ranges of what is free are found.
+pub(super) const FREE_SLACK: f64 = 1e-6;
+/// With l2 free: distance of the held l2 whose limits are starts.
+const RUNG: f64 = 0.125;
+/// As many of the largest of them are starts.
+const BEST_RUNGS: usize = 3;
+
 /// Finds limits of one sheet by the exact method.
 pub struct ExactMethod<'a> {
     models: &'a [Model],
@@ -116,52 +131,6 @@ pub struct ExactMethod<'a> {
     link: LinkBound,
     /// Found where a limit is not reached.
     image: OnceLock<ImageBound>,
-}
-
-/// The lattice family of one pull, with F = (1 + l1) D Dᵀ + (1 + l2) D⊥ D⊥ᵀ.
-struct Family {
-    reference: [Vec3; 2],
-    direction_deg: f64,
-}
-
-impl Family {
-    fn lattice(&self, l1: f64, l2: f64) -> [Vec3; 2] {
-        let f = target_gradient(self.direction_deg, l1, l2);
-        self.reference.map(|a| {
-            let v = f * a.xy();
-            Vec3::new(v.x, v.y, 0.0)
-        })
-    }
-
-    /// Rates of the lattice with l1, or with l2.
-    fn rates(&self, across: bool) -> [Vec3; 2] {
-        let d = direction(self.direction_deg);
-        let axis = if across { Vec3::new(-d.y, d.x, 0.0) } else { Vec3::new(d.x, d.y, 0.0) };
-        self.reference.map(|a| axis * axis.dot(&a))
-    }
-
-    /// l2 held, l1 maximised.
-    fn pull(&self, l2: f64) -> Pull {
-        let l1 = Parameter { rate: self.rates(false), weight: 1.0, ..Parameter::default() };
-        Pull { base: self.lattice(0.0, l2), parameters: vec![l1] }
-    }
-
-    /// From l2 = `from` towards `to`, l1 free.
-    fn approach(&self, from: f64, to: f64) -> Pull {
-        let sign = (to - from).signum();
-        let l1 = Parameter { rate: self.rates(false), ..Parameter::default() };
-        let most = Some((to - from).abs());
-        let l2 = Parameter { rate: self.rates(true).map(|v| v * sign), weight: 1.0, most, ..Parameter::default() };
-        Pull { base: self.lattice(0.0, from), parameters: vec![l1, l2] }
-    }
-}
-
-/// A state with the strains of its lattice in one direction.
-#[derive(Clone)]
-struct Strained {
-    state: State,
-    l1: f64,
-    l2: f64,
 }
 
 impl<'a> ExactMethod<'a> {
@@ -215,7 +184,8 @@ impl<'a> ExactMethod<'a> {
         neighbour: Option<Strained>,
         cancel: &AtomicBool,
     ) -> (LimitOutcome, Option<Strained>) {
-        let bound = best_bound(&self.chain, Some(&self.link), direction_deg, l2);
+        let across = self.options.across;
+        let bound = best_bound_across(&self.chain, Some(&self.link), direction_deg, l2, across);
         let figures = ExactFigures {
             bound: bound.l1().zip(bound.kind()),
             chain: bound.chain().cloned(),
@@ -235,21 +205,27 @@ impl<'a> ExactMethod<'a> {
         };
         let mut starts: Vec<Strained> = neighbour.iter().cloned().collect();
         let fresh = self.options.starts.max(1) - starts.len();
+        let (rungs, rung_runs, rung_iterations) = self.rungs(direction_deg, cancel);
+        starts.extend(rungs);
         starts.extend(self.fresh(0, 0..fresh));
         let mut first = self.search(0, direction_deg, l2, starts, most, cancel);
-        let near = if first.best.is_none() { self.too_near(direction_deg, l2, most) } else { None };
+        (first.runs, first.iterations) = (first.runs + rung_runs, first.iterations + rung_iterations);
+        let near = if first.best.is_none() && !across.any() { self.too_near(direction_deg, l2, most) } else { None };
         if first.best.is_none() && near.is_none() {
             // Not reached: try harder before giving up.
             let more = self.fresh(0, fresh..fresh + MORE_STARTS).collect();
             let again = self.search(0, direction_deg, l2, more, most, cancel);
             first = Tally { runs: first.runs + again.runs, iterations: first.iterations + again.iterations, ..again };
         }
-        let reached = first.best.as_ref().map(|b| Strained { state: b.x.state.clone(), l1: b.x.p[0], l2 });
+        let reached = first.best.as_ref().map(|b| Strained::at(b, l2, across));
         let mut tally = first;
         let mut trend = vec![(0, tally.l1())];
         let mut cell = 0;
         // Under lateral compression a larger cell can fold where this one cannot.
-        let asks = tally.best.as_ref().map_or(l2 < 0.0, |best| self.own_image_force(0, best) > OWN_IMAGE_FORCE);
+        let asks = tally
+            .best
+            .as_ref()
+            .map_or(l2 < 0.0, |best| own_image_force(&self.models[0], &best.contacts) > OWN_IMAGE_FORCE);
         let last = self.models.len() - 1;
         for larger in 1..self.models.len() {
             // The last cell is for limits that have grown.
@@ -258,14 +234,16 @@ impl<'a> ExactMethod<'a> {
                 break;
             }
             let from = reached.clone().or_else(|| neighbour.clone());
-            let from = from.unwrap_or_else(|| Strained { state: self.models[0].start.clone(), l1: 0.0, l2: 0.0 });
+            let from = from.unwrap_or_else(|| Strained::start(self.models[0].start.clone()));
             let mut rng = ChaCha8Rng::seed_from_u64(self.options.seed.wrapping_add(larger as u64));
             let shaken = CELL_SHAKES.iter().map(|&size| {
                 let state = tiled(&self.models[larger], &from.state);
                 Strained { state: shaken_from(&self.models[larger], &state, size, &mut rng), ..from.clone() }
             });
             // Then those of this cell solved alone: the smaller cell's answer can hide what they find.
-            let starts = shaken.chain(self.fresh(larger, 0..self.options.starts.min(CELL_STARTS))).collect();
+            // With the width free a solve is long, and folds are found from the smaller cell's state.
+            let own = if across.any() { 0 } else { self.options.starts.min(CELL_STARTS) };
+            let starts = shaken.chain(self.fresh(larger, 0..own)).collect();
             let found = self.search(larger, direction_deg, l2, starts, most, cancel);
             trend.push((larger, found.l1()));
             let better = match (&found.best, &tally.best) {
@@ -290,7 +268,7 @@ impl<'a> ExactMethod<'a> {
             );
             return ended(Status::L2Unreachable, &note);
         }
-        let mut outcome = self.judge(cell, direction_deg, l2, most, tally, figures);
+        let mut outcome = self.judge(cell, direction_deg, l2, most, tally, figures, cancel);
         if trend.len() > 1 && outcome.note.is_none() {
             let list: Vec<String> = trend
                 .iter()
@@ -306,8 +284,8 @@ impl<'a> ExactMethod<'a> {
     /// Own images that would be too near in the first cell, whatever l1 up to its bound `most`.
     fn too_near(&self, direction_deg: f64, l2: f64, most: f64) -> Option<NearImages> {
         let model = &self.models[0];
-        let family = Family { reference: [model.start.a1, model.start.a2], direction_deg };
-        let [a1, a2] = family.lattice(most, l2);
+        let family = Family::new(model, direction_deg, Across::HELD);
+        let [a1, a2] = family.lattice(most, l2, 0.0);
         let state = State { poses: Vec::new(), a1, a2 };
         self.image.get_or_init(|| ImageBound::new(model)).too_near(model, &state)
     }
@@ -325,6 +303,33 @@ impl<'a> ExactMethod<'a> {
         }
     }
 
+    /// With l2 free: the states at the largest of the limits with l2 held, found outwards from 0; with what they cost.
+    fn rungs(&self, direction_deg: f64, cancel: &AtomicBool) -> (Vec<Strained>, u64, u64) {
+        let (mut rungs, mut runs, mut iterations) = (Vec::new(), 0, 0);
+        if !self.options.across.lateral_free {
+            return (rungs, runs, iterations);
+        }
+        for step in [RUNG, -RUNG] {
+            let mut from: Vec<Strained> = self.fresh(0, 0..1).collect();
+            for k in i32::from(step < 0.0).. {
+                let l2 = f64::from(k) * step;
+                if l2 <= -1.0 || cancel.load(Ordering::Relaxed) {
+                    break;
+                }
+                let Bound::Finite { l1: most, .. } = self.chain.limit(direction_deg, l2) else { break };
+                let found = self.search_held(0, direction_deg, l2, from, most, cancel);
+                (runs, iterations) = (runs + found.runs, iterations + found.iterations);
+                let Some(best) = &found.best else { break };
+                let rung = Strained::at(best, l2, Across::HELD);
+                from = vec![rung.clone()];
+                rungs.push(rung);
+            }
+        }
+        rungs.sort_by(|a, b| b.l1.total_cmp(&a.l1));
+        rungs.truncate(BEST_RUNGS);
+        (rungs, runs, iterations)
+    }
+
     /// Solves `starts` in one cell until the bound is attained; keeps the best.
     fn search(
         &self,
@@ -335,8 +340,33 @@ impl<'a> ExactMethod<'a> {
         most: f64,
         cancel: &AtomicBool,
     ) -> Tally {
+        self.search_across(cell, direction_deg, l2, starts, (most, self.options.across), cancel)
+    }
+
+    /// The same with width and shear held.
+    fn search_held(
+        &self,
+        cell: usize,
+        direction_deg: f64,
+        l2: f64,
+        starts: Vec<Strained>,
+        most: f64,
+        cancel: &AtomicBool,
+    ) -> Tally {
+        self.search_across(cell, direction_deg, l2, starts, (most, Across::HELD), cancel)
+    }
+
+    fn search_across(
+        &self,
+        cell: usize,
+        direction_deg: f64,
+        l2: f64,
+        starts: Vec<Strained>,
+        (most, across): (f64, Across),
+        cancel: &AtomicBool,
+    ) -> Tally {
         let model = &self.models[cell];
-        let family = Family { reference: [model.start.a1, model.start.a2], direction_deg };
+        let family = Family::new(model, direction_deg, across);
         let mut search = Search { model, seed: self.options.seed, family, l2, cancel, iterations: 0, runs: 0 };
         let mut tally = Tally::default();
         for start in starts {
@@ -368,12 +398,13 @@ impl<'a> ExactMethod<'a> {
         most: f64,
         tally: Tally,
         mut figures: ExactFigures,
+        cancel: &AtomicBool,
     ) -> LimitOutcome {
         figures.n_starts = tally.runs;
         figures.n_distinct = tally.distinct.len() as u64;
         figures.cell = cell;
         let attained = tally.attains(most);
-        let (iterations, runs) = (tally.iterations, tally.runs);
+        let (mut iterations, runs) = (tally.iterations, tally.runs);
         let Some(best) = tally.best else {
             let note = Some("no start reached this l2 without overlap; nothing is proved".to_owned());
             return LimitOutcome {
@@ -384,7 +415,16 @@ impl<'a> ExactMethod<'a> {
             };
         };
         let l1 = best.x.p[0];
-        figures.own_image_force = Some(self.own_image_force(cell, &best));
+        figures.own_image_force = Some(own_image_force(&self.models[cell], &best.contacts));
+        let model = &self.models[cell];
+        let across = self.options.across;
+        let family = Family::new(model, direction_deg, across);
+        let gradient = family.gradient(&best.x.p, l2);
+        if across.any() && best.certified {
+            let (free, more) = family.ranges(model, &best, l2, cancel);
+            figures.free = Some(free);
+            iterations += more;
+        }
         let residual = Some((-best.certificate.smallest_gap).max(0.0));
         figures.contacts = best.contacts;
         figures.links_ok = Some(best.links_ok);
@@ -398,15 +438,8 @@ impl<'a> ExactMethod<'a> {
         if status == Status::Uncertified {
             figures.l1_uncertified = Some(l1);
         }
-        let gradient = target_gradient(direction_deg, l1, l2);
         let note = above_bound.then(|| format!("l1 = {l1} lies above its proven bound {most}: one of them is wrong"));
         LimitOutcome { status, state: best.x.state, gradient, residual, iterations, runs, note, exact: Some(figures) }
-    }
-
-    fn own_image_force(&self, cell: usize, solve: &Solve) -> f64 {
-        let element = |ring: usize| self.models[cell].rings[ring].element;
-        let own = solve.contacts.iter().filter(|c| element(c.pair.ring_a) == element(c.pair.ring_b));
-        own.map(|c| c.force).fold(0.0, f64::max)
     }
 
     /// Starts of a cell: the design's state, every element moved and turned at random, but no circle across another.
@@ -416,7 +449,7 @@ impl<'a> ExactMethod<'a> {
             let seed = self.options.seed.wrapping_mul(0x9e37_79b9).wrapping_add(k as u64);
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
             let state = shaken_from(model, &model.start, SHAKES[k % SHAKES.len()], &mut rng);
-            Strained { state, l1: 0.0, l2: 0.0 }
+            Strained::start(state)
         })
     }
 }
@@ -440,17 +473,6 @@ impl Tally {
     }
 }
 
-/// A primitive cell's state repeated over the cell of `model`.
-fn tiled(model: &Model, state: &State) -> State {
-    let copies = model.cell.cosets();
-    let poses = copies.iter().flat_map(|&coset| {
-        let shift = state.translation(coset);
-        state.poses.iter().map(move |pose| Pose { position: pose.position + shift, ..*pose })
-    });
-    let [a1, a2] = model.cell.vectors(state.a1, state.a2);
-    State { poses: poses.collect(), a1, a2 }
-}
-
 struct Search<'a> {
     model: &'a Model,
     seed: u64,
@@ -467,8 +489,8 @@ impl Search<'_> {
         self.runs += 1;
         let model = self.model;
         let mut at = from;
-        if at.l2 != self.l2 {
-            let pull = self.family.approach(at.l2, self.l2);
+        if at.l2 != self.l2 && !self.family.across.lateral_free {
+            let pull = self.family.approach(&at, self.l2);
             let program = SheetProgram::new(model, &pull);
             let enough = (self.l2 - at.l2).abs() - 1e-9;
             let start = program.posed(at.state, vec![at.l1, 0.0]);
@@ -478,11 +500,12 @@ impl Search<'_> {
             if end.point.p[1] < enough - 1e-9 || end.violation > 1e-6 {
                 return None;
             }
-            at = Strained { l1: end.point.p[0], state: end.point.state, l2: self.l2 };
+            at = Strained { l1: end.point.p[0], state: end.point.state, l2: self.l2, shear: at.shear };
         }
         let pull = self.family.pull(self.l2);
         let mut program = SheetProgram::new(model, &pull);
-        let x = program.posed(at.state, vec![at.l1]);
+        let p = self.family.parameters(&at);
+        let x = program.posed(at.state, p);
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed ^ self.runs);
         let kicks = if model.cell.copies() > 1 { LARGER_CELL_KICKS } else { KICKS };
         let found = climb(model, &mut program, x, kicks, &mut rng, self.cancel);

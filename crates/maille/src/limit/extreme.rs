@@ -182,5 +182,5 @@ fn pull(model: &Model, what: Extreme, lattice_free: bool) -> Pull {
         let rates = [[base[0].normalize(), Vec3::zeros()], [Vec3::zeros(), Vec3::x()], [Vec3::zeros(), Vec3::y()]];
         parameters.extend(rates.map(|rate| Parameter { rate, ..Parameter::default() }));
     }
-    Pull { base, parameters }
+    Pull { base, parameters, metric: None }
 }

@@ -1,9 +1,13 @@
 //! The limit of one pull, by the thesis's energy method or by the exact one; and extremes that are no pulls.
 
+pub mod boundary;
 mod climb;
 pub mod energy;
 pub mod exact;
 pub mod extreme;
+mod pull;
+pub mod sphere;
+pub mod strain;
 
 use crate::{
     bound::{BindingChain, BoundKind},
@@ -58,4 +62,15 @@ pub struct ExactFigures {
     pub l1_uncertified: Option<f64>,
     /// Loaded contacts.
     pub contacts: Vec<Contact>,
+    /// Where something was free: the ranges in which it can be at the limit.
+    pub free: Option<FreeRanges>,
+}
+
+/// Least and largest value found at a limit, of l2 and of the shear γ; both the same where it was held.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FreeRanges {
+    /// Of l2.
+    pub l2: [f64; 2],
+    /// Of γ.
+    pub shear: [f64; 2],
 }

@@ -1,0 +1,223 @@
+//! `maille boundary`: the surface of all in-plane strains of a sheet, as a table, meshes and a figure.
+
+use crate::{
+    exit::{self, wrong},
+    input::{Input, file_name},
+    interrupt,
+    map::pool,
+    numbers::{parse_cell, positive},
+    output::{self, say},
+    progress::Progress,
+};
+use maille::{
+    lattice::Cell,
+    limit::boundary::{Boundary, BoundaryOptions, BoundaryVertex, boundary},
+    record::Status,
+};
+use maille_io::{
+    boundary::{BoundaryHead, boundary_csv, boundary_obj, boundary_ply, journal_head, journal_line, read_journal},
+    plot::{boundary_svg, svg_to_png},
+    record::input_hash,
+};
+use miette::{IntoDiagnostic, Result, WrapErr};
+use serde_json::json;
+use std::{
+    collections::BTreeMap,
+    fs,
+    io::Write,
+    path::{Path, PathBuf},
+    process::ExitCode,
+    sync::{Mutex, atomic::Ordering},
+    time::Instant,
+};
+
+/// The closed surface of all in-plane strains that a sheet can have
+///
+/// Rays from the written lattice in the space of Green strains (E_xx, E_yy, E_xy, the tensor shear), each to the farthest
+/// certified state, with the proven outer bound; more rays where the surface bends. Writes a folder with boundary.csv (one row
+/// a vertex: where the straight way is first stopped, and the farthest state), boundary.obj and boundary.ply (the mesh),
+/// boundary.svg and boundary.png (three sections and a view) and boundary.jsonl (every state). The same command again goes on
+/// where the last one stopped.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  maille boundary european-4-in-1
+  maille boundary 1.1 --tolerance 0.005 --vertices 500 --out results/surface-1.1
+
+Exit codes: 0 every ray has a certified end, 5 some have none, 130 interrupted.")]
+pub struct Args {
+    /// A built-in design (see `maille designs`), a TOML file, or - for standard input
+    design: String,
+    /// Rays are added until the surface is expected within this strain of its triangles
+    #[arg(long, default_value_t = BoundaryOptions::default().tolerance, value_parser = positive)]
+    tolerance: f64,
+    /// Vertices at most
+    #[arg(long, default_value_t = 1500, value_parser = clap::value_parser!(u32).range(162..=100_000))]
+    vertices: u32,
+    /// Starts of each ray beside its neighbours' states
+    #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    starts: u32,
+    /// Cell: 1x1, 2x1, …, or an integer matrix as "1,0;-1,2"
+    #[arg(long, default_value = "1x1", value_parser = parse_cell)]
+    cell: Cell,
+    /// Minor radius of every ring that gives none, in the file's unit
+    #[arg(long, value_parser = positive)]
+    minor_radius: Option<f64>,
+    /// Seed of the shaking
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Folder of the files [default: maille-out/DESIGN-boundary]
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// Replace a surface of other inputs in that folder
+    #[arg(long)]
+    overwrite: bool,
+    /// Threads [default: all cores]; results do not depend on it
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+    /// No progress and no summary
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+const JOURNAL: &str = "boundary.jsonl";
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<ExitCode> {
+    let input = Input::read(&args.design, args.minor_radius)?;
+    let model = input.compile(&input.design, args.cell)?;
+    let options = BoundaryOptions {
+        tolerance: args.tolerance,
+        most: args.vertices as usize,
+        starts: args.starts as usize,
+        seed: args.seed,
+    };
+    let usual = || PathBuf::from("maille-out").join(format!("{}-boundary", file_name(&input.design.name)));
+    let out = args.out.clone().unwrap_or_else(usual);
+    let parameters = json!({ "boundary": options, "cell": args.cell.to_string() });
+    let head = BoundaryHead {
+        program_version: env!("CARGO_PKG_VERSION").into(),
+        input_hash: input_hash(&input.design, &parameters),
+        design: input.design.name.clone(),
+    };
+    let (known, journal) = open(&out, &head, args.overwrite)?;
+    if !known.is_empty() && !args.quiet {
+        eprintln!("{} rays are in {} already", known.len(), out.display());
+    }
+    let cancel = interrupt::flag()?;
+    let begun = Instant::now();
+    let progress = Progress::new(0, args.quiet);
+    let journal = Mutex::new((journal, None));
+    let found = |number: usize, vertex: &BoundaryVertex| {
+        let mut journal = journal.lock().unwrap_or_else(|e| e.into_inner());
+        if let Err(error) = journal.0.write_all(journal_line(number, vertex).as_bytes()) {
+            journal.1.get_or_insert(error);
+            cancel.store(true, Ordering::Relaxed);
+        }
+        progress.step(format!("ray {number}"));
+    };
+    let pool = pool(args.threads)?;
+    let mut planned = |rays: usize| progress.more(rays as u64);
+    let surface = pool.install(|| boundary(&model, &options, &known, &cancel, &mut planned, &found));
+    progress.finish();
+    if let Some(error) = journal.into_inner().unwrap_or_else(|e| e.into_inner()).1 {
+        return Err(error).into_diagnostic().wrap_err_with(|| format!("cannot write {}", out.join(JOURNAL).display()));
+    }
+    write(&out, &input, &surface, &options)?;
+    if !args.quiet {
+        summary(&out, &input, &surface, known.len(), begun.elapsed().as_secs_f64());
+    }
+    let interrupted = !surface.complete;
+    if interrupted && !args.quiet {
+        eprintln!("interrupted; the same command goes on from here");
+    }
+    let certified = |v: &BoundaryVertex| matches!(v.status, Status::Global | Status::Local);
+    Ok(ExitCode::from(match () {
+        () if interrupted => exit::INTERRUPTED,
+        () if !surface.vertices.iter().all(certified) => exit::INCOMPLETE,
+        () => exit::DONE,
+    }))
+}
+
+/// The vertices of an earlier run, and the journal to go on with.
+fn open(out: &Path, head: &BoundaryHead, overwrite: bool) -> Result<(BTreeMap<usize, BoundaryVertex>, fs::File)> {
+    let path = out.join(JOURNAL);
+    if out.is_file() {
+        let problem = format!("{} is a file; the surface is a folder", out.display());
+        return Err(wrong(exit::USAGE, problem, "name another folder with --out"));
+    }
+    let context = || format!("cannot write {}", path.display());
+    fs::create_dir_all(out).into_diagnostic().wrap_err_with(context)?;
+    let mut known = BTreeMap::new();
+    match fs::read_to_string(&path) {
+        Ok(text) if !overwrite => match read_journal(&text) {
+            Some((old, vertices)) if old == *head => known = vertices,
+            Some(_) => {
+                let problem = format!("{} holds a surface of other inputs", out.display());
+                return Err(wrong(
+                    exit::RECORD,
+                    problem,
+                    "name another folder with --out, or replace it with --overwrite",
+                ));
+            }
+            None => {
+                let problem = format!("{} is damaged", path.display());
+                return Err(wrong(exit::RECORD, problem, "compute it again with --overwrite"));
+            }
+        },
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+            return Err(error).into_diagnostic().wrap_err_with(|| format!("cannot read {}", path.display()));
+        }
+        _ => {}
+    }
+    // Written anew, so that a line that was cut off does not stay.
+    let lines: String = known.iter().map(|(number, vertex)| journal_line(*number, vertex)).collect();
+    output::write(&path, (journal_head(head) + &lines).as_bytes())?;
+    let journal = fs::OpenOptions::new().append(true).open(&path).into_diagnostic().wrap_err_with(context)?;
+    Ok((known, journal))
+}
+
+fn write(out: &Path, input: &Input, surface: &Boundary, options: &BoundaryOptions) -> Result<()> {
+    let name = &input.design.name;
+    let title = format!("Attainable strains of {name}");
+    let caption = vec![format!(
+        "{} rays, {} triangles; between the rays the surface is expected within {:.1e} of the triangles (asked: {:.1e}). \
+         Beyond its bound no state of any cell lies on a ray.",
+        surface.vertices.len(),
+        surface.triangles.len(),
+        surface.arch,
+        options.tolerance,
+    )];
+    let svg = boundary_svg(surface, &title, caption);
+    let png = svg_to_png(&svg, 2.0).into_diagnostic().wrap_err("cannot draw the figure")?;
+    output::write(&out.join("boundary.csv"), boundary_csv(surface).as_bytes())?;
+    output::write(&out.join("boundary.obj"), boundary_obj(surface, &title).as_bytes())?;
+    output::write(&out.join("boundary.ply"), boundary_ply(surface, &title).as_bytes())?;
+    output::write(&out.join("boundary.svg"), svg.as_bytes())?;
+    output::write(&out.join("boundary.png"), &png)
+}
+
+fn summary(out: &Path, input: &Input, surface: &Boundary, known: usize, wall_s: f64) {
+    let vertices = &surface.vertices;
+    say!("{}: {} rays, {} triangles", input.design.name, vertices.len(), surface.triangles.len());
+    for (k, name) in ["exx", "eyy", "exy"].into_iter().enumerate() {
+        let ends = vertices.iter().filter_map(|v| Some(v.point(v.distance?)[k]));
+        let (least, most) = ends.fold((0.0f64, 0.0f64), |(low, high), x| (low.min(x), high.max(x)));
+        say!("  {name}  {least:>12.6} to {most:.6}");
+    }
+    for status in Status::ALL {
+        let count = vertices.iter().filter(|v| v.status == status).count();
+        if count > 0 {
+            say!("  {count} {}", status.name().replace("l2-", ""));
+        }
+    }
+    let apart = |v: &&BoundaryVertex| v.distance.zip(v.first).is_some_and(|(far, first)| far - first > 1e-7);
+    let count = vertices.iter().filter(apart).count();
+    say!("  {count} rays go further than where the straight way is first stopped");
+    say!("  largest expected distance between surface and triangles {:.2e}", surface.arch);
+    say!(
+        "{} rays in {wall_s:.1} s; look at {}",
+        vertices.len().saturating_sub(known),
+        out.join("boundary.png").display()
+    );
+}

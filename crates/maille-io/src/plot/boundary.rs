@@ -1,0 +1,184 @@
+//! The surface of attainable strains: three sections through the written lattice, with the proven bound, and a view in space.
+
+use super::canvas::{Anchor, Canvas, Stroke};
+use super::frame::{Entry, Frame, GRID, INK, Layout, RIM, SOFT, style};
+use super::look::{self, Look};
+use super::scale::Scale;
+use crate::boundary::{colour, point, triangles};
+use maille::{limit::boundary::Boundary, record::Status};
+
+/// Names of the coordinates.
+const NAMES: [&str; 3] = ["E_xx", "E_yy", "E_xy"];
+/// Side of a panel, and where the four of them begin.
+const SIDE: f64 = 240.0;
+const PANELS: [[f64; 2]; 4] = [[70.0, 122.0], [380.0, 122.0], [70.0, 430.0], [380.0, 430.0]];
+/// The coordinate that is 0 in each section, and the two that are drawn.
+const SECTIONS: [[usize; 3]; 3] = [[2, 0, 1], [1, 0, 2], [0, 1, 2]];
+/// Where the eye is: turned about E_xy, then raised.
+const TURN: f64 = -0.6;
+const RAISE: f64 = 0.45;
+const BOUND: &str = "#8a8a8a";
+
+/// The figure, as SVG.
+pub fn boundary_svg(boundary: &Boundary, title: &str, caption: Vec<String>) -> String {
+    let solid: Vec<[f64; 3]> = boundary.vertices.iter().map(point).collect();
+    let bound: Vec<[f64; 3]> =
+        boundary.vertices.iter().map(|v| v.point(v.bound.or(v.distance).unwrap_or_default())).collect();
+    let sample = |rgb: [u8; 3], label: &str| Entry::Sample {
+        look: Look { color: hex(rgb), width: 6.0, ..look::hollow() },
+        line: true,
+        marker: false,
+        label: label.into(),
+    };
+    let statuses = [Status::Global, Status::Local, Status::Uncertified];
+    let labels = ["proved: the bound is attained", "certified", "not certified"];
+    let there = |status: Status| boundary.vertices.iter().any(|v| colour(v.status) == colour(status));
+    let mut legend = vec![Entry::Heading("Surface".into())];
+    legend
+        .extend(statuses.into_iter().zip(labels).filter(|(s, _)| there(*s)).map(|(s, label)| sample(colour(s), label)));
+    legend.push(Entry::Sample {
+        look: Look { color: BOUND.into(), width: 1.4, dash: "", ..look::hollow() },
+        line: true,
+        marker: false,
+        label: "proven bounds of the rays, joined".into(),
+    });
+    legend.push(Entry::Note("circle: the sheet as written".into()));
+    let frame = Frame {
+        title: title.to_owned(),
+        subtitle: "All in-plane strains of the sheet: Green strain E, E_xy the tensor shear (no unit)".into(),
+        legend,
+        caption,
+    };
+    frame.svg(Layout::Beside, PANELS[3][1] + SIDE + 46.0, |canvas| {
+        for (place, [zero, x, y]) in PANELS.into_iter().zip(SECTIONS) {
+            section(canvas, place, boundary, (&solid, &bound), [zero, x, y]);
+        }
+        view(canvas, PANELS[3], boundary, &solid);
+    })
+}
+
+fn hex([r, g, b]: [u8; 3]) -> String {
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+/// Where the triangles cross the plane on which coordinate `zero` is 0, with the corner nearest to each piece.
+fn cut(boundary: &Boundary, points: &[[f64; 3]], zero: usize) -> Vec<([[f64; 3]; 2], usize)> {
+    let mut out = Vec::new();
+    for corners in triangles(boundary) {
+        let mut ends = Vec::new();
+        for (a, b) in [(0, 1), (1, 2), (2, 0)].map(|(i, j)| (corners[i], corners[j])) {
+            let (p, q) = (points[a], points[b]);
+            // A corner on the plane belongs to the upper side.
+            if (p[zero] >= 0.0) != (q[zero] >= 0.0) {
+                let share = p[zero] / (p[zero] - q[zero]);
+                ends.push((std::array::from_fn(|i| p[i] + share * (q[i] - p[i])), if share < 0.5 { a } else { b }));
+            }
+        }
+        if let [(p, near), (q, _)] = ends[..] {
+            out.push(([p, q], near));
+        }
+    }
+    out
+}
+
+fn section(
+    canvas: &mut Canvas,
+    [left, top]: [f64; 2],
+    boundary: &Boundary,
+    (solid, bound): (&[[f64; 3]], &[[f64; 3]]),
+    [zero, x, y]: [usize; 3],
+) {
+    let pieces = cut(boundary, solid, zero);
+    // One unit is as long on both axes, and the surface fills the panel; of the bound what fits is shown.
+    let range = |axis: usize| {
+        let ends = pieces.iter().flat_map(|(ends, _)| ends).map(move |p| p[axis]);
+        ends.fold((0.0f64, 0.0f64), |(low, high), v| (low.min(v), high.max(v)))
+    };
+    let (of_x, of_y) = (range(x), range(y));
+    let span = 1.16 * (of_x.1 - of_x.0).max(of_y.1 - of_y.0).max(1e-9);
+    let middle = [0.5 * (of_x.0 + of_x.1), 0.5 * (of_y.0 + of_y.1)];
+    let unit = SIDE / span;
+    let at =
+        |p: &[f64; 3]| [left + SIDE / 2.0 + (p[x] - middle[0]) * unit, top + SIDE / 2.0 - (p[y] - middle[1]) * unit];
+    let scale = Scale::new(0.0, [-span / 2.0, span / 2.0].into_iter(), 5);
+    let step = scale.ticks.windows(2).map(|w| w[1] - w[0]).next().unwrap_or(span);
+    for k in -40..=40 {
+        let value = f64::from(k) * step;
+        let mut p = [0.0; 3];
+        (p[x], p[y]) = (value, value);
+        let [px, py] = at(&p);
+        if px >= left && px <= left + SIDE {
+            canvas.line([px, top], [px, top + SIDE], Stroke::solid(GRID, 1.0));
+            canvas.text([px, top + SIDE + 15.0], style(11.0, INK, Anchor::Middle), &scale.label(value));
+        }
+        if py >= top && py <= top + SIDE {
+            canvas.line([left, py], [left + SIDE, py], Stroke::solid(GRID, 1.0));
+            canvas.text([left - 5.0, py + 4.0], style(11.0, INK, Anchor::End), &scale.label(value));
+        }
+    }
+    let inside = |[px, py]: [f64; 2]| (left..=left + SIDE).contains(&px) && (top..=top + SIDE).contains(&py);
+    for ([p, q], _) in cut(boundary, bound, zero) {
+        if inside(at(&p)) && inside(at(&q)) {
+            canvas.line(at(&p), at(&q), Stroke::solid(BOUND, 0.9));
+        }
+    }
+    for ([p, q], near) in &pieces {
+        let color = hex(colour(boundary.vertices[*near].status));
+        canvas.line(at(p), at(q), Stroke::solid(&color, 2.0));
+    }
+    canvas.circle(at(&[0.0; 3]), 3.0, "#ffffff", Stroke::solid(INK, 1.2));
+    canvas.text([left + SIDE / 2.0, top + SIDE + 32.0], style(12.0, INK, Anchor::Middle), NAMES[x]);
+    let label = format!("{} up, {} = 0", NAMES[y], NAMES[zero]);
+    canvas.text([left, top - 7.0], style(12.0, INK, Anchor::Start), &label);
+}
+
+/// The surface from the side, far triangles first, lit from the eye. Each axis is stretched to the same length.
+fn view(canvas: &mut Canvas, [left, top]: [f64; 2], boundary: &Boundary, points: &[[f64; 3]]) {
+    let size: [f64; 3] = std::array::from_fn(|i| {
+        let (low, high) = points.iter().fold((0.0f64, 0.0f64), |(l, h), p| (l.min(p[i]), h.max(p[i])));
+        (high - low).max(1e-9)
+    });
+    let center: [f64; 3] = std::array::from_fn(|i| {
+        let (low, high) = points.iter().fold((0.0f64, 0.0f64), |(l, h), p| (l.min(p[i]), h.max(p[i])));
+        0.5 * (low + high)
+    });
+    // Right, up and towards the eye.
+    let seen = |p: &[f64; 3]| -> [f64; 3] {
+        let [x, y, z] = std::array::from_fn(|i| (p[i] - center[i]) / size[i]);
+        let (across, deep) = (x * TURN.cos() - y * TURN.sin(), x * TURN.sin() + y * TURN.cos());
+        [across, z * RAISE.cos() + deep * RAISE.sin(), -deep * RAISE.cos() + z * RAISE.sin()]
+    };
+    let unit = 0.72 * SIDE;
+    let at = |p: &[f64; 3]| {
+        let [u, v, _] = seen(p);
+        [left + SIDE / 2.0 + u * unit, top + SIDE / 2.0 - v * unit]
+    };
+    let mut faces: Vec<(f64, &[usize; 3])> =
+        triangles(boundary).map(|c| (c.iter().map(|k| seen(&points[*k])[2]).sum(), c)).collect();
+    faces.sort_by(|a, b| a.0.total_cmp(&b.0));
+    for (_, corners) in faces {
+        let [a, b, c] = corners.map(|k| seen(&points[k]));
+        let (e, f): ([f64; 3], [f64; 3]) = (std::array::from_fn(|i| b[i] - a[i]), std::array::from_fn(|i| c[i] - a[i]));
+        let n = [e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]];
+        let length = n.iter().map(|x| x * x).sum::<f64>().sqrt().max(1e-300);
+        let light = 0.5 + 0.5 * (0.3 * n[0] + 0.4 * n[1] + 0.87 * n[2]).abs() / length;
+        let rank = |k: &usize| match boundary.vertices[*k].status {
+            Status::Global => 0,
+            Status::Local => 1,
+            _ => 2,
+        };
+        let worst = corners.iter().max_by_key(|k| rank(k)).copied().unwrap_or(corners[0]);
+        let fill = hex(colour(boundary.vertices[worst].status).map(|x| (f64::from(x) * light).min(255.0) as u8));
+        canvas.path(&corners.map(|k| at(&points[k])), true, &fill, Stroke::solid(&fill, 0.6));
+    }
+    let corner = [left + 4.0, top + SIDE + 20.0];
+    for (i, name) in NAMES.iter().enumerate() {
+        let mut p = center;
+        p[i] += 0.16 * size[i];
+        let [u, v, _] = seen(&p);
+        let tip = [corner[0] + 8.0 + u * unit, corner[1] - v * unit];
+        canvas.line([corner[0] + 8.0, corner[1]], tip, Stroke::solid(RIM, 1.4));
+        canvas.text([tip[0] + 3.0, tip[1] + 3.0], style(11.0, SOFT, Anchor::Start), name);
+    }
+    canvas.text([left, top - 7.0], style(12.0, INK, Anchor::Start), "in space, axes scaled alike");
+}

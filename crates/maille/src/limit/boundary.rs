@@ -1,0 +1,166 @@
+//! The closed surface of all in-plane strains that a sheet can have: rays from the written lattice in the space of Green
+//! strains (E_xx, E_yy, E_xy), each as far as it goes.
+//!
+//! Each ray is a query of [`super::strain`] with one parameter. Its first start goes straight from the design's state: where
+//! it is stopped is the first exit. The farthest certified state of all starts, its neighbours' states among them, is the
+//! vertex. Where the two differ the ray has left and entered the set again, or the straight way is blocked.
+
+use super::{
+    sphere::Sphere,
+    strain::{StrainMethod, StrainOptions, StrainQuery},
+};
+use crate::{
+    model::Model,
+    record::Status,
+    state::{Pose, State},
+};
+use maille_geometry::Vec3;
+use nalgebra::{Matrix2, Quaternion, UnitQuaternion};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::{
+    collections::BTreeMap,
+    sync::atomic::{AtomicBool, Ordering},
+};
+
+/// How fine the surface is, and how each ray is searched.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BoundaryOptions {
+    /// Rays are added until the surface between them is expected within this of its triangles.
+    pub tolerance: f64,
+    /// Vertices at most.
+    pub most: usize,
+    /// Starts of each ray beside its neighbours' states.
+    pub starts: usize,
+    /// Seed of the shaking.
+    pub seed: u64,
+}
+
+impl Default for BoundaryOptions {
+    fn default() -> Self {
+        BoundaryOptions { tolerance: 1e-3, most: 1500, starts: 2, seed: 1 }
+    }
+}
+
+/// A ray and where it ends. Lengths in units of the reference radius.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BoundaryVertex {
+    /// Unit vector (E_xx, E_yy, E_xy).
+    pub direction: [f64; 3],
+    /// `global`, `local`, `uncertified`, or `l2-not-reached` where nothing was found.
+    pub status: Status,
+    /// Distance of the farthest state.
+    pub distance: Option<f64>,
+    /// Distance of the first exit.
+    pub first: Option<f64>,
+    /// Proven bound of the distance.
+    pub bound: Option<f64>,
+    /// Distinct certified distances that the starts led to.
+    pub n_distinct: u64,
+    /// Lattice vectors of the state.
+    pub lattice: [[f64; 3]; 2],
+    /// Position and quaternion (w, x, y, z) of each element.
+    pub poses: Vec<[f64; 7]>,
+}
+
+impl BoundaryVertex {
+    /// (E_xx, E_yy, E_xy) at the distance `at`.
+    pub fn point(&self, at: f64) -> [f64; 3] {
+        self.direction.map(|x| x * at)
+    }
+
+    fn state(&self) -> State {
+        let pose = |&[x, y, z, w, i, j, k]: &[f64; 7]| Pose {
+            position: Vec3::new(x, y, z),
+            rotation: UnitQuaternion::new_normalize(Quaternion::new(w, i, j, k)),
+        };
+        let [a1, a2] = self.lattice.map(Vec3::from);
+        State { poses: self.poses.iter().map(pose).collect(), a1, a2 }
+    }
+}
+
+/// The surface.
+#[derive(Clone, Debug)]
+pub struct Boundary {
+    /// Its vertices; fewer than the triangles name where the search was stopped.
+    pub vertices: Vec<BoundaryVertex>,
+    /// Corners, counter-clockwise from outside.
+    pub triangles: Vec<[usize; 3]>,
+    /// Largest expected distance between the surface and its triangles.
+    pub arch: f64,
+    /// Whether all rays were solved.
+    pub complete: bool,
+}
+
+/// Divisions of the icosahedron before the surface decides: 162 rays.
+const FIRST: usize = 2;
+
+/// Finds the surface on the current thread pool; the result does not depend on the number of threads. `known` are vertices of
+/// an earlier run by their number. `found` gets each new one, `planned` the number of rays of a pass before it begins.
+pub fn boundary(
+    model: &Model,
+    options: &BoundaryOptions,
+    known: &BTreeMap<usize, BoundaryVertex>,
+    cancel: &AtomicBool,
+    planned: &mut dyn FnMut(usize),
+    found: &(dyn Fn(usize, &BoundaryVertex) + Sync),
+) -> Boundary {
+    let method = StrainMethod::new(
+        std::slice::from_ref(model),
+        StrainOptions { starts: options.starts, seed: options.seed, ..StrainOptions::default() },
+    );
+    let mut sphere = Sphere::new(FIRST);
+    let mut vertices: Vec<BoundaryVertex> = Vec::new();
+    loop {
+        let open = vertices.len()..sphere.directions.len();
+        planned(open.clone().filter(|k| !known.contains_key(k)).count());
+        let solve = |k: usize| -> Option<BoundaryVertex> {
+            if let Some(vertex) = known.get(&k) {
+                return Some(vertex.clone());
+            }
+            let parents = sphere.parents[k].into_iter().filter_map(|parent| vertices.get(parent));
+            let from: Vec<State> = parents.filter(|p| p.distance.is_some()).map(BoundaryVertex::state).collect();
+            let vertex = ray(&method, sphere.directions[k], &from, cancel)?;
+            found(k, &vertex);
+            Some(vertex)
+        };
+        let solved: Vec<Option<BoundaryVertex>> = open.into_par_iter().with_max_len(1).map(solve).collect();
+        let count = solved.len();
+        vertices.extend(solved.into_iter().map_while(|vertex| vertex));
+        let complete = vertices.len() == sphere.directions.len();
+        let points: Vec<Vec3> = vertices.iter().map(|v| Vec3::from(v.point(v.distance.unwrap_or_default()))).collect();
+        let bent = if complete { sphere.bent(&points, options.tolerance) } else { Vec::new() };
+        let room = options.most.saturating_sub(vertices.len());
+        if !complete || bent.is_empty() || room == 0 || count == 0 {
+            let arch =
+                if complete { sphere.bent(&points, 0.0).first().map_or(0.0, |(_, arch)| *arch) } else { f64::NAN };
+            return Boundary { vertices, triangles: sphere.triangles, arch, complete };
+        }
+        let marked: Vec<[usize; 2]> = bent.into_iter().take(room).map(|(edge, _)| edge).collect();
+        sphere.divide(&marked);
+    }
+}
+
+/// One ray; `None` after `cancel`.
+fn ray(method: &StrainMethod<'_>, direction: Vec3, from: &[State], cancel: &AtomicBool) -> Option<BoundaryVertex> {
+    let along = Matrix2::new(direction.x, direction.z, direction.z, direction.y);
+    let query = StrainQuery { held: Matrix2::zeros(), free: vec![along] };
+    let outcome = method.solve(&query, from, cancel);
+    if cancel.load(Ordering::Relaxed) || outcome.status == Status::Interrupted {
+        return None;
+    }
+    let pose = |pose: &Pose| {
+        let (p, q) = (pose.position, pose.rotation.quaternion());
+        [p.x, p.y, p.z, q.w, q.i, q.j, q.k]
+    };
+    Some(BoundaryVertex {
+        direction: direction.into(),
+        status: outcome.status,
+        distance: outcome.value,
+        first: outcome.first,
+        bound: outcome.bound.filter(|bound| bound.is_finite()),
+        n_distinct: outcome.n_distinct,
+        lattice: [outcome.state.a1, outcome.state.a2].map(Into::into),
+        poses: outcome.state.poses.iter().map(pose).collect(),
+    })
+}

@@ -1,0 +1,166 @@
+//! The lattices of one pull, and what of them is free.
+//!
+//! F = (1 + l1) D Dᵀ + (1 + l2) D⊥ D⊥ᵀ + γ D D⊥ᵀ (see [`Across`]): linear in l1, l2, γ. A limit maximises l1 with the free ones of
+//! l2 and γ as further unknowns. At a limit they need not be unique, so two more solves for each give the least and the
+//! largest value that was found with l1 held at the limit.
+
+use super::{FreeRanges, climb::Solve, exact::FREE_SLACK};
+use crate::{
+    constraint::{Parameter, Pull, SheetProgram},
+    lattice::{Across, direction},
+    model::Model,
+    solve::sqp::{SqpOptions, maximize},
+    state::State,
+    topology,
+};
+use maille_geometry::Vec3;
+use nalgebra::{Matrix2, Vector2};
+use std::sync::atomic::AtomicBool;
+
+/// Solves for an end of a range, each from where the last one paused.
+const ROUNDS: usize = 3;
+/// Violation that such an end may have.
+const FEASIBLE: f64 = 1e-9;
+
+/// A state with the strains of its lattice in one direction.
+#[derive(Clone)]
+pub(super) struct Strained {
+    pub state: State,
+    pub l1: f64,
+    pub l2: f64,
+    pub shear: f64,
+}
+
+impl Strained {
+    /// A state with the written lattice.
+    pub fn start(state: State) -> Self {
+        Strained { state, l1: 0.0, l2: 0.0, shear: 0.0 }
+    }
+
+    /// The state of a solve; `l2` is what was held.
+    pub fn at(solve: &Solve, l2: f64, across: Across) -> Self {
+        let mut free = solve.x.p[1..].iter().copied();
+        let l2 = if across.lateral_free { free.next().unwrap_or(l2) } else { l2 };
+        Strained { state: solve.x.state.clone(), l1: solve.x.p[0], l2, shear: free.next().unwrap_or(0.0) }
+    }
+}
+
+/// The lattice family of one pull.
+pub(super) struct Family {
+    reference: [Vec3; 2],
+    along: Vec3,
+    pub across: Across,
+}
+
+impl Family {
+    pub fn new(model: &Model, direction_deg: f64, across: Across) -> Self {
+        let d = direction(direction_deg);
+        Family { reference: [model.start.a1, model.start.a2], along: Vec3::new(d.x, d.y, 0.0), across }
+    }
+
+    fn side(&self) -> Vec3 {
+        Vec3::new(-self.along.y, self.along.x, 0.0)
+    }
+
+    pub fn lattice(&self, l1: f64, l2: f64, shear: f64) -> [Vec3; 2] {
+        let f = self.strained(l1, l2, shear);
+        self.reference.map(|a| {
+            let v = f * a.xy();
+            Vec3::new(v.x, v.y, 0.0)
+        })
+    }
+
+    fn strained(&self, l1: f64, l2: f64, shear: f64) -> Matrix2<f64> {
+        let (d, across): (Vector2<f64>, Vector2<f64>) = (self.along.xy(), self.side().xy());
+        let held = d * d.transpose() * (1.0 + l1) + across * across.transpose() * (1.0 + l2);
+        if shear == 0.0 { held } else { held + d * across.transpose() * shear }
+    }
+
+    /// F at the parameters `p` of [`Self::pull`].
+    pub fn gradient(&self, p: &[f64], l2: f64) -> Matrix2<f64> {
+        let [l2, shear] = self.free_of(p, l2);
+        self.strained(p[0], l2, shear)
+    }
+
+    /// l2 and γ at the parameters `p`.
+    fn free_of(&self, p: &[f64], l2: f64) -> [f64; 2] {
+        let mut free = p[1..].iter().copied();
+        let l2 = if self.across.lateral_free { free.next().unwrap_or(l2) } else { l2 };
+        [l2, free.next().unwrap_or(0.0)]
+    }
+
+    /// Rates of the lattice with l1, l2 and γ.
+    fn rates(&self) -> [[Vec3; 2]; 3] {
+        let (d, side) = (self.along, self.side());
+        [(d, d), (side, side), (d, side)].map(|(to, of)| self.reference.map(|a| to * of.dot(&a)))
+    }
+
+    /// l1 maximised; l2 held at its value or free, from −1 on, γ held at 0 or free.
+    pub fn pull(&self, l2: f64) -> Pull {
+        let [along, lateral, shear] = self.rates();
+        let parameter = |rate, weight| Parameter { rate, weight, ..Parameter::default() };
+        let mut parameters = vec![parameter(along, 1.0)];
+        parameters.extend(self.across.lateral_free.then(|| parameter(lateral, 0.0)));
+        parameters.extend(self.across.shear_free.then(|| parameter(shear, 0.0)));
+        let l2 = if self.across.lateral_free { 0.0 } else { l2 };
+        Pull { base: self.lattice(0.0, l2, 0.0), parameters, metric: None }
+    }
+
+    /// The parameters of [`Self::pull`] at a state.
+    pub fn parameters(&self, at: &Strained) -> Vec<f64> {
+        let lateral = self.across.lateral_free.then_some(at.l2);
+        let shear = self.across.shear_free.then_some(at.shear);
+        [Some(at.l1), lateral, shear].into_iter().flatten().collect()
+    }
+
+    /// From the l2 of a state towards `to`, l1 free, γ as it is there.
+    pub fn approach(&self, at: &Strained, to: f64) -> Pull {
+        let [along, lateral, _] = self.rates();
+        let sign = (to - at.l2).signum();
+        let l1 = Parameter { rate: along, ..Parameter::default() };
+        let most = Some((to - at.l2).abs());
+        let l2 = Parameter { rate: lateral.map(|v| v * sign), weight: 1.0, most, ..Parameter::default() };
+        Pull { base: self.lattice(0.0, at.l2, at.shear), parameters: vec![l1, l2], metric: None }
+    }
+
+    /// Least and largest l2 and γ that are found from the state of a limit, with l1 held there less a slack of
+    /// [`FREE_SLACK`] (1 + l1); with the quadratic programs that it took.
+    pub fn ranges(&self, model: &Model, limit: &Solve, l2: f64, cancel: &AtomicBool) -> (FreeRanges, u64) {
+        let l1 = limit.x.p[0] - FREE_SLACK * (1.0 + limit.x.p[0]);
+        let [l2, shear] = self.free_of(&limit.x.p, l2);
+        let [_, lateral_rate, shear_rate] = self.rates();
+        let wanted = [(self.across.lateral_free, lateral_rate), (self.across.shear_free, shear_rate)];
+        let mut iterations = 0;
+        let mut ends = [[l2; 2], [shear; 2]];
+        for (k, end) in ends.iter_mut().enumerate().filter(|(k, _)| wanted[*k].0) {
+            let from = end[0];
+            for (side, sign) in [-1.0, 1.0].into_iter().enumerate() {
+                // The wanted one first, then the other if it is free.
+                let order = [k, 1 - k].into_iter().filter(|m| wanted[*m].0);
+                let parameters = order.map(|m| Parameter {
+                    rate: wanted[m].1.map(|v| v * sign),
+                    weight: if m == k { 1.0 } else { 0.0 },
+                    ..Parameter::default()
+                });
+                let pull = Pull { base: self.lattice(l1, l2, shear), parameters: parameters.collect(), metric: None };
+                let program = SheetProgram::new(model, &pull);
+                // Not certified: each end is a state that was found, so the range is an inner one.
+                let mut x = program.posed(limit.x.state.clone(), vec![0.0; pull.parameters.len()]);
+                let mut known = Vec::new();
+                for _ in 0..ROUNDS {
+                    let found = maximize(&program, x, known, &SqpOptions::default(), cancel);
+                    iterations += found.iterations as u64;
+                    (x, known) = (found.point, found.multipliers);
+                    if found.violation < FEASIBLE && topology::links_kept(model, &x.state) {
+                        end[side] = from + sign * x.p[0].max(0.0);
+                    }
+                    if found.settled {
+                        break;
+                    }
+                }
+            }
+        }
+        let [l2, shear] = ends;
+        (FreeRanges { l2, shear }, iterations)
+    }
+}

@@ -1,0 +1,147 @@
+//! Limits with width or shear free, and queries in the space of strains.
+
+use maille::{
+    characterize::{Method, characterize},
+    lattice::{Across, Cell},
+    limit::{
+        boundary::{BoundaryOptions, BoundaryVertex, boundary},
+        exact::ExactOptions,
+        strain::{StrainMethod, StrainOptions, StrainOutcome, StrainQuery},
+    },
+    model::Model,
+    record::{LimitRow, Status},
+};
+use nalgebra::Matrix2;
+use std::{
+    collections::BTreeMap,
+    sync::{Mutex, atomic::AtomicBool},
+};
+
+fn model(name: &str) -> Model {
+    let design = maille_io::read_design(name, maille_io::builtin(name).unwrap()).unwrap();
+    Model::compile(&design, Cell::PRIMITIVE).unwrap()
+}
+
+fn rows(model: &Model, directions: &[f64], l2: &[f64], across: Across) -> Vec<LimitRow> {
+    let method = Method::Exact(ExactOptions { across, ..ExactOptions::default() });
+    let found = Mutex::new(Vec::new());
+    let models = std::slice::from_ref(model);
+    let cancel = AtomicBool::new(false);
+    characterize(models, None, &method, directions, l2, &|_| true, &cancel, &|f| found.lock().unwrap().push(f.row));
+    found.into_inner().unwrap()
+}
+
+const LATERAL: Across = Across { lateral_free: true, shear_free: false };
+
+/// Never below the best of a scan of l2, and not above it by more than the scan can miss.
+#[test]
+fn free_width_is_the_best_of_a_scan() {
+    for (name, direction, step) in
+        [("1.1", 0.0, 0.05), ("1.1", 45.0, 0.02), ("3.1", 45.0, 0.02), ("european-4-in-1", 45.0, 0.005)]
+    {
+        let model = model(name);
+        let free = &rows(&model, &[direction], &[0.0], LATERAL)[0];
+        let l1 = free.l1.unwrap_or_else(|| panic!("{name} {direction}: {:?}", free.status));
+        let at = free.l2_min.unwrap();
+        let scan: Vec<f64> = (-2..=2).map(|k| at + f64::from(k) * step).filter(|l2| *l2 > -1.0).collect();
+        let held = rows(&model, &[direction], &scan, Across::HELD);
+        let best = held.iter().filter_map(|row| row.l1).fold(f64::NEG_INFINITY, f64::max);
+        assert!(l1 >= best - 1e-9, "{name} {direction}: {l1} < {best}");
+        assert!(l1 <= best + 0.2 * step, "{name} {direction}: {l1}, scan {best}");
+        assert_eq!((free.lateral.as_deref(), free.shear.as_deref()), (Some("free"), Some("fixed")));
+        assert!(free.l2_min <= free.l2_max && free.bound_l1.unwrap() >= l1 - 1e-9);
+    }
+}
+
+/// Freeing more never costs anything, and along a straight chain the width is not unique.
+#[test]
+fn freeing_more_is_never_less() {
+    let model = model("1.1");
+    let both = Across { lateral_free: true, shear_free: true };
+    let [held, free, all] = [Across::HELD, LATERAL, both].map(|across| rows(&model, &[0.0], &[0.0], across).remove(0));
+    assert_eq!([held.status, free.status, all.status], [Status::Global; 3]);
+    let ends = (free.l2_min.unwrap(), free.l2_max.unwrap());
+    assert!(ends.0 < -0.3 && ends.1 > 0.439, "{ends:?}");
+    assert_eq!((held.l2_min, held.l2_max, held.shear_max), (Some(0.0), Some(0.0), Some(0.0)));
+    assert!((all.l1.unwrap() - 0.44).abs() < 1e-9);
+}
+
+fn unit(i: usize, j: usize) -> Matrix2<f64> {
+    let mut e = Matrix2::zeros();
+    (e[(i, j)], e[(j, i)]) = (1.0, 1.0);
+    e
+}
+
+fn solve(model: &Model, query: &StrainQuery) -> StrainOutcome {
+    let models = std::slice::from_ref(model);
+    StrainMethod::new(models, StrainOptions::default()).solve(query, &[], &AtomicBool::new(false))
+}
+
+/// With the others free E_xx is l1 + l1²/2 of a pull with width and shear free; in between lies the trellis of 1.1.
+#[test]
+fn green_strains_of_known_limits() {
+    let model = model("1.1");
+    let all = |first: usize| {
+        let mut free = vec![unit(0, 0), unit(1, 1), unit(0, 1)];
+        free.swap(0, first);
+        StrainQuery { held: Matrix2::zeros(), free }
+    };
+    let xx = solve(&model, &all(0));
+    assert_eq!(xx.status, Status::Global);
+    assert!((xx.value.unwrap() - (0.44 + 0.5 * 0.44 * 0.44)).abs() < 1e-9, "{xx:?}");
+    // F = diag(1.774, 1) at 45°: E_xx = E_yy = E_xy = ½ E_11, on the line E_xx = E_yy = t + s, E_xy = t − s at s = 0.
+    let diagonal = StrainQuery { held: Matrix2::zeros(), free: vec![Matrix2::from_element(0.5)] };
+    let along = solve(&model, &diagonal);
+    let l1 = 0.774034949;
+    assert_eq!(along.status, Status::Global);
+    assert!((along.value.unwrap() - (l1 + 0.5 * l1 * l1)).abs() < 1e-8, "{along:?}");
+    let held = StrainQuery { held: unit(1, 1) * 0.05, free: vec![unit(0, 0), unit(0, 1)] };
+    let with_width = solve(&model, &held);
+    assert!((with_width.strain[(1, 1)] - 0.05).abs() < 1e-12);
+    assert_eq!(with_width.status, Status::Global);
+    let impossible = StrainQuery { held: unit(1, 1) * 0.6, free: vec![unit(0, 0), unit(0, 1)] };
+    assert_eq!(solve(&model, &impossible).status, Status::L2Unreachable);
+}
+
+/// Published marks of the sheet of European 4-in-1, each strain with the other two free.
+#[test]
+fn european_4_in_1_reaches_the_published_strains() {
+    let model = model("european-4-in-1");
+    for (name, (i, j), mark) in [("xx", (0, 0), 0.064), ("yy", (1, 1), 0.154), ("xy", (0, 1), 0.111)] {
+        let others = [(0, 0), (1, 1), (0, 1)].into_iter().filter(|at| *at != (i, j)).map(|(i, j)| unit(i, j));
+        let query = StrainQuery { held: Matrix2::zeros(), free: std::iter::once(unit(i, j)).chain(others).collect() };
+        let found = solve(&model, &query);
+        let value = found.value.unwrap();
+        assert!(value >= mark, "E_{name} = {value}");
+        assert!(matches!(found.status, Status::Local | Status::Global), "{:?}", found.status);
+        assert!(found.links_ok && found.certificate.unwrap().smallest_gap > -1e-12);
+        assert!(found.bound.unwrap() >= value - 1e-9);
+    }
+}
+
+/// Each ray ends within its bound, the axes where queries end, and a run that goes on from some vertices gives the same.
+#[test]
+fn the_surface_is_that_of_its_rays_and_goes_on() {
+    let model = model("1.1");
+    let options = BoundaryOptions { tolerance: 0.05, most: 200, starts: 1, seed: 1 };
+    let (cancel, planned) = (AtomicBool::new(false), Mutex::new(0));
+    let run = |known: &BTreeMap<usize, BoundaryVertex>| {
+        boundary(&model, &options, known, &cancel, &mut |n| *planned.lock().unwrap() += n, &|_, _| {})
+    };
+    let surface = run(&BTreeMap::new());
+    assert!(surface.complete && surface.vertices.len() > 162 && surface.vertices.len() <= 200);
+    assert_eq!(*planned.lock().unwrap(), surface.vertices.len());
+    for vertex in &surface.vertices {
+        let (distance, bound) = (vertex.distance.unwrap(), vertex.bound.unwrap());
+        assert!(distance > 0.0 && distance <= bound + 1e-9, "{vertex:?}");
+        assert!(vertex.first.unwrap() <= distance + 1e-9);
+        // No chain along x is longer than 3.6 for 2.5.
+        assert!(vertex.point(distance)[0] <= 0.44 + 0.5 * 0.44 * 0.44 + 1e-9);
+    }
+    let global = surface.vertices.iter().filter(|v| v.status == Status::Global).count();
+    assert!(global > surface.vertices.len() / 4, "{global}");
+    let known = surface.vertices.iter().cloned().enumerate().step_by(2).collect();
+    *planned.lock().unwrap() = 0;
+    assert_eq!(run(&known).vertices, surface.vertices);
+    assert_eq!(*planned.lock().unwrap(), surface.vertices.len() / 2);
+}
