@@ -315,7 +315,7 @@ fn record(args: &Args, input: &Input, model: &Model, end: &Simulation) -> Simula
             links_ok: end.links_ok,
             iterations: end.iterations,
             kicks: end.kicks,
-            stalled: end.stalled,
+            unbalanced: end.unbalanced,
             note: end.note.clone(),
         },
     }
@@ -344,8 +344,8 @@ fn summary(args: &Args, model: &Model, end: &Simulation, out: &Path, frames: usi
     if let Some(gap) = end.smallest_gap {
         output::say!("  smallest gap {:.2e}; links {}", gap * model.unit, if end.links_ok { "kept" } else { "LOST" });
     }
-    if end.stalled > 0 {
-        output::say!("  {} steps ended where the energy jumps: their forces do not balance", end.stalled);
+    if end.unbalanced > 0 {
+        output::say!("  {} steps ended without a balance of forces; the next ones made up for it", end.unbalanced);
     }
     if let Some(note) = &end.note {
         output::say!("  {note}");

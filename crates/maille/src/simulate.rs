@@ -155,8 +155,8 @@ pub struct Simulation {
     pub iterations: usize,
     /// Random kicks of all runs.
     pub kicks: usize,
-    /// Steps against the drag that ended at a jump of the energy: their forces do not balance.
-    pub stalled: usize,
+    /// Steps against the drag that ended without a balance of forces: where the energy jumps, or the iterations were done.
+    pub unbalanced: usize,
     /// The states that were reached, one for each position of the pull, the state before it first.
     pub path: Vec<FrameRecord>,
     /// Whether the links are those of the start.
@@ -175,7 +175,7 @@ struct Run<'a> {
     runs: u32,
     iterations: usize,
     kicks: usize,
-    stalled: usize,
+    unbalanced: usize,
     path: Vec<FrameRecord>,
 }
 
@@ -274,7 +274,7 @@ impl Run<'_> {
         }
         let rest = self.minimise(share, &from, 1.0);
         if self.reached(&rest) {
-            self.stalled += usize::from(rest.outcome == Outcome::Stalled);
+            self.unbalanced += usize::from(rest.outcome != Outcome::Minimum);
             let poses = pose_records(self.model, &rest.state);
             self.path.push(FrameRecord { run: self.runs - 1, share, energy: rest.energy, poses });
         }
@@ -308,12 +308,12 @@ impl Run<'_> {
         Rest { state, energy: end.energy, outcome: end.outcome, gradient_norm: end.gradient_norm, miss }
     }
 
-    /// Whether `rest` is the end of a step. Motion goes on from a jump of the energy, rest is not found there.
+    /// Whether `rest` is the end of a step. Motion goes on without a balance of forces: the next step makes up for it.
     fn reached(&self, rest: &Rest) -> bool {
         let ended = match rest.outcome {
             Outcome::Minimum => true,
-            Outcome::Stalled => self.setup.drag.is_some(),
-            Outcome::NotConverged | Outcome::Interrupted | Outcome::Eigen(_) => false,
+            Outcome::Stalled | Outcome::NotConverged => self.setup.drag.is_some(),
+            Outcome::Interrupted | Outcome::Eigen(_) => false,
         };
         ended && rest.miss <= self.setup.options.tau
     }
@@ -326,7 +326,7 @@ impl Run<'_> {
             energy: rest.energy,
             iterations: self.iterations,
             kicks: self.kicks,
-            stalled: self.stalled,
+            unbalanced: self.unbalanced,
             path: self.path.clone(),
             links_ok: topology::links_kept(model, &state),
             smallest_gap: topology::smallest_gap(model, &state).map(|(gap, _)| gap),
@@ -344,7 +344,8 @@ pub fn simulate(
     watch: &mut dyn FnMut(&Accepted<'_>),
 ) -> Result<Simulation, InvalidInput> {
     setup.check(model)?;
-    let mut run = Run { model, setup, cancel, watch, runs: 0, iterations: 0, kicks: 0, stalled: 0, path: Vec::new() };
+    let mut run =
+        Run { model, setup, cancel, watch, runs: 0, iterations: 0, kicks: 0, unbalanced: 0, path: Vec::new() };
     let (mut share, mut rest) = (0.0, run.relax(0.0, &model.start));
     // The last position that was reached, then the first one that was missed.
     let steps = if setup.pull.is_empty() && setup.drag.is_none() { 0 } else { setup.steps.max(1) };
@@ -375,7 +376,7 @@ pub fn simulate(
     let deciding = failed.as_ref().unwrap_or(&rest);
     let (end, note) = match &deciding.outcome {
         Outcome::Minimum => (End::Locked, None),
-        Outcome::Stalled if setup.drag.is_some() => (End::Locked, None),
+        Outcome::Stalled | Outcome::NotConverged if setup.drag.is_some() => (End::Locked, None),
         Outcome::Interrupted => (End::Interrupted, None),
         other => {
             let why = format!("{other:?}, |gradient| {:.2e}", deciding.gradient_norm);

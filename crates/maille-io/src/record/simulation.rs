@@ -40,9 +40,9 @@ pub struct SimulationOutcome {
     pub iterations: usize,
     /// Random kicks.
     pub kicks: usize,
-    /// Steps against a drag whose forces do not balance.
+    /// Steps against a drag that ended without a balance of forces.
     #[serde(default)]
-    pub stalled: usize,
+    pub unbalanced: usize,
     /// What happened, where `end` does not say it.
     pub note: Option<String>,
 }
