@@ -36,8 +36,8 @@ pub struct TooClose {
 pub fn too_close(model: &Model, state: &State, tile: Tile, clearance: f64, mm: f64) -> Option<TooClose> {
     let to_mm = model.unit * mm;
     let wanted = clearance / to_mm;
-    let mut closest: Option<(f64, RingPair)> = None;
-    let (mut pairs, mut factor) = (0, f64::INFINITY);
+    let mut close: Vec<(f64, RingPair)> = Vec::new();
+    let mut factor = f64::INFINITY;
     for pair in topology::close_pairs(model, state, wanted) {
         if !tile.holds(pair.shift) {
             continue;
@@ -49,13 +49,11 @@ pub fn too_close(model: &Model, state: &State, tile: Tile, clearance: f64, mm: f
         if gap >= wanted - 1e-12 {
             continue;
         }
-        pairs += 1;
         factor = factor.min((distance - wanted) / radii);
-        if closest.is_none_or(|(least, _)| gap < least) {
-            closest = Some((gap, pair));
-        }
+        close.push((gap, pair));
     }
-    let (gap, pair) = closest?;
+    let pairs = close.len();
+    let (gap, pair) = topology::closest(close)?;
     // The first cells of the tile that hold both.
     let cell_a = pair.shift.map(|k| (-k).max(0));
     let cell_b = [0, 1].map(|k| cell_a[k] + pair.shift[k]);

@@ -67,10 +67,24 @@ pub fn core_distance(model: &Model, state: &State, pair: &RingPair) -> f64 {
 
 /// Smallest gap of all pairs (negative where tori overlap), with its pair; `None` where no two rings are near.
 pub fn smallest_gap(model: &Model, state: &State) -> Option<(f64, RingPair)> {
-    close_pairs(model, state, model.largest_radius)
-        .into_iter()
-        .map(|p| (core_distance(model, state, &p) - model.contact_distance(p.ring_a, p.ring_b), p))
-        .min_by(|x, y| x.0.total_cmp(&y.0))
+    let pairs = close_pairs(model, state, model.largest_radius);
+    let gap = |p: &RingPair| core_distance(model, state, p) - model.contact_distance(p.ring_a, p.ring_b);
+    closest(pairs.into_iter().map(|pair| (gap(&pair), pair)))
+}
+
+/// Pairs whose gaps differ by less, in reference radii, are as close: rounding would choose between them.
+const AS_CLOSE: f64 = 1e-9;
+
+/// The smallest of `gaps`; of the pairs that are as close the one in the nearest cells, then the first.
+pub fn closest(gaps: impl IntoIterator<Item = (f64, RingPair)>) -> Option<(f64, RingPair)> {
+    let gaps: Vec<(f64, RingPair)> = gaps.into_iter().collect();
+    let least = gaps.iter().map(|(gap, _)| *gap).min_by(f64::total_cmp)?;
+    let near = gaps.into_iter().filter(|(gap, _)| *gap <= least + AS_CLOSE).map(|(_, pair)| pair);
+    let order = |pair: &RingPair| {
+        let [m, n] = pair.shift.map(i32::unsigned_abs);
+        (m + n, pair.ring_a, pair.ring_b, pair.shift)
+    };
+    near.min_by_key(order).map(|pair| (least, pair))
 }
 
 /// The links among `pairs`, sorted.
