@@ -15,6 +15,13 @@ pub struct At {
 
 /// Reads `direction=30,l2=-0.125`; what is not named stays open.
 pub fn parse_at(text: &str) -> Result<At, String> {
+    // What is not in a record has to be computed first, and that is another command's work.
+    if let "roomiest" | "tightest" = text.trim() {
+        return Err(format!(
+            "the {text} state is in no record, and this command computes nothing; save it as a design, and show that:\n  \
+             maille {text} DESIGN --save {text}.toml\n  maille export {text}.toml"
+        ));
+    }
     let mut at = At::default();
     for part in text.split(',') {
         let wrong = || format!("\"{part}\" is no place; give direction=30,l2=-0.125");

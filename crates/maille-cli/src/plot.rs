@@ -12,7 +12,7 @@ use maille_io::{
         Layout, PolarPlot, Quantity, Spread, difference_svg, parameter_words, poisson_svg, polar_svg, steps_svg,
         svg_to_png, times_svg,
     },
-    record::NamedRecord,
+    record::{NamedRecord, Reference, ReferenceCell},
     with_palette,
 };
 use miette::{IntoDiagnostic, Result, WrapErr};
@@ -32,6 +32,7 @@ Examples:
   maille plot r-0.05 r-0.1 r-0.2 --kind difference --quantity l1 -o spread.svg -o spread.png
   maille plot 1.1-free --kind poisson                  of `maille characterize 1.1 --lateral free --out maille-out/1.1-free`
   maille plot maille-out/1.1 --kind times --where 'direction<=90'
+  maille plot 1.1 3.1 --reference widest --where l2=0  each from its widest cell: comparable, whatever their files start from
 
 Kinds: polar shows limits against the direction of the pull, 0\u{b0} right, counter-clockwise; difference the largest \
 less the smallest limit of all directions, against l2; poisson the ratio of width to length where the width was free; steps and times the solver's iterations and the wall time of \
@@ -46,6 +47,10 @@ pub struct Args {
     /// Of a limit: 1 + l1, l1, or lambda1 - 1 [default: stretch; lambda1 for differences, as in the thesis]
     #[arg(long, value_enum)]
     quantity: Option<Shown>,
+    /// The cell that stretches are measured from: of the design file, or of greatest or least area among the start and
+    /// all limits of the record. A line of rings along D at a limit with lattice A is stretched by 1/|A_ref A^-1 D|
+    #[arg(long, value_enum, default_value_t = Cell::Start, value_name = "CELL")]
+    reference: Cell,
     /// Only rows that meet these conditions, as l2=0; may be given several times
     #[arg(long = "where", value_name = "CONDITIONS", value_parser = table::conditions, allow_hyphen_values = true)]
     conditions: Vec<table::Conditions>,
@@ -95,6 +100,27 @@ impl From<Shown> for Quantity {
     }
 }
 
+/// `--reference`.
+#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Cell {
+    /// That of the design file
+    Start,
+    /// Of greatest area
+    Widest,
+    /// Of least area
+    Tightest,
+}
+
+impl From<Cell> for Reference {
+    fn from(cell: Cell) -> Self {
+        match cell {
+            Cell::Start => Reference::Start,
+            Cell::Widest => Reference::Widest,
+            Cell::Tightest => Reference::Tightest,
+        }
+    }
+}
+
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Format {
     Svg,
@@ -115,7 +141,16 @@ pub fn run(args: &Args) -> Result<()> {
     }
     let outputs: Vec<(&Path, Format)> =
         args.output.iter().map(|file| Ok((file.as_path(), format(file)?))).collect::<Result<_>>()?;
+    if args.reference != Cell::Start && (args.kind != Kind::Polar || matches!(args.quantity, Some(Shown::Lambda1))) {
+        return Err(wrong(
+            exit::USAGE,
+            "--reference is for polar plots of the stretch along the pull",
+            "leave --reference out, or choose --kind polar with --quantity stretch or l1",
+        ));
+    }
     let mut records = records::read(&args.records)?;
+    // Of all rows, not only of those that are shown.
+    let mut cells = reference_cells(args.reference, &records)?;
     for named in &mut records {
         for table::Conditions(conditions) in &args.conditions {
             named.keep(conditions);
@@ -124,6 +159,8 @@ pub fn run(args: &Args) -> Result<()> {
     if records.iter().all(|named| named.record.rows.is_empty()) {
         return Err(wrong(exit::USAGE, "no row is left to plot", "`maille table` shows what there is"));
     }
+    let mut shown = records.iter().map(|named| !named.record.rows.is_empty());
+    cells.retain(|_| shown.next() == Some(true));
     records.retain(|named| {
         let some = !named.record.rows.is_empty();
         if !some {
@@ -131,7 +168,10 @@ pub fn run(args: &Args) -> Result<()> {
         }
         some
     });
-    let svg = svg(args, &records)?;
+    for (named, cell) in records.iter_mut().zip(&cells) {
+        named.record.rows.iter_mut().for_each(|row| *row = cell.measured(row));
+    }
+    let svg = svg(args, &records, &cells)?;
     let default: Vec<PathBuf> = match outputs.is_empty() {
         true => ["svg", "png"].map(|ending| usual(args.kind, &records, ending)).into(),
         false => Vec::new(),
@@ -152,7 +192,24 @@ pub fn run(args: &Args) -> Result<()> {
     Ok(())
 }
 
-fn svg(args: &Args, records: &[NamedRecord]) -> Result<String> {
+/// The cell of each record that its stretches are measured from; none where that is the start.
+fn reference_cells(from: Cell, records: &[NamedRecord]) -> Result<Vec<ReferenceCell>> {
+    let cell = |named: &NamedRecord| {
+        named.record.reference(from.into()).ok_or_else(|| {
+            wrong(
+                exit::RECORD,
+                format!("the record {} does not say which lattice its limits have", named.name),
+                "it is older than the columns a1_x to a2_y: compute it again with --overwrite",
+            )
+        })
+    };
+    match from {
+        Cell::Start => Ok(Vec::new()),
+        Cell::Widest | Cell::Tightest => records.iter().map(cell).collect(),
+    }
+}
+
+fn svg(args: &Args, records: &[NamedRecord], cells: &[ReferenceCell]) -> Result<String> {
     let l2 = |named: &NamedRecord| {
         let mut l2: Vec<u64> = named.record.rows.iter().map(|row| row.l2.to_bits()).collect();
         l2.sort_unstable();
@@ -163,19 +220,21 @@ fn svg(args: &Args, records: &[NamedRecord]) -> Result<String> {
     if args.kind != Kind::Difference && records.len() > 1 && curves > MANY {
         eprintln!("note: {curves} curves are many for one figure; --where l2=0 shows those of one l2");
     }
+    let measured = |plot: PolarPlot| match cells {
+        [] => plot,
+        cells => plot.measured_from(args.reference.into(), cells),
+    };
     Ok(match (args.kind, records) {
         (Kind::Polar, [one]) => {
             let (run, rows) = (&one.record.run, &one.record.rows);
             let quantity = args.quantity.map_or_else(Quantity::default, Into::into);
-            polar_svg(
-                &PolarPlot::from_rows(&run.design, rows, quantity, &parameter_words(&run.parameters)),
-                Layout::Beside,
-            )
+            let plot = PolarPlot::from_rows(&run.design, rows, quantity, &parameter_words(&run.parameters));
+            polar_svg(&measured(plot), Layout::Beside)
         }
-        (Kind::Polar, several) => polar_svg(
-            &PolarPlot::from_records(several, args.quantity.map_or_else(Quantity::default, Into::into)),
-            Layout::Beside,
-        ),
+        (Kind::Polar, several) => {
+            let quantity = args.quantity.map_or_else(Quantity::default, Into::into);
+            polar_svg(&measured(PolarPlot::from_records(several, quantity)), Layout::Beside)
+        }
         (Kind::Difference, records) => difference_svg(
             records,
             match args.quantity {

@@ -16,6 +16,7 @@ mod columns;
 mod error;
 mod folder;
 mod limits;
+mod reference;
 mod run;
 mod simulation;
 mod states;
@@ -25,6 +26,7 @@ pub use error::RecordError;
 pub use folder::{NamedRecord, Record, RecordFolder};
 pub(crate) use limits::csv_cell;
 pub use limits::{read_limits, write_limits};
+pub use reference::{Reference, ReferenceCell};
 pub use run::{Counters, RunRecord, input_hash, read_run, write_run};
 pub use simulation::{
     SIMULATION, SimulationOutcome, SimulationRecord, read_frames, read_simulation, write_frames, write_simulation,

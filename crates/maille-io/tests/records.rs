@@ -125,7 +125,7 @@ fn a_damaged_table_is_named_by_line_column_and_value() {
         broken("lambda1,lambda2", "lambda2,lambda1"),
         "out/limits.csv:1: column 9 is \"lambda2\", expected \"lambda1\""
     );
-    assert_eq!(broken(",0.25,", ","), "out/limits.csv:2: 35 columns, expected 36");
+    assert_eq!(broken(",0.25,", ","), "out/limits.csv:2: 39 columns, expected 40");
     assert_eq!(
         message(read_limits("limits.csv", &text[..text.len() - 3])),
         "limits.csv:3: the file ends within this line"
@@ -253,10 +253,16 @@ fn a_record_of_another_schema_is_refused() {
     assert_eq!(found, "run.json:1: schema 2; this program reads schema 1");
 }
 
-/// A table of the first version ends after thirty columns.
+/// Tables of earlier versions end after thirty columns, or after those of a free width.
 #[test]
 fn a_table_without_the_later_columns_is_read() {
     let (rows, _) = two();
+    let lattice = |a: Option<f64>| LimitRow { shear_max: Some(0.25), a1_x: a, a2_y: a, ..rows[0].clone() };
+    let table = write_limits(&[lattice(Some(3.5))]).unwrap().replace("\"1,0;-1,2\"", "2x1");
+    let old: String = table.lines().map(|line| line.split(',').take(36).collect::<Vec<_>>().join(",") + "\n").collect();
+    let cell = "2x1".to_owned();
+    assert_eq!(read_limits("limits.csv", &old).unwrap(), [LimitRow { cell: cell.clone(), ..lattice(None) }]);
+    assert_eq!(read_limits("limits.csv", &table).unwrap(), [LimitRow { cell, ..lattice(Some(3.5)) }]);
     let table = write_limits(&rows).unwrap().replace("\"1,0;-1,2\"", "2x1");
     let old: String = table.lines().map(|line| line.split(',').take(30).collect::<Vec<_>>().join(",") + "\n").collect();
     let read = read_limits("limits.csv", &old).unwrap();

@@ -146,6 +146,8 @@ fn report(
     let word = |free: bool| if free { "free" } else { "fixed" }.to_owned();
     let held = FreeRanges { l2: [task.l2; 2], shear: [0.0; 2] };
     let ranges = if across.any() { exact.and_then(|e| e.free) } else { Some(held) }.filter(|_| earned);
+    // Inside a model the unit is R.
+    let [a1, a2] = model.cell.primitive(outcome.state.a1, outcome.state.a2);
     let row = LimitRow {
         design: model.name.clone(),
         minor_radius,
@@ -183,6 +185,10 @@ fn report(
         l2_max: ranges.map(|r| r.l2[1]),
         shear_min: ranges.map(|r| r.shear[0]),
         shear_max: ranges.map(|r| r.shear[1]),
+        a1_x: number(a1.x),
+        a1_y: number(a1.y),
+        a2_x: number(a2.x),
+        a2_y: number(a2.y),
     };
     let position = |v: Vec3| -> [f64; 3] { (v * model.unit).into() };
     let poses = pose_records(model, &outcome.state);

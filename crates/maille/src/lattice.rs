@@ -54,6 +54,12 @@ impl Cell {
         self.rows.map(|[m, n]| f64::from(m) * a1 + f64::from(n) * a2)
     }
 
+    /// The primitive lattice vectors for those of this cell: the inverse of [`vectors`](Self::vectors).
+    pub fn primitive(&self, a1: Vec3, a2: Vec3) -> [Vec3; 2] {
+        let ([[m11, m12], [m21, m22]], det) = (self.rows.map(|row| row.map(f64::from)), self.det() as f64);
+        [(m22 * a1 - m12 * a2) / det, (m11 * a2 - m21 * a1) / det]
+    }
+
     /// One primitive shift for each copy, (0, 0) first, in lexicographic order after it.
     ///
     /// Two primitive shifts are the same copy when they differ by a vector of this cell's lattice: their

@@ -149,6 +149,18 @@ pub struct LimitRow {
     /// Largest shear found at the limit.
     #[serde(default)]
     pub shear_max: Option<f64>,
+    /// First lattice vector of the design's own cell at the limit, in units of R, whatever cell was solved.
+    #[serde(default)]
+    pub a1_x: Option<f64>,
+    /// Its y.
+    #[serde(default)]
+    pub a1_y: Option<f64>,
+    /// Second lattice vector of the design's own cell at the limit, in units of R.
+    #[serde(default)]
+    pub a2_x: Option<f64>,
+    /// Its y.
+    #[serde(default)]
+    pub a2_y: Option<f64>,
 }
 
 /// Pose of one element: `position + rotation · (offset in the design)`.

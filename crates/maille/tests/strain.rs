@@ -145,3 +145,17 @@ fn the_surface_is_that_of_its_rays_and_goes_on() {
     assert_eq!(run(&known).vertices, surface.vertices);
     assert_eq!(*planned.lock().unwrap(), surface.vertices.len() / 2);
 }
+
+/// 1.1 along x locks with straight chains, l1 = 0.44: F = diag(1.44, 0.875) of the square of side 2.5, in any cell.
+#[test]
+fn a_limit_has_the_lattice_of_the_design_s_own_cell() {
+    let design = maille_io::read_design("1.1", maille_io::builtin("1.1").unwrap()).unwrap();
+    for (cell, scale) in [([[1, 0], [0, 1]], 1.0), ([[1, 1], [-1, 1]], 1.0), ([[1, 0], [0, 1]], 7.0)] {
+        let model = Model::compile(&design.scaled(scale), Cell::new(cell).unwrap()).unwrap();
+        let row = rows(&model, &[0.0], &[-0.125], Across::HELD).remove(0);
+        let lattice = [row.a1_x, row.a1_y, row.a2_x, row.a2_y].map(Option::unwrap);
+        for (found, expected) in lattice.into_iter().zip([1.44 * 2.5, 0.0, 0.0, 0.875 * 2.5]) {
+            assert!((found - expected).abs() < 1e-8, "{cell:?}, {scale}: {lattice:?}");
+        }
+    }
+}

@@ -6,7 +6,7 @@ use super::curve::{Curve, CurveKind};
 use super::frame::{Entry, Frame, GRID, INK, Layout, MARGIN, RIM, SOFT, TOP, style};
 use super::look::{self, Look, MARKER};
 use super::scale::Scale;
-use crate::record::NamedRecord;
+use crate::record::{NamedRecord, Reference, ReferenceCell};
 use maille::design::Design;
 use maille::record::{LimitRow, Status};
 
@@ -85,6 +85,8 @@ pub struct PolarPlot {
     pub caption: Vec<String>,
     /// Whether the width was left to the sheet in all limits.
     pub lateral_free: bool,
+    /// Which cell the radius is measured from.
+    pub reference: Reference,
 }
 
 /// A direction that a plot marks, with its opposite.
@@ -156,6 +158,7 @@ impl PolarPlot {
             check: String::new(),
             caption,
             lateral_free: lateral_free(rows.iter()),
+            reference: Reference::Start,
         }
     }
 
@@ -178,6 +181,57 @@ impl PolarPlot {
             check: String::new(),
             caption,
             lateral_free: lateral_free(records.iter().flat_map(|named| &named.record.rows)),
+            reference: Reference::Start,
+        }
+    }
+
+    /// The same plot with words for the cells that its rows are measured from, one for each record.
+    pub fn measured_from(mut self, reference: Reference, cells: &[ReferenceCell]) -> Self {
+        self.reference = reference;
+        let labels = &self.records.1;
+        let extreme = if reference == Reference::Tightest { "tight" } else { "wide" };
+        let caption = |(i, cell): (usize, &ReferenceCell)| {
+            let whose = labels.get(i).map(|label| format!("{label}:  ")).unwrap_or_default();
+            let place = match cell.limit {
+                Some((direction, l2)) => format!("the limit at {direction}°, l₂ = {}", l2_label(l2)),
+                None => "the start".into(),
+            };
+            let ties = match cell.ties {
+                0 => String::new(),
+                1 => format!(", as {extreme} as 1 other limit"),
+                n => format!(", as {extreme} as {n} other limits"),
+            };
+            format!("{whose}{} cell: {place}, {:.4} R² an element{ties}.", self.cell_word(), cell.area)
+        };
+        let words: Vec<String> = cells.iter().enumerate().map(caption).collect();
+        self.caption.extend(words);
+        self.caption.push("λ: length along the pull, by the length of the same line of rings in that cell; l₂ is relative to the start.".into());
+        self
+    }
+
+    fn cell_word(&self) -> &'static str {
+        match self.reference {
+            Reference::Start => "Starting",
+            Reference::Widest => "Widest",
+            Reference::Tightest => "Tightest",
+        }
+    }
+
+    fn subtitle(&self) -> String {
+        let area = match self.reference {
+            Reference::Start => return self.quantity.subtitle().to_owned(),
+            Reference::Widest => "greatest",
+            Reference::Tightest => "least",
+        };
+        let quantity = if self.quantity == Quantity::Stretch { "stretch λ" } else { "elongation λ − 1" };
+        format!("Largest {quantity} along each direction of pull, from the cell of {area} area")
+    }
+
+    fn symbol(&self) -> &'static str {
+        match (self.reference, self.quantity) {
+            (Reference::Start, quantity) => quantity.symbol(),
+            (_, Quantity::Stretch) => "λ",
+            _ => "λ − 1",
         }
     }
 
@@ -256,7 +310,7 @@ pub fn polar_svg(input: &PolarPlot, layout: Layout) -> String {
     let looks = input.looks();
     let frame = Frame {
         title: input.title.clone(),
-        subtitle: input.quantity.subtitle().to_owned(),
+        subtitle: input.subtitle(),
         legend: legend(input, &looks, &scale),
         caption: input.caption.clone(),
     };
@@ -436,10 +490,14 @@ fn legend(input: &PolarPlot, looks: &[Look], scale: &Scale) -> Vec<Entry> {
         let sample = Entry::Sample { look: kind.look(), line: true, marker: false, label: kind.label().into() };
         heading.into_iter().chain([sample])
     }));
-    out.push(Entry::Heading(format!("Radius: {}", input.quantity.symbol())));
+    out.push(Entry::Heading(format!("Radius: {}", input.symbol())));
     let base = input.quantity.base();
     let place = if scale.low < base { "dotted circle" } else { "centre" };
-    out.push(Entry::Note(format!("{place} {}: undeformed", scale.label(base))));
+    let undeformed = match input.reference {
+        Reference::Start => "undeformed".to_owned(),
+        _ => format!("{} cell", input.cell_word().to_lowercase()),
+    };
+    out.push(Entry::Note(format!("{place} {}: {undeformed}", scale.label(base))));
     if scale.low < base {
         out.push(Entry::Note(format!("centre {}", scale.label(scale.low))));
     }

@@ -15,6 +15,8 @@ pub enum Unit {
     Second,
     /// The unit of lengths in the design's file.
     Length,
+    /// The reference radius R of the design's file.
+    Radius,
 }
 
 impl Unit {
@@ -26,6 +28,7 @@ impl Unit {
             Unit::Degree => Some("deg"),
             Unit::Second => Some("s"),
             Unit::Length => Some(length.unwrap_or("length")),
+            Unit::Radius => Some("R"),
         }
     }
 }
@@ -99,15 +102,15 @@ const fn column(name: &'static str, unit: Unit, values: Values, meaning: &'stati
     Column { name, unit, since: 1, meaning, values }
 }
 
-use Unit::{Degree, Length, None as Word, One, Second};
+use Unit::{Degree, Length, None as Word, One, Radius, Second};
 use Values::{Count, Flag, Number, Text};
 
-/// Columns of the first version: a table that ends after them is read too, the others being empty.
-pub(super) const FIRST_COLUMNS: usize = 30;
+/// Lengths of earlier tables: one that ends after so many columns is read too, the others being empty.
+pub(super) const EARLIER_COLUMNS: [usize; 2] = [30, 36];
 
 /// The columns, in order. A later version may add columns at the end; it renames and moves none.
 #[rustfmt::skip] // a table
-pub const LIMIT_COLUMNS: [Column; 36] = [
+pub const LIMIT_COLUMNS: [Column; 40] = [
     column("design", Word, Text(|r| Some(&r.design)), "name of the design; text, also where it looks like a number"),
     column("minor_radius", Length, Number(|r| r.minor_radius), "common minor radius of the rings; empty where each ring gives its own"),
     column("direction_deg", Degree, Number(|r| Some(r.direction_deg)), "direction of the pull, counter-clockwise from x"),
@@ -144,4 +147,8 @@ pub const LIMIT_COLUMNS: [Column; 36] = [
     column("l2_max", One, Number(|r| r.l2_max), "largest l2 found at the limit; l2 where it is held"),
     column("shear_min", One, Number(|r| r.shear_min), "least shear found at the limit; 0 where it is held"),
     column("shear_max", One, Number(|r| r.shear_max), "largest shear found at the limit; 0 where it is held"),
+    column("a1_x", Radius, Number(|r| r.a1_x), "first lattice vector of the design's own cell at the limit"),
+    column("a1_y", Radius, Number(|r| r.a1_y), "its y"),
+    column("a2_x", Radius, Number(|r| r.a2_x), "second lattice vector of the design's own cell at the limit"),
+    column("a2_y", Radius, Number(|r| r.a2_y), "its y"),
 ];

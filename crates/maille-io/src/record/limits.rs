@@ -1,6 +1,6 @@
 //! `limits.csv`.
 
-use super::columns::{Cell, Column, FIRST_COLUMNS, LIMIT_COLUMNS};
+use super::columns::{Cell, Column, EARLIER_COLUMNS, LIMIT_COLUMNS};
 use super::error::{RecordError, complete};
 use csv::{ReaderBuilder, StringRecord};
 use maille::record::{LimitRow, Status};
@@ -52,7 +52,7 @@ pub fn read_limits(file: &str, text: &str) -> Result<Vec<LimitRow>, RecordError>
         None => return Err(RecordError::malformed(file, 1, "the header is missing")),
         Some(header) => header.map_err(|e| RecordError::malformed(file, 1, e.to_string()))?,
     };
-    let known = if header.len() == FIRST_COLUMNS { FIRST_COLUMNS } else { LIMIT_COLUMNS.len() };
+    let known = EARLIER_COLUMNS.into_iter().find(|&n| n == header.len()).unwrap_or(LIMIT_COLUMNS.len());
     for (i, Column { name: expected, .. }) in LIMIT_COLUMNS.iter().enumerate().take(known) {
         let found = header.get(i).unwrap_or_default();
         if found != *expected {
@@ -114,6 +114,10 @@ fn row(record: &StringRecord) -> Result<LimitRow, String> {
         l2_max: optional(next())?,
         shear_min: optional(next())?,
         shear_max: optional(next())?,
+        a1_x: optional(next())?,
+        a1_y: optional(next())?,
+        a2_x: optional(next())?,
+        a2_y: optional(next())?,
     })
 }
 
