@@ -1,6 +1,7 @@
 //! `maille tightest` and `maille roomiest`: the thickest wire of a weave, and its state with the most room.
 
 use crate::{
+    certificate,
     exit::{self, wrong},
     input::Input,
     interrupt,
@@ -207,8 +208,7 @@ impl Answer<'_> {
         let kept = if found.links_ok { "kept" } else { "LOST" };
         say!("  {} starts led to {} certified values; links {kept}; {wall_s:.1} s", found.n_starts, found.n_distinct);
         if let Some(c) = &found.certificate {
-            let curvature = c.min_curvature.map_or("none free".into(), |x| format!("least curvature {x:.2e}"));
-            say!("  smallest gap {:.1e}, residual {:.1e}, {curvature}", c.smallest_gap, c.dual_residual);
+            say!("  {}", certificate::line(c));
         }
     }
 
@@ -223,16 +223,7 @@ impl Answer<'_> {
             })
         });
         let vector = |a: maille_geometry::Vec3| -> [f64; 3] { (a * self.model.unit).into() };
-        let certificate = found.certificate.as_ref().map(|c| {
-            json!({
-                "smallest_gap": finite(c.smallest_gap * self.model.unit),
-                "dual_residual": finite(c.dual_residual),
-                "complementarity": finite(c.complementarity),
-                "min_multiplier": finite(c.min_multiplier),
-                "min_curvature": c.min_curvature.and_then(finite),
-                "zero_modes": c.zero_modes,
-            })
-        });
+        let certificate = found.certificate.as_ref().map(|c| certificate::json(c, self.model.unit));
         json!({
             "design": self.input.design.name,
             "status": found.status.name(),

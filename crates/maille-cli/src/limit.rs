@@ -1,6 +1,7 @@
 //! `maille limit`: one question in the space of in-plane strains, answered on the screen.
 
 use crate::{
+    certificate,
     exit::{self, wrong},
     input::Input,
     interrupt,
@@ -29,7 +30,7 @@ use std::{process::ExitCode, str::FromStr, time::Instant};
 /// Strains are Green strains of the sheet, E = (C - 1)/2 with C = F^T F, relative to the spacing of the design: exx and eyy
 /// along its axes, exy the tensor shear (half the engineering shear). exx = s + s^2/2 where lines along x are stretched by 1 + s.
 /// What is named by neither --fix nor --free is held at 0. With --minimize all cells up to 3x3 are solved and listed, as a
-/// larger one can fold further; such an answer is the best that was found, and never proved.
+/// larger one can fold further; such an answer is the best that was found, and proved only if its status is global.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -235,29 +236,18 @@ impl Answer<'_> {
             say!("  by cell: {}", cells.collect::<Vec<_>>().join(", "));
         }
         if let Some(c) = &found.certificate {
-            let curvature = c.min_curvature.map_or("none free".into(), |x| format!("least curvature {x:.2e}"));
-            say!("  smallest gap {:.1e}, residual {:.1e}, {curvature}", c.smallest_gap, c.dual_residual);
+            say!("  {}", certificate::line(c));
         }
     }
 
     fn json(&self, wall_s: f64) -> serde_json::Value {
         let found = self.found;
-        let finite = |x: f64| x.is_finite().then_some(x);
         let solved = found.value.is_some();
         let strain = |s: Strain| {
             let value = solved.then(|| s.of(&found.strain));
             (s.name().to_owned(), json!({ "value": value, "is": self.role(s) }))
         };
-        let certificate = found.certificate.as_ref().map(|c| {
-            json!({
-                "smallest_gap": finite(c.smallest_gap * self.model.unit),
-                "dual_residual": finite(c.dual_residual),
-                "complementarity": finite(c.complementarity),
-                "min_multiplier": finite(c.min_multiplier),
-                "min_curvature": c.min_curvature.and_then(finite),
-                "zero_modes": c.zero_modes,
-            })
-        });
+        let certificate = found.certificate.as_ref().map(|c| certificate::json(c, self.model.unit));
         let vector = |a: maille_geometry::Vec3| -> [f64; 3] { (a * self.model.unit).into() };
         json!({
             "design": self.input.design.name,

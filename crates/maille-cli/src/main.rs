@@ -2,6 +2,7 @@
 
 mod at;
 mod boundary;
+mod certificate;
 mod characterize;
 mod check;
 mod completions;

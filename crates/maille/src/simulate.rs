@@ -376,7 +376,6 @@ pub fn simulate(
     let deciding = failed.as_ref().unwrap_or(&rest);
     let (end, note) = match &deciding.outcome {
         Outcome::Minimum => (End::Locked, None),
-        Outcome::Stalled | Outcome::NotConverged if setup.drag.is_some() => (End::Locked, None),
         Outcome::Interrupted => (End::Interrupted, None),
         other => {
             let why = format!("{other:?}, |gradient| {:.2e}", deciding.gradient_norm);

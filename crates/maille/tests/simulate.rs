@@ -55,6 +55,10 @@ fn run(model: &Model, setup: &Setup) -> Simulation {
     end
 }
 
+fn run_unchecked(model: &Model, setup: &Setup) -> Simulation {
+    simulate(model, setup, &AtomicBool::new(false), &mut |_| {}).unwrap()
+}
+
 #[test]
 fn edges_and_names_are_places() {
     let model = sheet("1.1", "3x2");
@@ -245,6 +249,18 @@ fn a_sheet_sinks_against_its_drag() {
     let end = run(&model, &setup);
     let z: f64 = end.state.poses.iter().map(|p| p.position.z).sum::<f64>() / 12.0;
     assert!(end.end == End::Reached && z < -2.5 && z > -2.9, "{z}");
+}
+
+/// A step that is cut off before its pulled edge has arrived is no proof that the sheet has locked.
+#[test]
+fn a_step_that_is_cut_off_does_not_lock() {
+    let model = sheet("1.1", "2x1");
+    let mut setup = setup(&model, "left", Some(("right", Vec3::new(0.8, 0.0, 0.0))), Vec3::zeros());
+    (setup.drag, setup.steps, setup.options.max_iterations) = (Some(4.0), 1, 2);
+    let end = run_unchecked(&model, &setup);
+    assert_eq!(end.end, End::NotConverged, "{:?}", end.note);
+    setup.options.max_iterations = 400;
+    assert_eq!(run_unchecked(&model, &setup).end, End::Reached);
 }
 
 /// 270 unknowns: the sparse solver.

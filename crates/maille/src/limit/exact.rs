@@ -208,13 +208,13 @@ impl<'a> ExactMethod<'a> {
         let (rungs, rung_runs, rung_iterations) = self.rungs(direction_deg, cancel);
         starts.extend(rungs);
         starts.extend(self.fresh(0, 0..fresh));
-        let mut first = self.search(0, direction_deg, l2, starts, most, cancel);
+        let mut first = self.search(0, direction_deg, l2, starts, (most, across), cancel);
         (first.runs, first.iterations) = (first.runs + rung_runs, first.iterations + rung_iterations);
         let near = if first.best.is_none() && !across.any() { self.too_near(direction_deg, l2, most) } else { None };
         if first.best.is_none() && near.is_none() {
             // Not reached: try harder before giving up.
             let more = self.fresh(0, fresh..fresh + MORE_STARTS).collect();
-            let again = self.search(0, direction_deg, l2, more, most, cancel);
+            let again = self.search(0, direction_deg, l2, more, (most, across), cancel);
             first = Tally { runs: first.runs + again.runs, iterations: first.iterations + again.iterations, ..again };
         }
         let reached = first.best.as_ref().map(|b| Strained::at(b, l2, across));
@@ -244,7 +244,7 @@ impl<'a> ExactMethod<'a> {
             // With the width free a solve is long, and folds are found from the smaller cell's state.
             let own = if across.any() { 0 } else { self.options.starts.min(CELL_STARTS) };
             let starts = shaken.chain(self.fresh(larger, 0..own)).collect();
-            let found = self.search(larger, direction_deg, l2, starts, most, cancel);
+            let found = self.search(larger, direction_deg, l2, starts, (most, across), cancel);
             trend.push((larger, found.l1()));
             let better = match (&found.best, &tally.best) {
                 (Some(new), Some(old)) => (new.certified, new.x.p[0]) > (old.certified, old.x.p[0] + SAME_LIMIT),
@@ -317,7 +317,7 @@ impl<'a> ExactMethod<'a> {
                     break;
                 }
                 let Bound::Finite { l1: most, .. } = self.chain.limit(direction_deg, l2) else { break };
-                let found = self.search_held(0, direction_deg, l2, from, most, cancel);
+                let found = self.search(0, direction_deg, l2, from, (most, Across::HELD), cancel);
                 (runs, iterations) = (runs + found.runs, iterations + found.iterations);
                 let Some(best) = &found.best else { break };
                 let rung = Strained::at(best, l2, Across::HELD);
@@ -332,31 +332,6 @@ impl<'a> ExactMethod<'a> {
 
     /// Solves `starts` in one cell until the bound is attained; keeps the best.
     fn search(
-        &self,
-        cell: usize,
-        direction_deg: f64,
-        l2: f64,
-        starts: Vec<Strained>,
-        most: f64,
-        cancel: &AtomicBool,
-    ) -> Tally {
-        self.search_across(cell, direction_deg, l2, starts, (most, self.options.across), cancel)
-    }
-
-    /// The same with width and shear held.
-    fn search_held(
-        &self,
-        cell: usize,
-        direction_deg: f64,
-        l2: f64,
-        starts: Vec<Strained>,
-        most: f64,
-        cancel: &AtomicBool,
-    ) -> Tally {
-        self.search_across(cell, direction_deg, l2, starts, (most, Across::HELD), cancel)
-    }
-
-    fn search_across(
         &self,
         cell: usize,
         direction_deg: f64,

@@ -79,7 +79,7 @@ pub struct StrainOutcome {
     pub n_starts: u64,
     /// Distinct certified values among them, apart by more than 1e-7.
     pub n_distinct: u64,
-    /// Largest p₀ found in each cell that was solved.
+    /// Largest certified p₀ of each cell that was solved.
     pub trend: Vec<(usize, Option<f64>)>,
     /// Quadratic programs.
     pub iterations: u64,
@@ -159,7 +159,9 @@ impl<'a> StrainMethod<'a> {
                 out.iterations += iterations;
                 let Some(solve) = found else { continue };
                 let value = solve.x.p[0];
-                reached = Some(reached.map_or(value, |reached| reached.max(value)));
+                if solve.certified {
+                    reached = Some(reached.map_or(value, |reached| reached.max(value)));
+                }
                 if out.n_starts == 1 {
                     out.first = Some(value);
                 }
