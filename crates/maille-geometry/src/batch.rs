@@ -1,12 +1,13 @@
 //! The minima of many pairs at once: the quick kernel on registers, one pair in each lane.
 //!
 //! Pairs that are certainly too far apart are sorted out first, those that remain fill the lanes, and what the quick
-//! kernel cannot decide goes to [`circle_distance_minima`]. The instruction set is chosen when the program runs; every one
-//! gives the same bits, for [`crate::lane`] has no operation that rounds differently.
+//! kernel cannot decide goes to [`circle_distance_minima`]. The instruction set is chosen when the program runs; two of them
+//! differ by rounding, for some fuse products and sums.
 //!
 //! No closures in the kernels: what is not inlined into the function of an instruction set cannot use it.
 
 use crate::grid::Direction;
+use crate::lane::{Lane, Register};
 use crate::placed::{Block, WIDTH};
 use crate::quick;
 use crate::relative::Relative;
@@ -24,7 +25,7 @@ pub struct Approach {
 }
 
 /// The minima of one pair, in ascending order of distance; none if the circles are farther apart than was asked for.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Approaches {
     pub(crate) found: [Approach; MAX_MINIMA],
     pub(crate) count: usize,
@@ -67,6 +68,12 @@ impl Approaches {
         let count = out.count;
         out.found[..count].sort_unstable_by(|p, q| p.distance.total_cmp(&q.distance));
         out
+    }
+}
+
+impl PartialEq for Approaches {
+    fn eq(&self, other: &Self) -> bool {
+        self.as_slice() == other.as_slice()
     }
 }
 
@@ -157,20 +164,22 @@ impl WithSimd for Work<'_> {
             for index in first..last {
                 all.push(index, &pairs[index]);
             }
-            let mut floors = [0.0; WIDTH];
-            for from in (0..WIDTH).step_by(S::F64_LANES) {
-                all.load(simd, from).floor().store(&mut floors, from);
+            let mut limits = [f64::INFINITY; WIDTH];
+            limits[..all.count].copy_from_slice(&reach[first..last]);
+            let mut beyond = [0.0; WIDTH];
+            let within = if limits == [f64::INFINITY; WIDTH] { WIDTH } else { 0 };
+            for from in (within..WIDTH).step_by(S::F64_LANES) {
+                let limit = Register::load(simd, &limits, from);
+                let (zero, one) = (limit.like(0.0), limit.like(1.0));
+                let is_beyond = all.load(simd, from).is_beyond(limit);
+                <Register<S>>::pick(is_beyond, one, zero).store(&mut beyond, from);
             }
-            let mut within = [false; WIDTH];
-            for lane in 0..all.count {
-                within[lane] = floors[lane] <= reach[first + lane];
-            }
-            if within == [true; WIDTH] {
+            if beyond == [0.0; WIDTH] {
                 simd.vectorize(Solve { block: &all, rows: &mut rows, pairs, out });
                 continue;
             }
             for lane in 0..all.count {
-                if !within[lane] {
+                if beyond[lane] == 1.0 {
                     out[first + lane] = Approaches::NONE;
                     continue;
                 }

@@ -2,7 +2,7 @@
 //!
 //! Where it proves nothing, [`crate::halving`] goes on.
 
-use crate::count::{ARCS, Arcs, Harmonics, changes};
+use crate::count::{ARCS, Arcs, Harmonics, Level, changes};
 use crate::grid::Direction;
 use crate::lane::Lane;
 use crate::relative::Reduced;
@@ -25,44 +25,63 @@ impl<T: Lane> Angle<T> {
         Angle { cos: T::pick(mask, yes.cos, no.cos), sin: T::pick(mask, yes.sin, no.sin) }
     }
 
+    /// A constant.
+    #[inline(always)]
+    pub fn like(self, direction: Direction) -> Self {
+        Angle { cos: self.cos.like(direction.cos), sin: self.cos.like(direction.sin) }
+    }
+
+    /// Turned by an angle of this cosine and sine.
+    #[inline(always)]
+    pub fn turned(self, cos: T, sin: T) -> Self {
+        Angle { cos: self.sin.taken(sin, self.cos * cos), sin: self.cos.fused(sin, self.sin * cos) }
+    }
+
     /// Turned by twice the angle whose tangent is `top / bottom`.
     #[inline(always)]
     pub fn ahead(self, top: T, bottom: T) -> Self {
         let (square, whole) = (top * top, bottom * bottom);
         let inverse = top.like(1.0) / (whole + square);
-        let (cos, sin) = ((whole - square) * inverse, top * bottom * 2.0 * inverse);
-        Angle { cos: self.cos * cos - self.sin * sin, sin: self.sin * cos + self.cos * sin }
+        self.turned((whole - square) * inverse, (top + top) * bottom * inverse)
     }
 }
 
-/// An arc at whose ends G₋ is `low` < 0 and `high` ≥ 0, with one root between.
+/// An arc at whose ends G₋ is negative and positive, with one root between.
 #[derive(Clone, Copy)]
 pub(crate) struct Bracket<T> {
     pub middle: Angle<T>,
     /// tan of a quarter of its width.
     pub edge: T,
-    pub low: T,
-    pub high: T,
+    /// Half of its width, and the turn whose half has the tangent `edge / 2`.
+    half: Angle<T>,
+    part: Angle<T>,
 }
 
 impl<T: Lane> Bracket<T> {
-    /// The arc number `k` of a table.
     #[inline(always)]
-    pub fn arc(table: &Arcs, k: usize, low: T, high: T) -> Self {
-        let Direction { cos, sin } = table.centers[k];
-        Bracket { middle: Angle { cos: low.like(cos), sin: low.like(sin) }, edge: low.like(table.edge), low, high }
+    pub fn new(middle: Angle<T>, edge: T) -> Self {
+        let (one, zero) = (edge.like(1.0), edge.like(0.0));
+        let ahead = Angle { cos: one, sin: zero };
+        Bracket { middle, edge, half: ahead.ahead(edge, one), part: ahead.ahead(edge, one + one) }
+    }
+
+    /// One of the arcs of a level, by its centre.
+    #[inline(always)]
+    pub fn arc(level: &Level, middle: Angle<T>) -> Self {
+        let (half, part) = (Angle::like(middle, level.half), Angle::like(middle, level.part));
+        Bracket { middle, edge: middle.cos.like(level.edge), half, part }
     }
 
     /// As numbers, for the way out of a register and back.
     #[inline(always)]
-    pub fn parts(&self) -> [T; 5] {
-        [self.middle.cos, self.middle.sin, self.edge, self.low, self.high]
+    pub fn parts(&self) -> [T; 3] {
+        [self.middle.cos, self.middle.sin, self.edge]
     }
 
     /// From its numbers.
     #[inline(always)]
-    pub fn of_parts([cos, sin, edge, low, high]: [T; 5]) -> Self {
-        Bracket { middle: Angle { cos, sin }, edge, low, high }
+    pub fn of_parts([cos, sin, edge]: [T; 3]) -> Self {
+        Bracket::new(Angle { cos, sin }, edge)
     }
 
     #[inline(always)]
@@ -70,29 +89,82 @@ impl<T: Lane> Bracket<T> {
         Bracket {
             middle: Angle::pick(mask, yes.middle, no.middle),
             edge: T::pick(mask, yes.edge, no.edge),
-            low: T::pick(mask, yes.low, no.low),
-            high: T::pick(mask, yes.high, no.high),
+            half: Angle::pick(mask, yes.half, no.half),
+            part: Angle::pick(mask, yes.part, no.part),
         }
     }
 
-    /// Where the parabola through G₋ at the ends and in the middle is 0.
+    /// Where a parabola through three values of G₋ is 0: in the middle, at the end on the root's side, and between.
     #[inline(always)]
     pub fn seed(&self, pair: &Reduced<T>) -> Angle<T> {
-        let [middle, _] = pair.factors(self.middle.cos, self.middle.sin);
-        let slope = (self.high - self.low) * 0.5;
-        let bend = (self.high + self.low) * 0.5 - middle;
-        // It has one root between ends of different signs, so this is not negative but for rounding.
-        let root = (slope * slope - bend * middle * 4.0).max(slope.like(0.0)).sqrt();
-        self.middle.ahead(-(middle * self.edge * 2.0), slope + root)
+        let middle = pair.slope(self.middle.cos, self.middle.sin);
+        let (zero, one) = (middle.like(0.0), middle.like(1.0));
+        let side = T::pick(middle.below(zero), one, -one);
+        let at = self.middle.turned(self.half.cos, side * self.half.sin);
+        let end = pair.slope(at.cos, at.sin) * side;
+        let at = self.middle.turned(self.part.cos, side * self.part.sin);
+        let part = pair.slope(at.cos, at.sin) * side;
+        // From −m in the middle it rises over `part` to `end`: −m + u (rise + u bend), 0 ≤ u ≤ 1.
+        let (m, two) = (middle.abs(), one + one);
+        let bend = (part.taken(two, end) - m) * 2.0;
+        let rise = end + m - bend;
+        let root = (bend * 4.0).fused(m, rise * rise).max(zero).sqrt();
+        self.middle.ahead((m + m) * (self.edge * side), (rise + root).max(zero.like(1e-100)))
     }
 
     /// Whether an angle lies on the arc, to rounding.
     #[inline(always)]
     pub fn contains(&self, at: Angle<T>) -> T::Mask {
-        let across = self.middle.cos * at.sin - self.middle.sin * at.cos;
-        let along = self.middle.cos * at.cos + self.middle.sin * at.sin;
+        let across = self.middle.sin.taken(at.cos, self.middle.cos * at.sin);
+        let along = self.middle.cos.fused(at.cos, self.middle.sin * at.sin);
         // tan(δ/2) = sin δ/(1 + cos δ)
-        across.abs().below((along + along.like(1.0)) * self.edge + along.like(1e-12))
+        across.abs().below((along + along.like(1.0)).fused(self.edge, along.like(1e-12)))
+    }
+}
+
+/// H = G₋ G₊ at an angle, and numbers with the signs of G₋ and of G₊, without a root: where H > 0 both have the sign of p,
+/// where H < 0 they have those of −q and q. Near H = 0 rounding may choose; there the coefficients count as doubtful.
+#[derive(Clone, Copy)]
+pub(crate) struct Value<T> {
+    pub product: T,
+    pub minus: T,
+    pub plus: T,
+}
+
+impl<T: Lane> Value<T> {
+    #[inline(always)]
+    pub fn of([p, q, square]: [T; 3]) -> Self {
+        let product = (p * p).fused(square, -(q * q));
+        let outer = product.like(0.0).below(product);
+        Value { product, minus: T::pick(outer, p, -q), plus: T::pick(outer, p, q) }
+    }
+
+    #[inline(always)]
+    pub fn at(pair: &Reduced<T>, cos: T, sin: T) -> Self {
+        Self::of(pair.terms(cos, sin))
+    }
+
+    #[inline(always)]
+    pub fn pick(mask: T::Mask, yes: Self, no: Self) -> Self {
+        Value {
+            product: T::pick(mask, yes.product, no.product),
+            minus: T::pick(mask, yes.minus, no.minus),
+            plus: T::pick(mask, yes.plus, no.plus),
+        }
+    }
+
+    /// How many of G₋ and G₊ change sign on the way to another angle.
+    #[inline(always)]
+    pub fn changes(self, next: Self) -> T {
+        let zero = self.product.like(0.0);
+        zero.more((self.minus * next.minus).below(zero)).more((self.plus * next.plus).below(zero))
+    }
+
+    /// G₋ rises through 0 on the way.
+    #[inline(always)]
+    pub fn rises(self, next: Self) -> T::Mask {
+        let zero = self.product.like(0.0);
+        T::both(self.minus.below(zero), zero.below(next.minus))
     }
 }
 
@@ -100,39 +172,40 @@ impl<T: Lane> Bracket<T> {
 pub(crate) struct Counted<T> {
     /// How many more critical points than known an arc could have.
     pub excess: [T; ARCS],
-    /// G₋ at the first ends of the arcs.
-    pub minus: [T; ARCS],
-    /// G₊ there.
-    pub plus: [T; ARCS],
+    /// At the first ends of the arcs.
+    pub values: [Value<T>; ARCS],
 }
 
 impl<T: Lane> Counted<T> {
     #[inline(always)]
     pub fn new(pair: &Reduced<T>, harmonics: &Harmonics<T>, table: &Arcs) -> Self {
-        let (zero, one) = (pair.radius.like(0.0), pair.radius.like(1.0));
-        let [minus, plus] = at_ends(pair, table);
-        let (turned, doubt) = (harmonics.turned(), harmonics.doubt());
-        let mut counted = Self { excess: [zero; ARCS], minus, plus };
-        let ends = counted.ends();
-        for m in 0..ARCS / 2 {
-            let both = turned.coefficients(m, &ends, table);
-            for half in 0..2 {
-                let k = m + half * (ARCS / 2);
-                let next = (k + 1) % ARCS;
-                let root = T::pick((minus[k] * minus[next]).below(zero), one, zero);
-                let far = T::pick((plus[k] * plus[next]).below(zero), one, zero);
-                counted.excess[k] = changes(&both[half], doubt) - (root + far);
-            }
-        }
+        let values = at_ends(pair, table);
+        let doubt = harmonics.doubt();
+        let mut counted = Self { excess: [doubt; ARCS], values };
+        counted.count::<0>(harmonics, table, doubt);
+        counted.count::<1>(harmonics, table, doubt);
+        counted.count::<2>(harmonics, table, doubt);
+        counted.count::<3>(harmonics, table, doubt);
         counted
+    }
+
+    /// The excess of an arc and of the opposite one.
+    #[inline(always)]
+    fn count<const M: usize>(&mut self, harmonics: &Harmonics<T>, table: &Arcs, doubt: T) {
+        let both = harmonics.coefficients::<M>(&self.ends(), table);
+        for half in 0..2 {
+            let k = M + half * (ARCS / 2);
+            let known = self.values[k].changes(self.values[(k + 1) % ARCS]);
+            self.excess[k] = changes(&both[half], doubt) - known;
+        }
     }
 
     /// H at the first ends of the arcs.
     #[inline(always)]
     pub fn ends(&self) -> [T; ARCS] {
-        let mut ends = self.minus;
-        for k in 0..ARCS {
-            ends[k] = ends[k] * self.plus[k];
+        let mut ends = [self.values[0].product; ARCS];
+        for k in 1..ARCS {
+            ends[k] = self.values[k].product;
         }
         ends
     }
@@ -150,42 +223,36 @@ impl<T: Lane> Counted<T> {
     /// The first and the last arc on which G₋ rises through 0, and how many there are.
     #[inline(always)]
     pub fn rising(&self, table: &Arcs) -> ([Bracket<T>; SLOTS], T) {
-        let (zero, one) = (self.minus[0].like(0.0), self.minus[0].like(1.0));
-        let mut slots = [Bracket::arc(table, 0, self.minus[0], self.minus[1]); SLOTS];
+        let (zero, one) = (self.excess[0].like(0.0), self.excess[0].like(1.0));
+        let mut middles = [Angle { cos: one, sin: zero }; SLOTS];
         let mut count = zero;
         for k in 0..ARCS {
-            let (low, high) = (self.minus[k], self.minus[(k + 1) % ARCS]);
-            let rises = T::both(low.below(zero), zero.below(high));
-            slots[1] = Bracket::pick(rises, Bracket::arc(table, k, low, high), slots[1]);
-            count = count + T::pick(rises, one, zero);
+            let rises = self.values[k].rises(self.values[(k + 1) % ARCS]);
+            let center = Angle::like(middles[0], table.centers[k]);
+            middles[0] = Angle::pick(T::both(rises, count.below(one)), center, middles[0]);
+            middles[1] = Angle::pick(rises, center, middles[1]);
+            count = count.more(rises);
         }
-        for k in (0..ARCS).rev() {
-            let (low, high) = (self.minus[k], self.minus[(k + 1) % ARCS]);
-            let rises = T::both(low.below(zero), zero.below(high));
-            slots[0] = Bracket::pick(rises, Bracket::arc(table, k, low, high), slots[0]);
-        }
-        (slots, count)
+        ([Bracket::arc(&table.levels[0], middles[0]), Bracket::arc(&table.levels[0], middles[1])], count)
     }
 }
 
-/// G₋ and G₊ at the first ends of the arcs; opposite ends share their odd parts.
+/// At the first ends of the arcs; opposite ends share their odd parts.
 #[inline(always)]
-fn at_ends<T: Lane>(pair: &Reduced<T>, table: &Arcs) -> [[T; ARCS]; 2] {
-    let mut out = [[pair.radius; ARCS]; 2];
+fn at_ends<T: Lane>(pair: &Reduced<T>, table: &Arcs) -> [Value<T>; ARCS] {
     let across = pair.radius * pair.tilt_cos;
+    let zero = across.like(0.0);
+    let mut out = [Value { product: zero, minus: zero, plus: zero }; ARCS];
     for k in 0..ARCS / 2 {
-        let Direction { cos, sin } = table.ends[k];
-        let (dx, dy) = (across * cos, pair.radius * sin);
-        let p = pair.p[0] * cos + pair.p[1] * sin;
-        let odd = pair.q[0] * cos + pair.q[1] * sin;
-        let even = pair.q[2] * (2.0 * sin * cos);
-        let (x, y) = (pair.x0 + dx, pair.y0 + dy);
-        let (x_opposite, y_opposite) = (pair.x0 - dx, pair.y0 - dy);
-        let here = p * (x * x + y * y).sqrt();
-        let opposite = -p * (x_opposite * x_opposite + y_opposite * y_opposite).sqrt();
-        let (q, q_opposite) = (even + odd, even - odd);
-        (out[0][k], out[1][k]) = (here - q, here + q);
-        (out[0][k + ARCS / 2], out[1][k + ARCS / 2]) = (opposite - q_opposite, opposite + q_opposite);
+        let (cos, sin) = (zero.like(table.ends[k].cos), zero.like(table.ends[k].sin));
+        let p = pair.p[0].fused(cos, pair.p[1] * sin);
+        let odd = pair.q[0].fused(cos, pair.q[1] * sin);
+        let even = pair.q[2] * zero.like(2.0 * table.ends[k].sin * table.ends[k].cos);
+        let (x, y) = (across.fused(cos, pair.x0), pair.radius.fused(sin, pair.y0));
+        let (x_opposite, y_opposite) = (across.taken(cos, pair.x0), pair.radius.taken(sin, pair.y0));
+        out[k] = Value::of([p, even + odd, x.fused(x, y * y)]);
+        let square = x_opposite.fused(x_opposite, y_opposite * y_opposite);
+        out[k + ARCS / 2] = Value::of([-p, even - odd, square]);
     }
     out
 }

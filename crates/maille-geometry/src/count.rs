@@ -29,20 +29,27 @@ pub(crate) const ARCS: usize = 8;
 /// A coefficient is certain from this on, relative to the largest that H's terms could make.
 const CERTAIN: f64 = 1e-14;
 
+/// Times an arc can be halved, and one.
+pub(crate) const LEVELS: usize = 5;
+
+/// An arc halved so many times.
+pub(crate) struct Level {
+    /// tan of a quarter of its width.
+    pub edge: f64,
+    /// Half of its width.
+    pub half: Direction,
+    /// The turn whose half has the tangent `edge / 2`.
+    pub part: Direction,
+}
+
 /// What does not depend on the pair.
 pub(crate) struct Arcs {
     /// Ends of the arcs, the first again at the end.
     pub ends: [Direction; ARCS + 1],
     /// Centres of the arcs.
     pub centers: [Direction; ARCS],
-    /// T: tan of a quarter of the width.
-    pub edge: f64,
-    /// tan of an eighth of the width.
-    pub half_edge: f64,
-    /// A quarter of the width.
-    pub half_turn: Direction,
-    /// cos and sin of the turns from the first arc to each.
-    pub eighths: [[f64; 2]; ARCS],
+    /// Of the arcs, of their halves, and so on.
+    pub levels: [Level; LEVELS],
     /// cos and sin of k times the angle of the first centre, k = 1 … 4.
     turn: [Direction; 4],
     /// Bernstein coefficients of 1, divided out of the next two.
@@ -65,12 +72,10 @@ pub(crate) static TABLE: LazyLock<Arcs> = LazyLock::new(|| {
     Arcs {
         ends: std::array::from_fn(|i| at(i as f64)),
         centers: std::array::from_fn(|i| at(i as f64 + 0.5)),
-        edge,
-        half_edge: (width / 8.0).tan(),
-        half_turn: Direction::at(width / 4.0),
-        eighths: std::array::from_fn(|k| {
-            let Direction { cos, sin } = Direction::at(k as f64 * width);
-            [cos, sin]
+        levels: std::array::from_fn(|level| {
+            let width = width / f64::from(1u8 << level);
+            let edge = (width / 4.0).tan();
+            Level { edge, half: Direction::at(width / 2.0), part: Direction::at(0.0).ahead(0.5 * edge) }
         }),
         turn: std::array::from_fn(|k| Direction::at((k as f64 + 1.0) * (START_RAD + 0.5 * width))),
         weights,
@@ -135,51 +140,85 @@ impl<T: Lane> Harmonics<T> {
         let [x0, y0] = [pair.x0, pair.y0];
         // ρ² = a0 + a1·(cos, sin) + a2 cos 2θ
         let rise_sq = r * r * s * s;
-        let a0 = x0 * x0 + y0 * y0 + r * r - rise_sq * 0.5;
-        let a1 = [r * pair.tilt_cos * x0 * 2.0, r * y0 * 2.0];
         let a2 = rise_sq * -0.5;
+        let a0 = x0.fused(x0, y0.fused(y0, r.fused(r, a2)));
+        let double = r + r;
+        let a1 = [double * pair.tilt_cos * x0, double * y0];
         // p² = b0 + b2·(cos 2θ, sin 2θ)
-        let b0 = (pc * pc + ps * ps) * 0.5;
-        let b2 = [(pc * pc - ps * ps) * 0.5, pc * ps];
+        let b0 = pc.fused(pc, ps * ps) * 0.5;
+        let b2 = [ps.taken(ps, pc * pc) * 0.5, pc * ps];
         // q = qc cos θ + qs sin θ + q2 sin 2θ
-        let mean = b0 * a0 + b2[0] * a2 * 0.5 - (qc * qc + qs * qs + q2 * q2) * 0.5;
+        let (qc_sq, qs_sq, q2_sq) = (qc * qc, qs * qs, q2 * q2);
         let half = [b2[0] * 0.5, b2[1] * 0.5];
+        let mean = b0.fused(a0, half[0].fused(a2, (qc_sq + qs_sq + q2_sq) * -0.5));
         let modes = [
             [
-                b0 * a1[0] + half[0] * a1[0] + half[1] * a1[1] - q2 * qs,
-                b0 * a1[1] + half[1] * a1[0] - half[0] * a1[1] - q2 * qc,
+                b0.fused(a1[0], half[0].fused(a1[0], half[1].fused(a1[1], -(q2 * qs)))),
+                b0.fused(a1[1], half[1].fused(a1[0], -half[0].fused(a1[1], q2 * qc))),
             ],
-            [b0 * a2 + b2[0] * a0 - (qc * qc - qs * qs) * 0.5, b2[1] * a0 - qc * qs],
-            [half[0] * a1[0] - half[1] * a1[1] + q2 * qs, half[1] * a1[0] + half[0] * a1[1] - q2 * qc],
-            [half[0] * a2 + q2 * q2 * 0.5, half[1] * a2],
+            [b0.fused(a2, b2[0].fused(a0, (qs_sq - qc_sq) * 0.5)), b2[1].fused(a0, -(qc * qs))],
+            [
+                half[0].fused(a1[0], half[1].taken(a1[1], q2 * qs)),
+                half[1].fused(a1[0], half[0].fused(a1[1], -(q2 * qc))),
+            ],
+            [half[0].fused(a2, q2_sq * 0.5), half[1] * a2],
         ];
         let (mut cosine, mut sine) = ([mean; 4], [mean; 4]);
         for k in 0..4 {
             let ([c, s], by) = (modes[k], table.turn[k]);
-            cosine[k] = c * by.cos + s * by.sin;
-            sine[k] = s * by.cos - c * by.sin;
+            let (cos, sin) = (mean.like(by.cos), mean.like(by.sin));
+            cosine[k] = c.fused(cos, s * sin);
+            sine[k] = c.taken(sin, s * cos);
         }
         let slope = qc.abs() + qs.abs() + q2.abs();
-        let size = b0 * 2.0 * (a0 + a1[0].abs() + a1[1].abs() - a2) + slope * slope;
+        let size = (b0 + b0).fused(a0 + a1[0].abs() + a1[1].abs() - a2, slope * slope);
         Self { mean, cosine, sine, size }
     }
 
-    /// Turned to the centres of the first four arcs.
-    ///
-    /// From an arc to the next the harmonics turn by 45°, 90°, 135° and 180°.
+    /// Cosine and sine parts of the four harmonics around the centre of an arc `M < ARCS / 2`: from an arc to the next they
+    /// turn by 45°, 90°, 135° and 180°.
     #[inline(always)]
-    pub fn turned(&self) -> Turned<T> {
+    fn turned<const M: usize>(&self) -> [[T; 2]; 4] {
         let ([c1, c2, c3, c4], [s1, s2, s3, s4]) = (self.cosine, self.sine);
-        let (t1, t3) = (eighth(c1, s1), eighth(c3, s3));
-        Turned {
-            mean: self.mean,
-            modes: [
-                [[c1, s1], t1, [s1, -c1], [t1[1], -t1[0]]],
-                [[c2, s2], [s2, -c2], [-c2, -s2], [-s2, c2]],
-                [[c3, s3], [t3[1], -t3[0]], [-s3, c3], t3],
-                [[c4, s4], [-c4, -s4], [c4, s4], [-c4, -s4]],
-            ],
+        match M {
+            0 => [[c1, s1], [c2, s2], [c3, s3], [c4, s4]],
+            1 => {
+                let ([a, b], [c, d]) = (eighth(c1, s1), eighth(c3, s3));
+                [[a, b], [s2, -c2], [d, -c], [-c4, -s4]]
+            }
+            2 => [[s1, -c1], [-c2, -s2], [-s3, c3], [c4, s4]],
+            _ => {
+                let ([a, b], [c, d]) = (eighth(c1, s1), eighth(c3, s3));
+                [[b, -a], [-s2, c2], [c, d], [-c4, -s4]]
+            }
         }
+    }
+
+    /// The coefficients of an arc `M < ARCS / 2` and of the opposite one, divided by [`Arcs::weights`]. The two differ in
+    /// the sign of the odd harmonics. The first and the last are the values of H at the ends, given by arc.
+    #[inline(always)]
+    pub fn coefficients<const M: usize>(&self, ends: &[T; ARCS], table: &Arcs) -> [[T; 9]; 2] {
+        let [first, second, third, fourth] = self.turned::<M>();
+        let mut out = [[self.mean; 9]; 2];
+        (out[0][0], out[0][8]) = (ends[M], ends[M + 1]);
+        (out[1][0], out[1][8]) = (ends[M + ARCS / 2], ends[(M + ARCS / 2 + 1) % ARCS]);
+        for i in 1..5 {
+            let a = likes(self.mean, &table.cosines[i]);
+            let even = second[0].fused(a[1], fourth[0].fused(a[3], self.mean));
+            let odd = first[0].fused(a[0], third[0] * a[2]);
+            if i == 4 {
+                (out[0][4], out[1][4]) = (even + odd, even - odd);
+                continue;
+            }
+            let b = likes(self.mean, &table.sines[i]);
+            let even_sine = second[1].fused(b[1], fourth[1] * b[3]);
+            let odd_sine = first[1].fused(b[0], third[1] * b[2]);
+            let (left, right) = (even + even_sine, even - even_sine);
+            let (odd_left, odd_right) = (odd + odd_sine, odd - odd_sine);
+            (out[0][i], out[0][8 - i]) = (left + odd_left, right + odd_right);
+            (out[1][i], out[1][8 - i]) = (left - odd_left, right - odd_right);
+        }
+        out
     }
 
     /// The coefficients of the arc that is turned by an angle from the first one, divided by [`Arcs::weights`], with the
@@ -190,24 +229,13 @@ impl<T: Lane> Harmonics<T> {
         let mut by = turn;
         let mut modes = [[self.mean; 2]; 4];
         for k in 0..4 {
-            modes[k] = [self.cosine[k] * by[0] + self.sine[k] * by[1], self.sine[k] * by[0] - self.cosine[k] * by[1]];
-            by = [by[0] * cos - by[1] * sin, by[1] * cos + by[0] * sin];
+            modes[k] = [
+                self.cosine[k].fused(by[0], self.sine[k] * by[1]),
+                self.cosine[k].taken(by[1], self.sine[k] * by[0]),
+            ];
+            by = [by[1].taken(sin, by[0] * cos), by[0].fused(sin, by[1] * cos)];
         }
-        let mut out = [ends[0]; 9];
-        out[8] = ends[1];
-        for i in 1..5 {
-            let a = &table.cosines[i];
-            let even =
-                self.mean + (modes[0][0] * a[0] + modes[1][0] * a[1] + (modes[2][0] * a[2] + modes[3][0] * a[3]));
-            if i == 4 {
-                out[4] = even;
-                continue;
-            }
-            let b = &table.sines[i];
-            let odd = modes[0][1] * b[0] + modes[1][1] * b[1] + (modes[2][1] * b[2] + modes[3][1] * b[3]);
-            (out[i], out[8 - i]) = (even + odd, even - odd);
-        }
-        out
+        arc_coefficients(self.mean, &modes, ends, table)
     }
 
     /// A coefficient is certain if it is larger than this.
@@ -223,63 +251,63 @@ impl<T: Lane> Harmonics<T> {
     }
 }
 
-/// H around the centres of the first four arcs: cosine and sine part by harmonic and arc.
-pub(crate) struct Turned<T> {
-    mean: T,
-    modes: [[[T; 2]; ARCS / 2]; 4],
+/// Constants. No closure: one would run without the instruction set.
+#[inline(always)]
+fn likes<T: Lane>(model: T, values: &[f64; 4]) -> [T; 4] {
+    [model.like(values[0]), model.like(values[1]), model.like(values[2]), model.like(values[3])]
 }
 
-impl<T: Lane> Turned<T> {
-    /// The coefficients of an arc `m < ARCS / 2` and of the opposite one, divided by [`Arcs::weights`]. The two differ in
-    /// the sign of the odd harmonics. The first and the last are the values of H at the ends, given by arc.
-    #[inline(always)]
-    pub fn coefficients(&self, m: usize, ends: &[T; ARCS], table: &Arcs) -> [[T; 9]; 2] {
-        let [first, second, third, fourth] = [self.modes[0][m], self.modes[1][m], self.modes[2][m], self.modes[3][m]];
-        let mut out = [[self.mean; 9]; 2];
-        (out[0][0], out[0][8]) = (ends[m], ends[m + 1]);
-        (out[1][0], out[1][8]) = (ends[m + ARCS / 2], ends[(m + ARCS / 2 + 1) % ARCS]);
-        for i in 1..5 {
-            let a = &table.cosines[i];
-            let even = self.mean + second[0] * a[1] + fourth[0] * a[3];
-            let odd = first[0] * a[0] + third[0] * a[2];
-            if i == 4 {
-                (out[0][4], out[1][4]) = (even + odd, even - odd);
-                continue;
-            }
-            let b = &table.sines[i];
-            let even_sine = second[1] * b[1] + fourth[1] * b[3];
-            let odd_sine = first[1] * b[0] + third[1] * b[2];
-            let (left, right) = (even + even_sine, even - even_sine);
-            let (odd_left, odd_right) = (odd + odd_sine, odd - odd_sine);
-            (out[0][i], out[0][8 - i]) = (left + odd_left, right + odd_right);
-            (out[1][i], out[1][8 - i]) = (left - odd_left, right - odd_right);
+/// The coefficients of an arc, divided by [`Arcs::weights`]: from H's harmonics around its centre (cosine and sine part)
+/// and the values of H at its ends.
+#[inline(always)]
+pub(crate) fn arc_coefficients<T: Lane>(mean: T, modes: &[[T; 2]; 4], ends: [T; 2], table: &Arcs) -> [T; 9] {
+    let mut out = [ends[0]; 9];
+    out[8] = ends[1];
+    for i in 1..5 {
+        let (a, mut even) = (&table.cosines[i], mean);
+        for k in 0..4 {
+            even = modes[k][0].fused(mean.like(a[k]), even);
         }
-        out
+        if i == 4 {
+            out[4] = even;
+            continue;
+        }
+        let (b, mut odd) = (&table.sines[i], modes[0][1] * table.sines[i][0]);
+        for k in 1..4 {
+            odd = modes[k][1].fused(mean.like(b[k]), odd);
+        }
+        (out[i], out[8 - i]) = (even + odd, even - odd);
     }
+    out
 }
 
 /// Changes of sign in the coefficients of an arc, doubtful ones counted as changes.
 #[inline(always)]
 pub(crate) fn changes<T: Lane>(coefficients: &[T; 9], doubt: T) -> T {
-    let (zero, one) = (doubt.like(0.0), doubt.like(1.0));
-    let mut sums = [zero; 2];
+    let mut sums = [doubt.like(0.0); 2];
     for i in 0..8 {
-        let product = coefficients[i] * coefficients[i + 1];
-        sums[i % 2] = sums[i % 2] + T::pick(product.below(doubt), one, zero);
+        sums[i % 2] = sums[i % 2].more((coefficients[i] * coefficients[i + 1]).below(doubt));
     }
     sums[0] + sums[1]
 }
 
-/// The coefficients of the two halves of an arc (de Casteljau).
+/// The coefficients of the two halves of an arc (de Casteljau), from sums that are halved at the end.
 #[inline(always)]
 pub(crate) fn halves<T: Lane>(coefficients: &[T; 9]) -> [[T; 9]; 2] {
     let (mut row, mut left) = (*coefficients, *coefficients);
+    let mut share = 1.0;
     for k in 1..9 {
         // In place, of constant length: what lies behind 8 − k is the right half.
         for i in 0..9 - k {
-            row[i] = (row[i] + row[i + 1]) * 0.5;
+            row[i] = row[i] + row[i + 1];
         }
-        left[k] = row[0];
+        share *= 0.5;
+        left[k] = row[0] * share;
+    }
+    let mut share = 1.0;
+    for i in (0..8).rev() {
+        share *= 0.5;
+        row[i] = row[i] * share;
     }
     [left, row]
 }
@@ -301,13 +329,11 @@ mod tests {
             let b = Circle::new(vector(2.0), unit(vector(1.0)), rng.random_range(0.1..1.0));
             let pair = Relative::new(&a, &b).reduced();
             let harmonics = Harmonics::new(&pair, &TABLE);
-            let turned = harmonics.turned();
             let ends: [f64; ARCS] = std::array::from_fn(|k| {
-                let [minus, plus] = pair.factors(TABLE.ends[k].cos, TABLE.ends[k].sin);
-                minus * plus
+                crate::brackets::Value::at(&pair, TABLE.ends[k].cos, TABLE.ends[k].sin).product
             });
             for (k, center) in TABLE.centers.into_iter().enumerate() {
-                let arc = turned.coefficients(k % 4, &ends, &TABLE)[k / 4];
+                let arc = harmonics.around(Direction::at(k as f64 * TAU / 8.0).into_turn(), [ends[k], ends[(k + 1) % ARCS]], &TABLE);
                 let whole: [f64; 9] = std::array::from_fn(|i| arc[i] * TABLE.weights[i]);
                 let [left, right] = halves(&whole);
                 for (b, from, to) in [(whole, -1.0, 1.0), (left, -1.0, 0.0), (right, 0.0, 1.0)] {
@@ -316,10 +342,10 @@ mod tests {
                         let term =
                             |k: usize| b[k] * choose(k) * f64::powi(u, k as i32) * f64::powi(1.0 - u, 8 - k as i32);
                         let value: f64 = (0..9).map(term).sum();
-                        let t = TABLE.edge * (from + (to - from) * u);
+                        let t = TABLE.levels[0].edge * (from + (to - from) * u);
                         let at = center.ahead(t);
-                        let [minus, plus] = pair.factors(at.cos, at.sin);
-                        let expected = minus * plus * (1.0 + t * t).powi(4);
+                        let [p, q, square] = pair.terms(at.cos, at.sin);
+                        let expected = (p * square.sqrt() - q) * (p * square.sqrt() + q) * (1.0 + t * t).powi(4);
                         assert!((value - expected).abs() < 1e-14 * harmonics.size, "{value} {expected}");
                         assert!(expected.abs() <= harmonics.size * (1.0 + t * t).powi(4));
                     }

@@ -2,8 +2,8 @@
 //! of the pairs; and those of one pair as often as it takes.
 
 use crate::MAX_MINIMA;
-use crate::brackets::{Angle, Bracket, Counted, SLOTS};
-use crate::count::{ARCS, Arcs, Harmonics, changes, halves};
+use crate::brackets::{Angle, Bracket, Counted, SLOTS, Value};
+use crate::count::{ARCS, Arcs, Harmonics, LEVELS, changes, halves};
 use crate::grid::Direction;
 use crate::lane::Lane;
 use crate::relative::Reduced;
@@ -11,49 +11,22 @@ use crate::relative::Reduced;
 /// Halvings of an arc at most.
 const HALVINGS: usize = 6;
 
-/// The first arc in doubt of each lane.
-struct Chosen<T> {
-    center: Angle<T>,
-    /// cos and sin of its turn from the first arc.
-    turn: [T; 2],
-    minus: [T; 2],
-    plus: [T; 2],
-    excess: T,
-}
-
-impl<T: Lane> Chosen<T> {
-    #[inline(always)]
-    fn of(counted: &Counted<T>, table: &Arcs) -> Self {
-        let (zero, one) = (counted.minus[0].like(0.0), counted.minus[0].like(1.0));
-        let mut chosen = Self {
-            center: Angle { cos: one, sin: zero },
-            turn: [one, zero],
-            minus: [one; 2],
-            plus: [one; 2],
-            excess: zero,
-        };
-        for k in (0..ARCS).rev() {
-            let (next, excess) = ((k + 1) % ARCS, counted.excess[k].abs());
-            let here = zero.like(0.5).below(excess);
-            let Angle { cos, sin } = chosen.center;
-            chosen.center = Angle {
-                cos: T::pick(here, one.like(table.centers[k].cos), cos),
-                sin: T::pick(here, one.like(table.centers[k].sin), sin),
-            };
-            for i in 0..2 {
-                chosen.turn[i] = T::pick(here, one.like(table.eighths[k][i]), chosen.turn[i]);
-                let end = if i == 0 { k } else { next };
-                chosen.minus[i] = T::pick(here, counted.minus[end], chosen.minus[i]);
-                chosen.plus[i] = T::pick(here, counted.plus[end], chosen.plus[i]);
-            }
-            chosen.excess = T::pick(here, excess, chosen.excess);
-        }
-        chosen
+/// The centre of the first arc in doubt of each lane, and its doubt.
+#[inline(always)]
+fn first_in_doubt<T: Lane>(counted: &Counted<T>, table: &Arcs) -> (Angle<T>, T) {
+    let (zero, one) = (counted.excess[0].like(0.0), counted.excess[0].like(1.0));
+    let (mut center, mut found) = (Angle { cos: one, sin: zero }, zero);
+    for k in (0..ARCS).rev() {
+        let excess = counted.excess[k].abs();
+        let here = zero.like(0.5).below(excess);
+        center = Angle::pick(here, Angle::like(center, table.centers[k]), center);
+        found = T::pick(here, excess, found);
     }
+    (center, found)
 }
 
-/// Halves the first arc in doubt of each lane, and mends the brackets and their number where that settles the pair;
-/// returns the doubts that are left.
+/// Halves the first arc in doubt of each lane, then the half that is in doubt, and so on; and mends the brackets and
+/// their number where that settles the pair; returns the doubts that are left.
 #[inline(always)]
 pub(crate) fn halved<T: Lane>(
     pair: &Reduced<T>,
@@ -62,46 +35,67 @@ pub(crate) fn halved<T: Lane>(
     (slots, count): &mut ([Bracket<T>; SLOTS], T),
     table: &Arcs,
 ) -> T {
-    let (zero, one) = (count.like(0.0), count.like(1.0));
-    let half = count.like(0.5);
-    let arc = Chosen::of(counted, table);
-    let ends = [arc.minus[0] * arc.plus[0], arc.minus[1] * arc.plus[1]];
-    let mut whole = harmonics.around(arc.turn, ends, table);
-    for i in 0..whole.len() {
-        whole[i] = whole[i] * table.weights[i];
-    }
-    let parts = halves(&whole);
-    let [minus, plus] = pair.factors(arc.center.cos, arc.center.sin);
-    let (minus, plus) = ([arc.minus[0], minus, arc.minus[1]], [arc.plus[0], plus, arc.plus[1]]);
-    let mut left = zero;
-    let mut rises = [zero; 2];
-    for side in 0..2 {
-        let root = T::pick((minus[side] * minus[side + 1]).below(zero), one, zero);
-        let far = T::pick((plus[side] * plus[side + 1]).below(zero), one, zero);
-        left = left + (changes(&parts[side], harmonics.doubt()) - (root + far)).abs();
-        rises[side] = T::pick(T::both(minus[side].below(zero), zero.below(minus[side + 1])), one, zero);
+    let (zero, one, half) = (count.like(0.0), count.like(1.0), count.like(0.5));
+    let (center, excess) = first_in_doubt(counted, table);
+    let turn = Angle::like(center, table.levels[0].half);
+    let [first, last] = [center.turned(turn.cos, -turn.sin), center.turned(turn.cos, turn.sin)];
+    let ends = [Value::at(pair, first.cos, first.sin), Value::at(pair, last.cos, last.sin)];
+    // The turn from the first arc to this one.
+    let origin = Angle::like(center, table.centers[0]);
+    let from_first = center.turned(origin.cos, -origin.sin);
+    let products = [ends[0].product, ends[1].product];
+    let mut coefficients = harmonics.around([from_first.cos, from_first.sin], products, table);
+    for i in 0..coefficients.len() {
+        coefficients[i] = coefficients[i] * table.weights[i];
     }
     let doubts = counted.doubts();
-    let alone = T::both(half.below(arc.excess), (doubts - arc.excess).below(half));
-    let settled = T::both(left.below(half), alone);
-    // The half on which G₋ rises, if there is one; one of them at most, for the middle has one sign.
-    let Arcs { half_edge, half_turn, .. } = *table;
-    let on_left = half.below(rises[0]);
-    let (low, high) = (T::pick(on_left, minus[0], minus[1]), T::pick(on_left, minus[1], minus[2]));
-    let sin = T::pick(on_left, one.like(-half_turn.sin), one.like(half_turn.sin));
-    let Angle { cos: x, sin: y } = arc.center;
-    let middle = Angle { cos: x * half_turn.cos - y * sin, sin: y * half_turn.cos + x * sin };
-    let there = Bracket { middle, edge: one.like(half_edge), low, high };
-    let before = T::pick(T::both(minus[0].below(zero), zero.below(minus[2])), one, zero);
-    let extra = T::both(settled, half.below(rises[0] + rises[1] - before));
+    // 1 for lanes whose arc is the only one in doubt, while a part of it is.
+    let alone = T::both(half.below(excess), (doubts - excess).below(half));
+    let mut open = T::pick(alone, one, zero);
+    let mut settled = zero;
+    // The part on which G₋ rises, if there is one, and how many there are.
+    let (mut there, mut rises) = (slots[0], zero);
+    let (mut middle, mut values, doubt) = (center, ends, harmonics.doubt());
+    for level in 1..LEVELS {
+        let between = Value::at(pair, middle.cos, middle.sin);
+        let halves = halves(&coefficients);
+        let sides = [[values[0], between], [between, values[1]]];
+        let quarter = Angle::like(middle, table.levels[level].half);
+        let middles = [middle.turned(quarter.cos, -quarter.sin), middle.turned(quarter.cos, quarter.sin)];
+        let mut known = [zero; 2];
+        for side in 0..2 {
+            let [from, to] = sides[side];
+            known[side] = T::pick((changes(&halves[side], doubt) - from.changes(to)).abs().below(half), open, zero);
+            let here = T::both(half.below(known[side]), from.rises(to));
+            there = Bracket::pick(here, Bracket::arc(&table.levels[level], middles[side]), there);
+            rises = rises.more(here);
+        }
+        settled = settled + known[0] * known[1];
+        // What goes on has one half in doubt.
+        open = known[0] + known[1] - known[0] * known[1] * 2.0;
+        if !T::any(zero.below(open)) {
+            break;
+        }
+        let left = known[0].below(half);
+        middle = Angle::pick(left, middles[0], middles[1]);
+        for i in 0..2 {
+            values[i] = Value::pick(left, sides[0][i], sides[1][i]);
+        }
+        for i in 0..coefficients.len() {
+            coefficients[i] = T::pick(left, halves[0][i], halves[1][i]);
+        }
+    }
+    let before = T::pick(ends[0].rises(ends[1]), one, zero);
+    let settled = T::both(half.below(settled), rises.below(one + half));
+    let extra = T::both(settled, half.below(rises - before));
     let kept = T::both(settled, half.below(before));
     for slot in slots.iter_mut() {
-        let off = (slot.middle.cos - x).abs() + (slot.middle.sin - y).abs();
+        let off = (slot.middle.cos - center.cos).abs() + (slot.middle.sin - center.sin).abs();
         *slot = Bracket::pick(T::both(kept, off.below(zero.like(1e-9))), there, *slot);
     }
     slots[0] = Bracket::pick(T::both(extra, count.below(half)), there, slots[0]);
     slots[1] = Bracket::pick(extra, there, slots[1]);
-    *count = *count + T::pick(extra, one, zero);
+    *count = count.more(extra);
     T::pick(settled, zero, doubts)
 }
 
@@ -113,15 +107,16 @@ pub(crate) struct Brackets {
 
 impl Brackets {
     /// From the count, arcs in doubt halved as often as it takes; `None` where that does not decide.
-    #[inline(always)]
-    pub fn new(pair: &Reduced<f64>, counted: &Counted<f64>, table: &Arcs) -> Option<Self> {
-        let mut brackets = Self { all: [Bracket::arc(table, 0, -1.0, 1.0); MAX_MINIMA], count: 0 };
+    pub fn of_pair(pair: &Reduced<f64>, table: &Arcs) -> Option<Self> {
+        let harmonics = Harmonics::new(pair, table);
+        let counted = &Counted::new(pair, &harmonics, table);
+        let none = Bracket::arc(&table.levels[0], Angle { cos: 1.0, sin: 0.0 });
+        let mut brackets = Self { all: [none; MAX_MINIMA], count: 0 };
         for k in 0..ARCS {
-            let [low, high] = [counted.minus[k], counted.minus[(k + 1) % ARCS]];
             if counted.excess[k] != 0.0 {
-                brackets.halve(pair, counted, k, table)?;
-            } else if low < 0.0 && high >= 0.0 {
-                brackets.add(Bracket::arc(table, k, low, high))?;
+                brackets.halve(pair, &harmonics, counted, k, table)?;
+            } else if counted.values[k].rises(counted.values[(k + 1) % ARCS]) {
+                brackets.add(Bracket::arc(&table.levels[0], Angle::like(none.middle, table.centers[k])))?;
             }
         }
         Some(brackets)
@@ -129,21 +124,28 @@ impl Brackets {
 
     /// Adds what an arc in doubt has.
     #[inline(never)]
-    fn halve(&mut self, pair: &Reduced<f64>, counted: &Counted<f64>, k: usize, table: &Arcs) -> Option<()> {
-        let harmonics = Harmonics::new(pair, table);
-        let mut coefficients = harmonics.turned().coefficients(k % (ARCS / 2), &counted.ends(), table)[k / (ARCS / 2)];
+    fn halve(
+        &mut self,
+        pair: &Reduced<f64>,
+        harmonics: &Harmonics<f64>,
+        counted: &Counted<f64>,
+        k: usize,
+        table: &Arcs,
+    ) -> Option<()> {
+        let turn = Angle { cos: table.centers[k].cos, sin: table.centers[k].sin }.turned(table.centers[0].cos, -table.centers[0].sin);
+        let ends = [counted.values[k], counted.values[(k + 1) % ARCS]];
+        let mut coefficients = harmonics.around([turn.cos, turn.sin], ends.map(|value| value.product), table);
         for i in 0..coefficients.len() {
             coefficients[i] *= table.weights[i];
         }
         let arc = Arc {
             from: -1.0,
             to: 1.0,
-            minus: [counted.minus[k], counted.minus[(k + 1) % ARCS]],
-            plus: [counted.plus[k], counted.plus[(k + 1) % ARCS]],
+            ends,
             coefficients,
         };
         arc.examine(
-            &Doubtful { pair, doubt: harmonics.certain(), center: table.centers[k], edge: table.edge },
+            &Doubtful { pair, doubt: harmonics.certain(), center: table.centers[k], edge: table.levels[0].edge },
             HALVINGS,
             self,
         )
@@ -170,49 +172,36 @@ struct Doubtful<'a> {
 struct Arc {
     from: f64,
     to: f64,
-    minus: [f64; 2],
-    plus: [f64; 2],
+    ends: [Value<f64>; 2],
     coefficients: [f64; 9],
 }
 
 impl Arc {
     /// Adds what the arc has, halving it as often as it takes; `None` where that does not decide.
     fn examine(&self, of: &Doubtful<'_>, halvings: usize, brackets: &mut Brackets) -> Option<()> {
-        let change = |g: &[f64; 2]| usize::from((g[0] < 0.0) != (g[1] < 0.0));
         // No branches: what is found here is anyone's guess.
         let mut certain = self.coefficients[8].abs() > of.doubt;
-        let mut changes = 0;
+        let mut changes = 0u8;
         for i in 0..8 {
             let [b, next] = [self.coefficients[i], self.coefficients[i + 1]];
             certain &= b.abs() > of.doubt;
-            changes += usize::from((b < 0.0) != (next < 0.0));
+            changes += u8::from((b < 0.0) != (next < 0.0));
         }
         if !certain {
             return None;
         }
-        if changes == change(&self.minus) + change(&self.plus) {
-            return if self.minus[0] < 0.0 && self.minus[1] >= 0.0 { brackets.add(self.bracket(of)) } else { Some(()) };
+        let [first, last] = self.ends;
+        if f64::from(changes) == first.changes(last) {
+            return if first.rises(last) { brackets.add(self.bracket(of)) } else { Some(()) };
         }
         let halvings = halvings.checked_sub(1)?;
         let middle = 0.5 * (self.from + self.to);
         let at = of.center.ahead(middle * of.edge);
-        let [minus, plus] = of.pair.factors(at.cos, at.sin);
+        let between = Value::at(of.pair, at.cos, at.sin);
         let [left, right] = halves(&self.coefficients);
-        let left = Arc {
-            from: self.from,
-            to: middle,
-            minus: [self.minus[0], minus],
-            plus: [self.plus[0], plus],
-            coefficients: left,
-        };
+        let left = Arc { from: self.from, to: middle, ends: [first, between], coefficients: left };
         left.examine(of, halvings, brackets)?;
-        let right = Arc {
-            from: middle,
-            to: self.to,
-            minus: [minus, self.minus[1]],
-            plus: [plus, self.plus[1]],
-            coefficients: right,
-        };
+        let right = Arc { from: middle, to: self.to, ends: [between, last], coefficients: right };
         right.examine(of, halvings, brackets)
     }
 
@@ -223,7 +212,6 @@ impl Arc {
         let across = first.cos * last.sin - first.sin * last.cos;
         // With φ the width, length = 2 cos φ/2: tan φ/4 = sin φ/2/(1 + cos φ/2), and sin φ/2 = sin φ/length.
         let edge = across / (length * (1.0 + 0.5 * length));
-        let middle = Angle { cos: x / length, sin: y / length };
-        Bracket { middle, edge, low: self.minus[0], high: self.minus[1] }
+        Bracket::new(Angle { cos: x / length, sin: y / length }, edge)
     }
 }

@@ -1,7 +1,7 @@
 //! Numbers that the quick kernel is written in: one `f64`, or a register of them, one pair of circles in each.
 //!
-//! Only operations that IEEE 754 rounds in one way, and no fused multiplication: every lane of every instruction set
-//! computes the same bits.
+//! Only operations that IEEE 754 rounds in one way: every lane of an instruction set computes the same bits, whatever is
+//! in the others. Products and sums are fused where the set can, so that two sets differ by rounding.
 
 use pulp::Simd;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -20,14 +20,24 @@ pub(crate) trait Lane:
     type Mask: Copy;
     /// A constant.
     fn like(self, value: f64) -> Self;
+    /// `self · factor + term`, rounded once or twice.
+    fn fused(self, factor: Self, term: Self) -> Self;
+    /// `from − self · factor`, rounded once or twice.
+    fn taken(self, factor: Self, from: Self) -> Self;
     fn sqrt(self) -> Self;
     fn abs(self) -> Self;
     fn max(self, other: Self) -> Self;
-    fn min(self, other: Self) -> Self;
     fn below(self, other: Self) -> Self::Mask;
     fn pick(mask: Self::Mask, yes: Self, no: Self) -> Self;
     fn both(p: Self::Mask, q: Self::Mask) -> Self::Mask;
+    fn either(p: Self::Mask, q: Self::Mask) -> Self::Mask;
     fn any(mask: Self::Mask) -> bool;
+
+    /// One more where it is true.
+    #[inline(always)]
+    fn more(self, mask: Self::Mask) -> Self {
+        Self::pick(mask, self + self.like(1.0), self)
+    }
 }
 
 impl Lane for f64 {
@@ -36,6 +46,16 @@ impl Lane for f64 {
     #[inline(always)]
     fn like(self, value: f64) -> f64 {
         value
+    }
+
+    #[inline(always)]
+    fn fused(self, factor: f64, term: f64) -> f64 {
+        self * factor + term
+    }
+
+    #[inline(always)]
+    fn taken(self, factor: f64, from: f64) -> f64 {
+        from - self * factor
     }
 
     #[inline(always)]
@@ -54,11 +74,6 @@ impl Lane for f64 {
     }
 
     #[inline(always)]
-    fn min(self, other: f64) -> f64 {
-        f64::min(self, other)
-    }
-
-    #[inline(always)]
     fn below(self, other: f64) -> bool {
         self < other
     }
@@ -71,6 +86,11 @@ impl Lane for f64 {
     #[inline(always)]
     fn both(p: bool, q: bool) -> bool {
         p & q
+    }
+
+    #[inline(always)]
+    fn either(p: bool, q: bool) -> bool {
+        p | q
     }
 
     #[inline(always)]
@@ -151,6 +171,16 @@ impl<S: Simd> Lane for Register<S> {
     }
 
     #[inline(always)]
+    fn fused(self, factor: Self, term: Self) -> Self {
+        Self { simd: self.simd, value: self.simd.mul_add_e_f64s(self.value, factor.value, term.value) }
+    }
+
+    #[inline(always)]
+    fn taken(self, factor: Self, from: Self) -> Self {
+        Self { simd: self.simd, value: self.simd.negate_mul_add_e_f64s(self.value, factor.value, from.value) }
+    }
+
+    #[inline(always)]
     fn sqrt(self) -> Self {
         Self { simd: self.simd, value: self.simd.sqrt_f64s(self.value) }
     }
@@ -166,11 +196,6 @@ impl<S: Simd> Lane for Register<S> {
     }
 
     #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        Self { simd: self.simd, value: self.simd.min_f64s(self.value, other.value) }
-    }
-
-    #[inline(always)]
     fn below(self, other: Self) -> Truth<S> {
         Truth { simd: self.simd, value: self.simd.less_than_f64s(self.value, other.value) }
     }
@@ -183,6 +208,11 @@ impl<S: Simd> Lane for Register<S> {
     #[inline(always)]
     fn both(p: Truth<S>, q: Truth<S>) -> Truth<S> {
         Truth { simd: p.simd, value: p.simd.and_m64s(p.value, q.value) }
+    }
+
+    #[inline(always)]
+    fn either(p: Truth<S>, q: Truth<S>) -> Truth<S> {
+        Truth { simd: p.simd, value: p.simd.or_m64s(p.value, q.value) }
     }
 
     #[inline(always)]

@@ -6,8 +6,8 @@ use crate::lane::{Lane, Register};
 use crate::relative::Reduced;
 use pulp::Simd;
 
-/// Pairs side by side: two registers of the widest kind.
-pub(crate) const WIDTH: usize = 16;
+/// Pairs side by side: several registers of the widest kind, for a register that is loaded from numbers just stored waits.
+pub(crate) const WIDTH: usize = 32;
 /// One number of each.
 pub(crate) type Row = [f64; WIDTH];
 /// Numbers of a pair: centre, normal and radius of A, then of B.
@@ -77,17 +77,17 @@ fn minus<T: Lane>(p: Vector<T>, q: Vector<T>) -> Vector<T> {
 
 #[inline(always)]
 fn dot<T: Lane>(p: Vector<T>, q: Vector<T>) -> T {
-    p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
+    p[0].fused(q[0], p[1].fused(q[1], p[2] * q[2]))
 }
 
 #[inline(always)]
 fn cross<T: Lane>(p: Vector<T>, q: Vector<T>) -> Vector<T> {
-    [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]]
+    [p[2].taken(q[1], p[1] * q[2]), p[0].taken(q[2], p[2] * q[0]), p[1].taken(q[0], p[0] * q[1])]
 }
 
 #[inline(always)]
 fn sum<T: Lane>(p: Vector<T>, by: T, q: Vector<T>, times: T) -> Vector<T> {
-    [p[0] * by + q[0] * times, p[1] * by + q[1] * times, p[2] * by + q[2] * times]
+    [p[0].fused(by, q[0] * times), p[1].fused(by, q[1] * times), p[2].fused(by, q[2] * times)]
 }
 
 #[inline(always)]
@@ -102,31 +102,33 @@ pub(crate) struct Placed<T> {
     radii: [T; 2],
 }
 
+/// Of the largest square: more than a few roundings.
+const SPARE: f64 = 1e-14;
 /// Sines of the planes' angle below this go to the single kernel.
 const LEAST_TILT: f64 = 1e-7;
 
 impl<T: Lane> Placed<T> {
-    /// [`crate::circle_distance_floor`].
+    /// The circles are certainly more than `reach` apart, as in [`crate::circle_distance_floor`], but without a root:
+    /// the spheres round them are, or one lies above the other's slab, or inside of its ring as seen along its axis.
     #[inline(always)]
-    pub fn floor(&self) -> T {
-        let zero = self.radii[0].like(0.0);
+    pub fn is_beyond(&self, reach: T) -> T::Mask {
+        let (zero, [a, b]) = (reach.like(0.0), self.radii);
         let apart_sq = dot(self.between, self.between);
-        let apart = apart_sq.sqrt();
         let cos = dot(self.normals[0], self.normals[1]);
-        let sin = (zero.like(1.0) - cos * cos).max(zero).sqrt();
-        let mut over = [zero; 2];
+        let sin_sq = cos.taken(cos, zero.like(1.0)).max(zero);
+        let outer = a + b + reach;
+        // What rounding could add to the squares.
+        let spare = (apart_sq + a * a + b * b) * SPARE;
+        let mut beyond = (outer * outer + spare).below(apart_sq);
         for (base, moving) in [(0, 1), (1, 0)] {
+            let (base_radius, radius) = (self.radii[base], self.radii[moving]);
             let height = dot(self.normals[base], self.between);
-            let from_axis = (apart_sq - height * height).max(zero).sqrt();
-            let rise = (height.abs() - self.radii[moving] * sin).max(zero);
-            let radial = ((from_axis - self.radii[base]).abs() - self.radii[moving]).max(zero);
-            over[base] = rise * rise + radial * radial;
+            let over = (height.abs() - reach).max(zero);
+            beyond = T::either(beyond, (radius * radius).fused(sin_sq, spare).below(over * over));
+            let inner = (base_radius - radius - reach).max(zero);
+            beyond = T::either(beyond, (height.taken(height, apart_sq) + spare).below(inner * inner));
         }
-        let size = apart + self.radii[0] + self.radii[1];
-        let spheres = apart - self.radii[0] - self.radii[1];
-        let inside = (self.radii[0] - self.radii[1]).abs() - apart;
-        let floor = spheres.max(inside).max(over[0].max(over[1]).sqrt()) - size * 1e-7;
-        floor.max(zero)
+        beyond
     }
 
     /// The numbers of [`crate::relative::Relative`].
@@ -135,12 +137,14 @@ impl<T: Lane> Placed<T> {
         let one = self.radii[0].like(1.0);
         // The smaller circle moves; B, if they are equal.
         let swapped = self.radii[0].below(self.radii[1]);
-        let base_normal = choose(swapped, self.normals[1], self.normals[0]);
-        let normal = choose(swapped, self.normals[0], self.normals[1]);
-        let base_radius = T::pick(swapped, self.radii[1], self.radii[0]);
-        let radius = T::pick(swapped, self.radii[0], self.radii[1]);
-        let [bx, by, bz] = self.between;
-        let between = choose(swapped, [-bx, -by, -bz], self.between);
+        let ([mut base_normal, mut normal], [mut base_radius, mut radius]) = (self.normals, self.radii);
+        let mut between = self.between;
+        if T::any(swapped) {
+            let [bx, by, bz] = between;
+            between = choose(swapped, [-bx, -by, -bz], between);
+            (base_normal, normal) = (choose(swapped, normal, base_normal), choose(swapped, base_normal, normal));
+            (base_radius, radius) = (T::pick(swapped, radius, base_radius), T::pick(swapped, base_radius, radius));
+        }
         let scale = dot(between, between).sqrt().max(base_radius).max(radius);
         let inverse = one / scale;
         let tilt = cross(normal, base_normal);
@@ -178,10 +182,12 @@ impl<T: Lane> Framed<T> {
     #[inline(always)]
     pub fn approach(&self, Angle { cos, sin }: Angle<T>) -> (T, Vector<T>) {
         let [x, y] = self.axes;
-        let moving = sum(self.steepest, cos, y, sin);
         let [ex, ey, rho] = self.pair.foot(cos, sin);
-        let foot = rho.like(1.0) / rho;
-        let base = sum(x, ex * foot, y, ey * foot);
-        (self.pair.distance(cos, sin) * self.scale, choose(self.swapped, base, moving))
+        let mut direction = sum(self.steepest, cos, y, sin);
+        if T::any(self.swapped) {
+            let foot = rho.like(1.0) / rho;
+            direction = choose(self.swapped, sum(x, ex * foot, y, ey * foot), direction);
+        }
+        (self.pair.distance(cos, rho) * self.scale, direction)
     }
 }

@@ -5,19 +5,18 @@
 //! what comes near them) it says so of, and [`crate::search`] takes them.
 
 use crate::MAX_MINIMA;
-use crate::brackets::{Angle, Bracket, Counted, is_steep};
-use crate::count::{Harmonics, TABLE};
+use crate::brackets::{Angle, Bracket, is_steep};
+use crate::count::TABLE;
 use crate::grid::Direction;
 use crate::halving::Brackets;
 use crate::lane::Lane;
 use crate::relative::Reduced;
 
-/// Steps of Halley's iteration at most.
+/// Steps of Halley's iteration at most, and those that are taken unasked.
 const STEPS: usize = 8;
+const ALWAYS: usize = 2;
 /// After a step shorter than this (the tangent of half of it) the cubic rest is below rounding.
 const SHORT: f64 = 5e-6;
-/// No step is longer: the tangent of half of it.
-const LONGEST_HALF: f64 = 0.2;
 /// Steps of the bracketed iteration at most, and the step after which the quadratic rest is below rounding.
 const BISECTIONS: usize = 60;
 const NEWTON_SHORT: f64 = 1e-9;
@@ -38,20 +37,20 @@ pub(crate) fn roots<T: Lane, const N: usize>(
     }
     let mut good = [zero; N];
     let mut open = [one; N];
-    for _ in 0..STEPS {
+    for _ in 1..ALWAYS {
+        for k in 0..used {
+            at[k] = step(pairs[k], at[k]).0;
+        }
+    }
+    for _ in ALWAYS..=STEPS {
         let mut left = zero;
         for k in 0..used {
-            let (angle, pair) = (at[k], pairs[k]);
-            let ([top, bottom], rho) = pair.step(angle.cos, angle.sin);
-            let size = bottom.abs();
-            let limit = size * LONGEST_HALF;
-            let turned = angle.ahead(top.max(-limit).min(limit), bottom);
+            let (turned, short, sound) = step(pairs[k], at[k]);
             // A root that is found stays: other lanes of the register do not move it.
             let moves = zero.below(open[k]);
-            at[k] = Angle::pick(moves, turned, angle);
-            let sound = T::pick((pair.radius * OFF_AXIS).below(rho), one, zero);
-            good[k] = T::pick(moves, sound, good[k]);
-            open[k] = T::pick(top.abs().below(size * SHORT), zero, open[k]);
+            at[k] = Angle::pick(moves, turned, at[k]);
+            good[k] = T::pick(moves, T::pick(sound, one, zero), good[k]);
+            open[k] = T::pick(short, zero, open[k]);
             left = left.max(open[k]);
         }
         if !T::any(zero.below(left)) {
@@ -62,6 +61,14 @@ pub(crate) fn roots<T: Lane, const N: usize>(
         good[k] = T::pick(brackets[k].contains(at[k]), good[k] - open[k], zero);
     }
     (at, good)
+}
+
+/// An angle after a step, whether it was the last one, and whether the minimum is one that the kernel may answer for.
+#[inline(always)]
+fn step<T: Lane>(pair: &Reduced<T>, angle: Angle<T>) -> (Angle<T>, T::Mask, T::Mask) {
+    let ([top, bottom], [rho, rise]) = pair.step(angle.cos, angle.sin);
+    let sound = T::both((pair.radius * OFF_AXIS).below(rho), rise.like(0.0).below(rise));
+    (angle.ahead(top, bottom), top.abs().below(bottom.abs() * SHORT), sound)
 }
 
 /// The root in a bracket by Newton's method, kept inside by bisection.
@@ -101,9 +108,7 @@ pub(crate) fn minima(pair: &Reduced<f64>) -> Option<([Direction; MAX_MINIMA], us
     if !is_steep(pair) {
         return None;
     }
-    let table = &*TABLE;
-    let counted = Counted::new(pair, &Harmonics::new(pair, table), table);
-    let brackets = Brackets::new(pair, &counted, table)?;
+    let brackets = Brackets::of_pair(pair, &TABLE)?;
     let (mut angles, good) = roots([pair; MAX_MINIMA], &brackets.all, brackets.count);
     for k in (0..brackets.count).filter(|k| good[*k] != 1.0) {
         angles[k] = bisected(pair, &brackets.all[k])?;

@@ -59,7 +59,7 @@ impl<T: Lane> Reduced<T> {
     #[inline(always)]
     pub fn new(base_radius: T, radius: T, [x0, y0, z0]: [T; 3], tilt_cos: T, tilt_sin: T) -> Self {
         let (cx0, rise) = (tilt_cos * x0, radius * tilt_sin);
-        let p = [radius * y0, -(radius * (cx0 + tilt_sin * z0))];
+        let p = [radius * y0, -(radius * tilt_sin.fused(z0, cx0))];
         let q = [base_radius * p[0], -(base_radius * (radius * cx0)), base_radius * (rise * rise) * 0.5];
         Self { base_radius, radius, x0, y0, z0, tilt_cos, tilt_sin, p, q, inverse: radius.like(1.0) / base_radius }
     }
@@ -75,13 +75,26 @@ impl<T: Lane> Reduced<T> {
         Self::new(base_radius, radius, [x0, y0, z0], tilt_cos, tilt_sin)
     }
 
-    /// `ρ h′ = pρ − q` and its companion `pρ + q`.
+    /// p, q and ρ² at an angle: what `ρ h′ = pρ − q` is made of.
     #[inline(always)]
-    pub fn factors(&self, cos: T, sin: T) -> [T; 2] {
-        let (x, y) = (self.x0 + self.radius * self.tilt_cos * cos, self.y0 + self.radius * sin);
-        let p = (self.p[0] * cos + self.p[1] * sin) * (x * x + y * y).sqrt();
-        let q = self.q[0] * cos + self.q[1] * sin + self.q[2] * (sin * cos * 2.0);
-        [p - q, p + q]
+    pub fn terms(&self, cos: T, sin: T) -> [T; 3] {
+        let [x, y] = self.place(cos, sin);
+        let p = self.p[0].fused(cos, self.p[1] * sin);
+        let q = (self.q[2] * sin).fused(cos + cos, self.q[0].fused(cos, self.q[1] * sin));
+        [p, q, x.fused(x, y * y)]
+    }
+
+    /// `ρ h′ = pρ − q`.
+    #[inline(always)]
+    pub fn slope(&self, cos: T, sin: T) -> T {
+        let [p, q, square] = self.terms(cos, sin);
+        p.fused(square.sqrt(), -q)
+    }
+
+    /// The position in the base plane.
+    #[inline(always)]
+    fn place(&self, cos: T, sin: T) -> [T; 2] {
+        [(self.radius * self.tilt_cos).fused(cos, self.x0), self.radius.fused(sin, self.y0)]
     }
 
     /// `h′`, `h″` and ρ, from the products that keep `h′` accurate, see [`Relative::at`].
@@ -99,32 +112,32 @@ impl<T: Lane> Reduced<T> {
     }
 
     /// Halley's step for `f = ρ h′ = ρ z z′ + (ρ − R) e·e′`, as a fraction that is the tangent of half of it:
-    /// `−f f′ / (2 f′² − f f″)` times ρ³ above and below, so that it takes no division; and ρ, negative where f does not
-    /// rise: there the step goes down the slope.
+    /// `−f f′ / (2 f′² − f f″)` times ρ³ above and below, so that it takes no division; ρ, and `ρ f′`.
     ///
     /// The products keep f accurate, see [`Relative::at`]; its derivatives are those of `pρ − q`, with `R e·e′ = q`.
     #[inline(always)]
-    pub fn step(&self, cos: T, sin: T) -> ([T; 2], T) {
+    pub fn step(&self, cos: T, sin: T) -> ([T; 2], [T; 2]) {
         let rise = self.radius * self.tilt_sin;
-        let (x, y) = (self.x0 + self.radius * self.tilt_cos * cos, self.y0 + self.radius * sin);
-        let (z, z1) = (self.z0 + rise * cos, -(rise * sin));
-        let square = x * x + y * y;
+        let [x, y] = self.place(cos, sin);
+        let (z, z1) = (rise.fused(cos, self.z0), -(rise * sin));
+        let square = x.fused(x, y * y);
         let rho = square.sqrt();
-        let (twice_sin, twice_cos) = (sin * cos * 2.0, (cos - sin) * (cos + sin));
-        let (p, p1) = (self.p[0] * cos + self.p[1] * sin, self.p[1] * cos - self.p[0] * sin);
-        let (odd, even) = (self.q[0] * cos + self.q[1] * sin, self.q[2] * twice_sin);
+        let (twice_sin, twice_cos) = ((sin + sin) * cos, (cos - sin) * (cos + sin));
+        let (p, p1) = (self.p[0].fused(cos, self.p[1] * sin), self.p[0].taken(sin, self.p[1] * cos));
+        let odd = self.q[0].fused(cos, self.q[1] * sin);
+        let even = self.q[2] * twice_sin;
         let q = odd + even;
-        let q1 = self.q[1] * cos - self.q[0] * sin + self.q[2] * twice_cos * 2.0;
-        let q2 = -(odd + even * 4.0);
+        let q1 = (self.q[2] + self.q[2]).fused(twice_cos, self.q[0].taken(sin, self.q[1] * cos));
+        // −q″
+        let bend = even.fused(even.like(4.0), odd);
         let (ee, ee1) = (q * self.inverse, q1 * self.inverse);
-        let f = rho * (z * z1) + (rho - self.base_radius) * ee;
+        let f = rho.fused(z * z1, (rho - self.base_radius) * ee);
         // ρ f′ and ρ³ f″
-        let first = p1 * square + p * ee - q1 * rho;
-        let second = square * (p1 * ee * 2.0 + p * ee1 - p * square - q2 * rho) - p * (ee * ee);
-        let rises = square.like(0.0).below(first);
-        let top = T::pick(rises, f * first * square, f);
-        let bottom = T::pick(rises, f * second - first * first * rho * 2.0, -(f.abs() * 8.0));
-        ([top, bottom], T::pick(rises, rho, -rho))
+        let first = q1.taken(rho, p1.fused(square, p * ee));
+        let inner = bend.fused(rho, p.taken(square, p.fused(ee1, (p1 + p1) * ee)));
+        let second = (p * ee).taken(ee, square * inner);
+        let bottom = (first * rho).taken(first + first, f * second);
+        ([f * first * square, bottom], [rho, first])
     }
 
     /// How large the slope could be: the sum of its harmonics' amplitudes.
@@ -136,16 +149,16 @@ impl<T: Lane> Reduced<T> {
     /// The position in the base plane, and its distance from the axis.
     #[inline(always)]
     pub fn foot(&self, cos: T, sin: T) -> [T; 3] {
-        let (x, y) = (self.x0 + self.radius * self.tilt_cos * cos, self.y0 + self.radius * sin);
-        [x, y, (x * x + y * y).sqrt()]
+        let [x, y] = self.place(cos, sin);
+        [x, y, x.fused(x, y * y).sqrt()]
     }
 
-    /// The distance at an angle.
+    /// The distance at an angle, given ρ there.
     #[inline(always)]
-    pub fn distance(&self, cos: T, sin: T) -> T {
-        let radial = self.foot(cos, sin)[2] - self.base_radius;
-        let z = self.z0 + self.radius * self.tilt_sin * cos;
-        (z * z + radial * radial).sqrt()
+    pub fn distance(&self, cos: T, rho: T) -> T {
+        let radial = rho - self.base_radius;
+        let z = (self.radius * self.tilt_sin).fused(cos, self.z0);
+        z.fused(z, radial * radial).sqrt()
     }
 }
 

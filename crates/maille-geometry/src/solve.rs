@@ -4,7 +4,7 @@
 
 use crate::batch::{Approach, Approaches};
 use crate::brackets::{Bracket, Counted, SLOTS, is_steep};
-use crate::count::{ARCS, Harmonics, TABLE};
+use crate::count::{Harmonics, TABLE};
 use crate::halving::{Brackets, halved};
 use crate::lane::{Lane, Register};
 use crate::placed::{Block, Row, WIDTH};
@@ -15,11 +15,8 @@ use pulp::{Simd, WithSimd};
 
 /// What the registers of a block leave in memory.
 pub(crate) struct Rows {
-    excess: [Row; ARCS],
-    minus: [Row; ARCS],
-    plus: [Row; ARCS],
     numbers: [Row; 7],
-    brackets: [[Row; 5]; SLOTS],
+    brackets: [[Row; 3]; SLOTS],
     counts: Row,
     complete: Row,
     distance: [Row; SLOTS],
@@ -30,11 +27,8 @@ impl Rows {
     pub fn new() -> Self {
         let row = [0.0; WIDTH];
         Self {
-            excess: [row; ARCS],
-            minus: [row; ARCS],
-            plus: [row; ARCS],
             numbers: [row; 7],
-            brackets: [[row; 5]; SLOTS],
+            brackets: [[row; 3]; SLOTS],
             counts: row,
             complete: row,
             distance: [row; SLOTS],
@@ -57,7 +51,7 @@ impl Rows {
         if <Register<S>>::any(zero.below(counted.doubts())) {
             let left = halved(pair, &harmonics, &counted, &mut rising, table);
             if <Register<S>>::any(zero.below(left)) {
-                self.decided(simd, from, pair, &counted, left, &mut rising);
+                self.decided(simd, from, pair, left, &mut rising);
             }
         }
         rising
@@ -70,15 +64,9 @@ impl Rows {
         simd: S,
         from: usize,
         pair: &Reduced<Register<S>>,
-        counted: &Counted<Register<S>>,
         left: Register<S>,
         (brackets, count): &mut ([Bracket<Register<S>>; SLOTS], Register<S>),
     ) {
-        for k in 0..ARCS {
-            counted.excess[k].store(&mut self.excess[k], from);
-            counted.minus[k].store(&mut self.minus[k], from);
-            counted.plus[k].store(&mut self.plus[k], from);
-        }
         for (row, number) in self.numbers.iter_mut().zip(pair.numbers()) {
             number.store(row, from);
         }
@@ -108,13 +96,8 @@ impl Rows {
     /// The brackets of one pair, and how many: 0 if that is not to be decided here.
     fn decide(&mut self, lane: usize) {
         let pair = Reduced::of_numbers(column(&self.numbers, lane));
-        let counted = Counted {
-            excess: column(&self.excess, lane),
-            minus: column(&self.minus, lane),
-            plus: column(&self.plus, lane),
-        };
         self.counts[lane] = 0.0;
-        let Some(found) = Brackets::new(&pair, &counted, &TABLE) else { return };
+        let Some(found) = Brackets::of_pair(&pair, &TABLE) else { return };
         if (1..=SLOTS).contains(&found.count) {
             self.counts[lane] = found.count as f64;
             for (slot, rows) in self.brackets.iter_mut().enumerate() {
@@ -132,16 +115,10 @@ impl Rows {
         Approach { distance: self.distance[slot][lane], direction_b: Vec3::new(x, y, z) }
     }
 
-    /// Puts the minima of a pair in its place.
+    /// Puts the minima of a pair in its place. The second of one alone is as far as can be.
     #[inline(always)]
     fn put(&self, lane: usize, place: &mut Approaches) {
-        let count = self.counts[lane];
-        *place = Approaches::NONE;
-        place.count = count as usize;
-        if count < 1.5 {
-            place.found[0] = self.approach(0, lane);
-            return;
-        }
+        place.count = self.counts[lane] as usize;
         let swapped = usize::from(self.distance[1][lane] < self.distance[0][lane]);
         place.found[swapped] = self.approach(0, lane);
         place.found[1 - swapped] = self.approach(1, lane);
@@ -157,9 +134,6 @@ fn column<const N: usize>(rows: &[Row; N], lane: usize) -> [f64; N] {
     out
 }
 
-/// Registers whose roots are sought together: one step waits for the other's square roots.
-const ABREAST: usize = 2;
-
 /// The minima of the pairs of a block, put in their places.
 pub(crate) struct Solve<'a> {
     pub block: &'a Block,
@@ -174,27 +148,24 @@ impl WithSimd for Solve<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Solve { block, rows, pairs, out } = self;
-        for from in (0..block.count).step_by(ABREAST * S::F64_LANES) {
-            let second = from + S::F64_LANES;
-            let framed = [block.load(simd, from).framed(), block.load(simd, second).framed()];
-            let zero = framed[0].pair.radius.like(0.0);
-            let [first, last] = &framed;
-            let rising = [rows.rising(simd, from, &first.pair), rows.rising(simd, second, &last.pair)];
-            let [([a, b], _), ([c, d], _)] = rising;
-            let (angles, good) = roots([&first.pair, &first.pair, &last.pair, &last.pair], &[a, b, c, d], 4);
-            for half in 0..ABREAST {
-                let (at, framed, count) = (from + half * S::F64_LANES, &framed[half], rising[half].1);
-                let few = <Register<S>>::both(zero.below(count), count.below(zero.like(SLOTS as f64 + 0.5)));
-                let regular = <Register<S>>::both(few, <Register<S>>::both(is_steep(&framed.pair), framed.is_tilted()));
-                let good = good[SLOTS * half] * good[SLOTS * half + 1];
-                count.store(&mut rows.counts, at);
-                <Register<S>>::pick(regular, good, zero).store(&mut rows.complete, at);
-                for slot in 0..SLOTS {
-                    let (distance, direction) = framed.approach(angles[SLOTS * half + slot]);
-                    distance.store(&mut rows.distance[slot], at);
-                    for axis in 0..3 {
-                        direction[axis].store(&mut rows.direction[slot][axis], at);
-                    }
+        for from in (0..block.count).step_by(S::F64_LANES) {
+            let framed = block.load(simd, from).framed();
+            let (zero, one) = (framed.pair.radius.like(0.0), framed.pair.radius.like(1.0));
+            let (brackets, count) = rows.rising(simd, from, &framed.pair);
+            let (angles, good) = roots([&framed.pair; SLOTS], &brackets, SLOTS);
+            let few = <Register<S>>::both(zero.below(count), count.below(zero.like(SLOTS as f64 + 0.5)));
+            let regular = <Register<S>>::both(few, <Register<S>>::both(is_steep(&framed.pair), framed.is_tilted()));
+            count.store(&mut rows.counts, from);
+            <Register<S>>::pick(regular, good[0] * good[1], zero).store(&mut rows.complete, from);
+            let alone = count.below(one + zero.like(0.5));
+            for slot in 0..SLOTS {
+                let (mut distance, direction) = framed.approach(angles[slot]);
+                if slot > 0 {
+                    distance = <Register<S>>::pick(alone, zero.like(f64::INFINITY), distance);
+                }
+                distance.store(&mut rows.distance[slot], from);
+                for axis in 0..3 {
+                    direction[axis].store(&mut rows.direction[slot][axis], from);
                 }
             }
         }
