@@ -52,12 +52,59 @@ pub(crate) struct Arcs {
     pub levels: [Level; LEVELS],
     /// cos and sin of k times the angle of the first centre, k = 1 … 4.
     turn: [Direction; 4],
-    /// Bernstein coefficients of 1, divided out of the next two.
+    /// Bernstein coefficients of 1, divided out of those of the basis.
     pub weights: [f64; 9],
-    /// Coefficients 0 … 4 of cos kθ, k = 1 … 4 (the others by symmetry), around the centre of an arc.
+    pub basis: Basis,
+    /// The arcs side by side, from the centre of the first.
+    pub whole: Fan,
+    /// The parts of an arc side by side, from its centre.
+    pub parts: Fan,
+}
+
+/// Bernstein coefficients around the centre of an arc, divided by those of 1.
+pub(crate) struct Basis {
+    /// Coefficients 0 … 4 of cos kθ, k = 1 … 4 (the others by symmetry).
     cosines: [[f64; 4]; 5],
     /// Coefficients 0 … 3 of sin kθ; number 4 is 0, the others by antisymmetry.
     sines: [[f64; 4]; 4],
+}
+
+impl Basis {
+    fn new(edge: f64) -> Self {
+        let weights = bernstein(&modes(0, edge)[0]);
+        let part = |k: usize, sine: usize, i: usize| bernstein(&modes(k, edge)[sine])[i] / weights[i];
+        Self {
+            cosines: std::array::from_fn(|i| std::array::from_fn(|k| part(k + 1, 0, i))),
+            sines: std::array::from_fn(|i| std::array::from_fn(|k| part(k + 1, 1, i))),
+        }
+    }
+}
+
+/// As many arcs side by side, one in each lane, with the turns from an origin to them.
+pub(crate) struct Fan {
+    /// cos and sin of k times the turn to the centre, k = 1 … 4.
+    pub turns: [[[f64; ARCS]; 2]; 4],
+    /// The turns to the first end, and to the other.
+    pub ends: [[[f64; ARCS]; 2]; 2],
+    /// What the arcs are halvings of.
+    pub level: usize,
+    pub basis: Basis,
+}
+
+impl Fan {
+    /// From the centre of arc `origin`, a whole number or not.
+    fn new(width: f64, origin: f64, level: usize) -> Self {
+        let turns = |k: f64, shift: f64| {
+            let at = |i: usize| Direction::at(k * (i as f64 - origin + shift) * width);
+            [std::array::from_fn(|i| at(i).cos), std::array::from_fn(|i| at(i).sin)]
+        };
+        Self {
+            turns: std::array::from_fn(|k| turns(k as f64 + 1.0, 0.0)),
+            ends: [turns(1.0, -0.5), turns(1.0, 0.5)],
+            level,
+            basis: Basis::new((width / 4.0).tan()),
+        }
+    }
 }
 
 /// The first arc begins at an angle that no symmetric design singles out.
@@ -68,7 +115,6 @@ pub(crate) static TABLE: LazyLock<Arcs> = LazyLock::new(|| {
     let at = |i: f64| Direction::at(START_RAD + (i % ARCS as f64) * width);
     let edge = (width / 4.0).tan();
     let weights = bernstein(&modes(0, edge)[0]);
-    let part = |k: usize, sine: usize, i: usize| bernstein(&modes(k, edge)[sine])[i] / weights[i];
     Arcs {
         ends: std::array::from_fn(|i| at(i as f64)),
         centers: std::array::from_fn(|i| at(i as f64 + 0.5)),
@@ -79,8 +125,9 @@ pub(crate) static TABLE: LazyLock<Arcs> = LazyLock::new(|| {
         }),
         turn: std::array::from_fn(|k| Direction::at((k as f64 + 1.0) * (START_RAD + 0.5 * width))),
         weights,
-        cosines: std::array::from_fn(|i| std::array::from_fn(|k| part(k + 1, 0, i))),
-        sines: std::array::from_fn(|i| std::array::from_fn(|k| part(k + 1, 1, i))),
+        basis: Basis::new(edge),
+        whole: Fan::new(width, 0.0, 0),
+        parts: Fan::new(width / ARCS as f64, (ARCS as f64 - 1.0) / 2.0, ARCS.ilog2() as usize),
     }
 });
 
@@ -122,11 +169,17 @@ fn eighth<T: Lane>(cosine: T, sine: T) -> [T; 2] {
     [(cosine + sine) * FRAC_1_SQRT_2, (sine - cosine) * FRAC_1_SQRT_2]
 }
 
+/// A harmonic's cosine and sine part, turned by an angle.
+#[inline(always)]
+pub(crate) fn turned<T: Lane>([cosine, sine]: [T; 2], [cos, sin]: [T; 2]) -> [T; 2] {
+    [cosine.fused(cos, sine * sin), cosine.taken(sin, sine * cos)]
+}
+
 /// H around the centre of the first arc: `mean + Σ (cosine_k cos kθ + sine_k sin kθ)`, k = 1 … 4.
 pub(crate) struct Harmonics<T> {
-    mean: T,
-    cosine: [T; 4],
-    sine: [T; 4],
+    pub mean: T,
+    pub cosine: [T; 4],
+    pub sine: [T; 4],
     /// A bound of what the terms of H could add up to.
     size: T,
 }
@@ -178,7 +231,7 @@ impl<T: Lane> Harmonics<T> {
     /// Cosine and sine parts of the four harmonics around the centre of an arc `M < ARCS / 2`: from an arc to the next they
     /// turn by 45°, 90°, 135° and 180°.
     #[inline(always)]
-    fn turned<const M: usize>(&self) -> [[T; 2]; 4] {
+    fn eighths<const M: usize>(&self) -> [[T; 2]; 4] {
         let ([c1, c2, c3, c4], [s1, s2, s3, s4]) = (self.cosine, self.sine);
         match M {
             0 => [[c1, s1], [c2, s2], [c3, s3], [c4, s4]],
@@ -198,19 +251,19 @@ impl<T: Lane> Harmonics<T> {
     /// the sign of the odd harmonics. The first and the last are the values of H at the ends, given by arc.
     #[inline(always)]
     pub fn coefficients<const M: usize>(&self, ends: &[T; ARCS], table: &Arcs) -> [[T; 9]; 2] {
-        let [first, second, third, fourth] = self.turned::<M>();
+        let [first, second, third, fourth] = self.eighths::<M>();
         let mut out = [[self.mean; 9]; 2];
         (out[0][0], out[0][8]) = (ends[M], ends[M + 1]);
         (out[1][0], out[1][8]) = (ends[M + ARCS / 2], ends[(M + ARCS / 2 + 1) % ARCS]);
         for i in 1..5 {
-            let a = likes(self.mean, &table.cosines[i]);
+            let a = likes(self.mean, &table.basis.cosines[i]);
             let even = second[0].fused(a[1], fourth[0].fused(a[3], self.mean));
             let odd = first[0].fused(a[0], third[0] * a[2]);
             if i == 4 {
                 (out[0][4], out[1][4]) = (even + odd, even - odd);
                 continue;
             }
-            let b = likes(self.mean, &table.sines[i]);
+            let b = likes(self.mean, &table.basis.sines[i]);
             let even_sine = second[1].fused(b[1], fourth[1] * b[3]);
             let odd_sine = first[1].fused(b[0], third[1] * b[2]);
             let (left, right) = (even + even_sine, even - even_sine);
@@ -221,21 +274,23 @@ impl<T: Lane> Harmonics<T> {
         out
     }
 
-    /// The coefficients of the arc that is turned by an angle from the first one, divided by [`Arcs::weights`], with the
-    /// values of H at its ends.
+    /// Cosine and sine parts of the four harmonics around the centre of the arc that is turned by an angle from the first.
     #[inline(always)]
-    pub fn around(&self, turn: [T; 2], ends: [T; 2], table: &Arcs) -> [T; 9] {
+    pub fn turned_by(&self, turn: [T; 2]) -> [[T; 2]; 4] {
         let [cos, sin] = turn;
         let mut by = turn;
         let mut modes = [[self.mean; 2]; 4];
         for k in 0..4 {
-            modes[k] = [
-                self.cosine[k].fused(by[0], self.sine[k] * by[1]),
-                self.cosine[k].taken(by[1], self.sine[k] * by[0]),
-            ];
+            modes[k] = turned([self.cosine[k], self.sine[k]], by);
             by = [by[1].taken(sin, by[0] * cos), by[0].fused(sin, by[1] * cos)];
         }
-        arc_coefficients(self.mean, &modes, ends, table)
+        modes
+    }
+
+    /// The coefficients of that arc, divided by [`Arcs::weights`], with the values of H at its ends.
+    #[inline(always)]
+    pub fn around(&self, turn: [T; 2], ends: [T; 2], table: &Arcs) -> [T; 9] {
+        arc_coefficients(self.mean, &self.turned_by(turn), ends, &table.basis)
     }
 
     /// A coefficient is certain if it is larger than this.
@@ -257,14 +312,14 @@ fn likes<T: Lane>(model: T, values: &[f64; 4]) -> [T; 4] {
     [model.like(values[0]), model.like(values[1]), model.like(values[2]), model.like(values[3])]
 }
 
-/// The coefficients of an arc, divided by [`Arcs::weights`]: from H's harmonics around its centre (cosine and sine part)
+/// The coefficients of an arc, divided by those of 1: from H's harmonics around its centre (cosine and sine part)
 /// and the values of H at its ends.
 #[inline(always)]
-pub(crate) fn arc_coefficients<T: Lane>(mean: T, modes: &[[T; 2]; 4], ends: [T; 2], table: &Arcs) -> [T; 9] {
+pub(crate) fn arc_coefficients<T: Lane>(mean: T, modes: &[[T; 2]; 4], ends: [T; 2], basis: &Basis) -> [T; 9] {
     let mut out = [ends[0]; 9];
     out[8] = ends[1];
     for i in 1..5 {
-        let (a, mut even) = (&table.cosines[i], mean);
+        let (a, mut even) = (&basis.cosines[i], mean);
         for k in 0..4 {
             even = modes[k][0].fused(mean.like(a[k]), even);
         }
@@ -272,7 +327,7 @@ pub(crate) fn arc_coefficients<T: Lane>(mean: T, modes: &[[T; 2]; 4], ends: [T; 
             out[4] = even;
             continue;
         }
-        let (b, mut odd) = (&table.sines[i], modes[0][1] * table.sines[i][0]);
+        let (b, mut odd) = (&basis.sines[i], modes[0][1] * basis.sines[i][0]);
         for k in 1..4 {
             odd = modes[k][1].fused(mean.like(b[k]), odd);
         }

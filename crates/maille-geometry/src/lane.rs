@@ -114,6 +114,12 @@ pub(crate) struct Truth<S: Simd> {
 }
 
 impl<S: Simd> Register<S> {
+    /// One number in all lanes.
+    #[inline(always)]
+    pub fn all(simd: S, value: f64) -> Self {
+        Self { simd, value: simd.splat_f64s(value) }
+    }
+
     /// Some of the numbers of a row.
     #[inline(always)]
     pub fn load(simd: S, row: &[f64], from: usize) -> Self {

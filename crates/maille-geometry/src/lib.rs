@@ -37,6 +37,7 @@ mod polynomial;
 mod quick;
 mod relative;
 mod search;
+mod single;
 mod solve;
 mod torus;
 

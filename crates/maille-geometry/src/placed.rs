@@ -68,7 +68,7 @@ impl Block {
     }
 }
 
-type Vector<T> = [T; 3];
+pub(crate) type Vector<T> = [T; 3];
 
 #[inline(always)]
 fn minus<T: Lane>(p: Vector<T>, q: Vector<T>) -> Vector<T> {
@@ -76,7 +76,7 @@ fn minus<T: Lane>(p: Vector<T>, q: Vector<T>) -> Vector<T> {
 }
 
 #[inline(always)]
-fn dot<T: Lane>(p: Vector<T>, q: Vector<T>) -> T {
+pub(crate) fn dot<T: Lane>(p: Vector<T>, q: Vector<T>) -> T {
     p[0].fused(q[0], p[1].fused(q[1], p[2] * q[2]))
 }
 
@@ -86,7 +86,7 @@ fn cross<T: Lane>(p: Vector<T>, q: Vector<T>) -> Vector<T> {
 }
 
 #[inline(always)]
-fn sum<T: Lane>(p: Vector<T>, by: T, q: Vector<T>, times: T) -> Vector<T> {
+pub(crate) fn sum<T: Lane>(p: Vector<T>, by: T, q: Vector<T>, times: T) -> Vector<T> {
     [p[0].fused(by, q[0] * times), p[1].fused(by, q[1] * times), p[2].fused(by, q[2] * times)]
 }
 
@@ -100,6 +100,25 @@ pub(crate) struct Placed<T> {
     between: Vector<T>,
     normals: [Vector<T>; 2],
     radii: [T; 2],
+}
+
+impl<S: Simd> Placed<Register<S>> {
+    /// One pair in all lanes.
+    #[inline(always)]
+    pub fn one(simd: S, a: &Circle, b: &Circle) -> Self {
+        let between = b.center - a.center;
+        Placed {
+            between: splat(simd, &between),
+            normals: [splat(simd, &a.normal), splat(simd, &b.normal)],
+            radii: [Register::all(simd, a.radius), Register::all(simd, b.radius)],
+        }
+    }
+}
+
+/// A vector in all lanes.
+#[inline(always)]
+pub(crate) fn splat<S: Simd>(simd: S, v: &crate::Vec3) -> Vector<Register<S>> {
+    [Register::all(simd, v.x), Register::all(simd, v.y), Register::all(simd, v.z)]
 }
 
 /// Of the largest square: more than a few roundings.
@@ -163,9 +182,9 @@ impl<T: Lane> Placed<T> {
 /// Pairs of a register, reduced to six numbers each.
 pub(crate) struct Framed<T: Lane> {
     pub pair: Reduced<T>,
-    axes: [Vector<T>; 2],
-    steepest: Vector<T>,
-    scale: T,
+    pub axes: [Vector<T>; 2],
+    pub steepest: Vector<T>,
+    pub scale: T,
     swapped: T::Mask,
     /// Sine of the planes' angle.
     length: T,

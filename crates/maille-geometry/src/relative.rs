@@ -140,6 +140,21 @@ impl<T: Lane> Reduced<T> {
         ([f * first * square, bottom], [rho, first])
     }
 
+    /// With `g(α, θ) = ½ |A(α) − P(θ)|²` and α the angle of the foot, whose direction in the base plane is given with ρ:
+    /// `g_αα = R ρ`, `g_αθ`, `g_θθ` at the foot held fixed, and `h′`. See [`Relative::minimum`].
+    #[inline(always)]
+    pub fn derivatives(&self, cos: T, sin: T, [x, y, rho]: [T; 3]) -> [T; 4] {
+        let (r, rise) = (self.radius, self.radius * self.tilt_sin);
+        let radial = rho - self.base_radius;
+        let z = rise.fused(cos, self.z0);
+        let across = self.tilt_cos * cos;
+        let mixed = -(self.base_radius * r) * x.fused(cos, y * (self.tilt_cos * sin));
+        let moving = r * (z * self.tilt_sin).taken(cos, radial.taken(x.fused(across, y * sin), r));
+        let [_, q, _] = self.terms(cos, sin);
+        let slope = (radial * (q * self.inverse) / rho) - z * (rise * sin);
+        [self.base_radius * rho, mixed, moving, slope]
+    }
+
     /// How large the slope could be: the sum of its harmonics' amplitudes.
     #[inline(always)]
     pub fn steepness(&self) -> T {
@@ -343,24 +358,11 @@ impl<'a> Relative<'a> {
         let base = self.base_radius * rho * unit_sq;
         let moving = self.at_fixed_foot(cos, sin, &sample) * unit_sq;
         let (mixed, slope) = (mixed * unit_sq, slope * unit_sq);
-        match swapped {
-            false => Minimum {
-                distance,
-                point_a: base_point,
-                point_b: moving_point,
-                angle_b_rad: self.moving.direction_angle_rad(&moving_direction),
-                gradient: [0.0, slope],
-                hessian: [[base, mixed], [mixed, moving]],
-            },
-            true => Minimum {
-                distance,
-                point_a: moving_point,
-                point_b: base_point,
-                angle_b_rad: self.base.direction_angle_rad(&base_direction),
-                gradient: [slope, 0.0],
-                hessian: [[moving, mixed], [mixed, base]],
-            },
-        }
+        let angle_b_rad = match swapped {
+            false => self.moving.direction_angle_rad(&moving_direction),
+            true => self.base.direction_angle_rad(&base_direction),
+        };
+        Minimum::of_base(distance, [base_point, moving_point], angle_b_rad, slope, [base, mixed, moving], swapped)
     }
 }
 
