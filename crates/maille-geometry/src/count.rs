@@ -181,7 +181,7 @@ pub(crate) struct Harmonics<T> {
     pub cosine: [T; 4],
     pub sine: [T; 4],
     /// A bound of what the terms of H could add up to.
-    size: T,
+    pub size: T,
 }
 
 impl<T: Lane> Harmonics<T> {

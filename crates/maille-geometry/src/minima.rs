@@ -40,8 +40,8 @@ pub struct Minimum {
     pub point_a: Vec3,
     /// The point on circle B.
     pub point_b: Vec3,
-    /// Angle of `point_b` in the [frame](Circle::frame) of B, in `(−π, π]`.
-    pub angle_b_rad: f64,
+    /// Cosine and sine of the angle of `point_b` in the [frame](Circle::frame) of B.
+    pub direction_b: [f64; 2],
     /// `(g_α, g_β)`, length². Zero but for the rounding of the angle: the residual of the search.
     pub gradient: [f64; 2],
     /// `((g_αα, g_αβ), (g_αβ, g_ββ))`, length². Positive semidefinite; singular where minima merge, for continua, and
@@ -54,10 +54,16 @@ impl Minimum {
         distance: f64::INFINITY,
         point_a: Vec3::new(0.0, 0.0, 0.0),
         point_b: Vec3::new(0.0, 0.0, 0.0),
-        angle_b_rad: 0.0,
+        direction_b: [1.0, 0.0],
         gradient: [0.0; 2],
         hessian: [[0.0; 2]; 2],
     };
+
+    /// The angle of `point_b` in the [frame](Circle::frame) of B, in `(−π, π]`.
+    pub fn angle_b_rad(&self) -> f64 {
+        let [cos, sin] = self.direction_b;
+        sin.atan2(cos)
+    }
 
     /// From the points on the base and on the moving circle, `g_αα, g_αθ, g_θθ` with α the angle on the base, and `g_θ`. The base is
     /// circle A, or B if `swapped`.
@@ -65,17 +71,17 @@ impl Minimum {
     pub(crate) fn of_base(
         distance: f64,
         [base_point, moving_point]: [Vec3; 2],
-        angle_b_rad: f64,
+        direction_b: [f64; 2],
         slope: f64,
         [base, mixed, moving]: [f64; 3],
         swapped: bool,
     ) -> Self {
         if swapped {
             let (gradient, hessian) = ([slope, 0.0], [[moving, mixed], [mixed, base]]);
-            return Minimum { distance, point_a: moving_point, point_b: base_point, angle_b_rad, gradient, hessian };
+            return Minimum { distance, point_a: moving_point, point_b: base_point, direction_b, gradient, hessian };
         }
         let (gradient, hessian) = ([0.0, slope], [[base, mixed], [mixed, moving]]);
-        Minimum { distance, point_a: base_point, point_b: moving_point, angle_b_rad, gradient, hessian }
+        Minimum { distance, point_a: base_point, point_b: moving_point, direction_b, gradient, hessian }
     }
 }
 
@@ -104,6 +110,12 @@ impl Minima {
     /// The minimum of smallest distance, which is the distance of the circles.
     pub fn closest(&self) -> &Minimum {
         &self.found[0]
+    }
+
+    /// The first ones alone.
+    #[inline(always)]
+    pub(crate) fn keep(&mut self, count: usize) {
+        self.count = count;
     }
 
     /// The distances alone.

@@ -52,7 +52,7 @@ pub(crate) struct Reduced<T> {
     /// `R e·e′ = q₀ cos θ + q₁ sin θ + q₂ sin 2θ`.
     pub q: [T; 3],
     /// `1/R`.
-    inverse: T,
+    pub inverse: T,
 }
 
 impl<T: Lane> Reduced<T> {
@@ -358,11 +358,10 @@ impl<'a> Relative<'a> {
         let base = self.base_radius * rho * unit_sq;
         let moving = self.at_fixed_foot(cos, sin, &sample) * unit_sq;
         let (mixed, slope) = (mixed * unit_sq, slope * unit_sq);
-        let angle_b_rad = match swapped {
-            false => self.moving.direction_angle_rad(&moving_direction),
-            true => self.base.direction_angle_rad(&base_direction),
-        };
-        Minimum::of_base(distance, [base_point, moving_point], angle_b_rad, slope, [base, mixed, moving], swapped)
+        let (circle_b, direction) = if swapped { (self.base, base_direction) } else { (self.moving, moving_direction) };
+        let (u, v) = circle_b.frame();
+        let direction_b = [direction.dot(&u), direction.dot(&v)];
+        Minimum::of_base(distance, [base_point, moving_point], direction_b, slope, [base, mixed, moving], swapped)
     }
 }
 

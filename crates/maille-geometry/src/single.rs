@@ -20,6 +20,7 @@ type Row = [f64; ARCS];
 pub(crate) fn minima(a: &Circle, b: &Circle, out: &mut Minima) -> bool {
     #[cfg(target_arch = "x86_64")]
     if let Some(simd) = pulp::x86::V3::try_new() {
+        // Wider registers take longer over a root, and nearly all here is one chain of them.
         return Simd::vectorize(simd, Single { a, b, out });
     }
     let _ = (a, b, out);
@@ -48,6 +49,16 @@ impl Rising {
         (self.cos[place], self.sin[place], self.edge[place]) = (cos, sin, edge);
         self.count += usize::from(rises == 1.0);
     }
+
+    /// The first one again in the lanes that are left.
+    #[inline(always)]
+    fn fill(&mut self) {
+        for k in 1..MAX_MINIMA {
+            if k >= self.count {
+                (self.cos[k], self.sin[k], self.edge[k]) = (self.cos[0], self.sin[0], self.edge[0]);
+            }
+        }
+    }
 }
 
 impl WithSimd for Single<'_> {
@@ -75,9 +86,7 @@ impl WithSimd for Single<'_> {
             Bracket::new(middle, Register::load(simd, &rising.edge, 0))
         };
         let ([at], [good]) = roots([pair], &[bracket], 1);
-        let mut sound: Row = [0.0; ARCS];
-        good.store(&mut sound, 0);
-        if sound[..rising.count] != [1.0; MAX_MINIMA][..rising.count] {
+        if <Register<S>>::any(good.below(good.like(1.0))) {
             return false;
         }
         Points::new(simd, &framed, at, [base, moving], swapped).write(rising.count, out);
@@ -104,12 +113,11 @@ fn rising<S: Simd>(simd: S, pair: &Reduced<Register<S>>) -> Option<Rising> {
     }
     let origin = Angle::like(Angle { cos: pair.radius, sin: pair.radius }, table.centers[0]);
     let [excess, rises] = counted(simd, pair, &harmonics, &modes, origin, &table.whole);
-    let certain = excess == [0.0; ARCS];
     for k in 0..ARCS {
-        let here = if excess[k] == 0.0 { rises[k] } else { 0.0 };
-        found.add([table.centers[k].cos, table.centers[k].sin], table.levels[0].edge, here);
+        found.add([table.centers[k].cos, table.centers[k].sin], table.levels[0].edge, rises[k]);
     }
-    if certain {
+    if excess == [0.0; ARCS] {
+        found.fill();
         return Some(found);
     }
     for k in (0..ARCS).filter(|k| excess[*k] != 0.0) {
@@ -127,10 +135,11 @@ fn rising<S: Simd>(simd: S, pair: &Reduced<Register<S>>) -> Option<Rising> {
             found.add(middle, table.levels[table.parts.level].edge, 1.0);
         }
     }
+    found.fill();
     Some(found)
 }
 
-/// How many more critical points than known each arc could have, and whether G₋ rises there (1, else 0).
+/// How many more critical points than known each arc could have, and whether it has none and G₋ rises there (1, else 0).
 #[inline(always)]
 fn counted<S: Simd>(
     simd: S,
@@ -157,8 +166,10 @@ fn counted<S: Simd>(
         }
         let [first, last] = ends;
         let coefficients = arc_coefficients(harmonics.mean, &around, [first.product, last.product], &fan.basis);
-        (changes(&coefficients, doubt) - first.changes(last)).abs().store(&mut out[0], from);
-        <Register<S>>::pick(first.rises(last), one, zero).store(&mut out[1], from);
+        let excess = (changes(&coefficients, doubt) - first.changes(last)).abs();
+        let rises = <Register<S>>::both(first.rises(last), excess.below(one));
+        excess.store(&mut out[0], from);
+        <Register<S>>::pick(rises, one, zero).store(&mut out[1], from);
     }
     out
 }
@@ -228,22 +239,29 @@ impl Points {
         let vector = |rows: &[Row; 3]| Vec3::new(rows[0][lane], rows[1][lane], rows[2][lane]);
         let (base_point, moving_point) = (vector(&self.base), vector(&self.moving));
         let [base, mixed, moving] = [0, 1, 2].map(|k| self.hessian[k][lane]);
-        let angle_b_rad = self.direction_b[1][lane].atan2(self.direction_b[0][lane]);
+        let direction_b = [self.direction_b[0][lane], self.direction_b[1][lane]];
         Minimum::of_base(
             self.distance[lane],
             [base_point, moving_point],
-            angle_b_rad,
+            direction_b,
             self.slope[lane],
             [base, mixed, moving],
             self.swapped,
         )
     }
 
-    /// The minima in ascending order.
+    /// The minima in ascending order. More than two have never been seen.
     #[inline(always)]
     fn write(&self, count: usize, out: &mut Minima) {
-        let mut order = [0, 1, 2, 3];
-        order[..count].sort_unstable_by(|&p, &q| self.distance[p].total_cmp(&self.distance[q]));
-        out.fill(order[..count].iter().map(|&lane| self.minimum(lane)));
+        if count > 2 {
+            let mut order = [0, 1, 2, 3];
+            order[..count].sort_unstable_by(|&p, &q| self.distance[p].total_cmp(&self.distance[q]));
+            out.fill(order[..count].iter().map(|&lane| self.minimum(lane)));
+            return;
+        }
+        // Both in any case: whether there is a second is anyone's guess. The lanes of one alone are the same.
+        let first = usize::from(self.distance[1] < self.distance[0]);
+        out.fill([self.minimum(first), self.minimum(1 - first)].into_iter());
+        out.keep(count);
     }
 }

@@ -78,7 +78,7 @@ fn assert_on_circles(m: &Minimum, a: &Circle, b: &Circle) {
     let close = 4e-15 * (unit + a.center.norm() + b.center.norm());
     assert!(((m.point_a - m.point_b).norm() - m.distance).abs() < close, "{m:?}");
     assert!((a.point(a.angle_rad(&m.point_a)) - m.point_a).norm() < close, "{m:?} {a:?}");
-    assert!((b.point(m.angle_b_rad) - m.point_b).norm() < close, "{m:?} {b:?}");
+    assert!((b.point(m.angle_b_rad()) - m.point_b).norm() < close, "{m:?} {b:?}");
     assert!((point_circle_distance(&m.point_a, b).distance - m.distance).abs() < close, "{m:?}");
     assert!((point_circle_distance(&m.point_b, a).distance - m.distance).abs() < close, "{m:?}");
     let area = unit * unit;

@@ -53,7 +53,7 @@ fn gradient_and_hessian_agree_with_finite_differences() {
         let (a, b) = GENERIC[index % 3](&mut rng);
         for m in circle_distance_minima(&a, &b).as_slice() {
             let half_sq = |i: f64, j: f64, step: f64| {
-                let gap = a.point(a.angle_rad(&m.point_a) + i * step) - b.point(m.angle_b_rad + j * step);
+                let gap = a.point(a.angle_rad(&m.point_a) + i * step) - b.point(m.angle_b_rad() + j * step);
                 0.5 * gap.norm_squared()
             };
             let first = |i: f64, j: f64| (half_sq(i, j, 1e-6) - half_sq(-i, -j, 1e-6)) / 2e-6;

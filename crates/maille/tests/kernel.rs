@@ -119,7 +119,7 @@ fn moving_minima_and_samples_match_finite_differences() {
         let pair = Pair::random(&mut rng);
         let minima = circle_distance_minima(&pair.a, &pair.b);
         let minimum = minima.closest();
-        let root = pair.frame().jet(minimum.angle_b_rad);
+        let root = pair.frame().jet(minimum.angle_b_rad());
         if root.h_tt < 0.05 || minimum.distance < 0.02 {
             continue; // about to merge, or the distance has its own kink at 0
         }
@@ -128,11 +128,11 @@ fn moving_minima_and_samples_match_finite_differences() {
         assert!(root.h_t.abs() < 1e-12, "h_t at a minimum: {}", root.h_t);
         let motion = RootMotion::at(&root);
         for offset in [0.0, 0.05] {
-            let jet = pair.frame().jet(minimum.angle_b_rad + offset);
+            let jet = pair.frame().jet(minimum.angle_b_rad() + offset);
             let (grad, hess): (Grad, Hess) = jet.distance_derivatives(&motion);
             let value = |y: &Grad| {
                 // Newton on h_t from the old angle, in B's carried frame.
-                let mut angle = minimum.angle_b_rad;
+                let mut angle = minimum.angle_b_rad();
                 for _ in 0..30 {
                     let e = 1e-4;
                     let (m, h, p) = (pair.half_sq(y, angle - e), pair.half_sq(y, angle), pair.half_sq(y, angle + e));

@@ -152,17 +152,17 @@ impl SheetProgram<'_> {
             return;
         }
         for m in near.minima().iter().filter(|m| m.distance - required <= band) {
-            let (_, grad) = frame.distance_gradient(m.angle_b_rad);
-            let hess = loaded(m.angle_b_rad, true).then(|| {
-                let root = frame.jet(m.angle_b_rad);
+            let (_, grad) = frame.distance_gradient(m.angle_b_rad());
+            let hess = loaded(m.angle_b_rad(), true).then(|| {
+                let root = frame.jet(m.angle_b_rad());
                 root.distance_derivatives(&RootMotion::at(&root)).1
             });
-            add(m.angle_b_rad, true, m.distance, &grad, hess.as_ref());
+            add(m.angle_b_rad(), true, m.distance, &grad, hess.as_ref());
             let [[aa, ab], [_, bb]] = m.hessian;
             let least = 0.5 * (aa + bb) - (0.5 * (aa - bb)).hypot(ab);
             if least < FLAT && m.distance - required < NEAR {
                 for offset in BESIDE_RAD {
-                    let angle = m.angle_b_rad + offset;
+                    let angle = m.angle_b_rad() + offset;
                     let (distance, grad) = frame.distance_gradient(angle);
                     let hess = loaded(angle, false).then(|| frame.jet(angle).distance_derivatives_fixed().1);
                     add(angle, false, distance, &grad, hess.as_ref());

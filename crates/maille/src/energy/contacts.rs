@@ -87,7 +87,7 @@ fn overlaps(
             }
             MinimaMethod::Polynomial => {
                 let found = circle_distance_minima_polynomial(a, b);
-                found.as_slice().iter().for_each(|m| add(m.angle_b_rad, m.distance));
+                found.as_slice().iter().for_each(|m| add(m.angle_b_rad(), m.distance));
             }
         }
         if count > 0 {
