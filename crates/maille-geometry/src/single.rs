@@ -11,6 +11,7 @@ use crate::placed::{Framed, Placed, dot, splat, sum};
 use crate::quick::roots;
 use crate::relative::Reduced;
 use crate::{Circle, MAX_MINIMA, ROUNDING, Vec3};
+use arrayvec::ArrayVec;
 use pulp::{Simd, WithSimd};
 
 /// One number for each arc, or for each minimum.
@@ -39,6 +40,7 @@ struct Rising {
     sin: Row,
     edge: Row,
     count: usize,
+    has_parts: bool,
 }
 
 impl Rising {
@@ -80,16 +82,15 @@ impl WithSimd for Single<'_> {
         }
         let middle = Angle { cos: Register::load(simd, &rising.cos, 0), sin: Register::load(simd, &rising.sin, 0) };
         let level = &TABLE.levels[0];
-        let bracket = if rising.edge == [level.edge; ARCS] {
-            Bracket::arc(level, middle)
-        } else {
-            Bracket::new(middle, Register::load(simd, &rising.edge, 0))
+        let bracket = match rising.has_parts {
+            false => Bracket::arc(level, middle),
+            true => Bracket::new(middle, Register::load(simd, &rising.edge, 0)),
         };
         let ([at], [good]) = roots([pair], &[bracket], 1);
         if <Register<S>>::any(good.below(good.like(1.0))) {
             return false;
         }
-        Points::new(simd, &framed, at, [base, moving], swapped).write(rising.count, out);
+        Points::new(simd, &framed, at, [base, moving], swapped).write(rising.count, &mut out.found);
         out.kind = if concentric(pair) { PairKind::Concentric } else { PairKind::Generic };
         true
     }
@@ -106,26 +107,27 @@ fn concentric<S: Simd>(pair: &Reduced<Register<S>>) -> bool {
 fn rising<S: Simd>(simd: S, pair: &Reduced<Register<S>>) -> Option<Rising> {
     let table = &*TABLE;
     let harmonics = Harmonics::new(pair, table);
-    let mut found = Rising { cos: [1.0; ARCS], sin: [0.0; ARCS], edge: [table.levels[0].edge; ARCS], count: 0 };
+    let mut found = Rising { cos: [1.0; ARCS], sin: [0.0; ARCS], edge: [table.levels[0].edge; ARCS], count: 0, has_parts: false };
     let mut modes = [[harmonics.mean; 2]; 4];
     for k in 0..4 {
         modes[k] = [harmonics.cosine[k], harmonics.sine[k]];
     }
     let origin = Angle::like(Angle { cos: pair.radius, sin: pair.radius }, table.centers[0]);
-    let [excess, rises] = counted(simd, pair, &harmonics, &modes, origin, &table.whole);
+    let ([excess, rises], certain) = counted(simd, pair, &harmonics, &modes, origin, &table.whole);
     for k in 0..ARCS {
         found.add([table.centers[k].cos, table.centers[k].sin], table.levels[0].edge, rises[k]);
     }
-    if excess == [0.0; ARCS] {
+    if certain {
         found.fill();
         return Some(found);
     }
+    found.has_parts = true;
     for k in (0..ARCS).filter(|k| excess[*k] != 0.0) {
         let center = Angle::like(origin, table.centers[k]);
         let turn = center.turned(origin.cos, -origin.sin);
         let modes = harmonics.turned_by([turn.cos, turn.sin]);
-        let [excess, rises] = counted(simd, pair, &harmonics, &modes, center, &table.parts);
-        if excess != [0.0; ARCS] {
+        let ([_, rises], certain) = counted(simd, pair, &harmonics, &modes, center, &table.parts);
+        if !certain {
             return None;
         }
         for part in (0..ARCS).filter(|part| rises[*part] == 1.0) {
@@ -139,7 +141,8 @@ fn rising<S: Simd>(simd: S, pair: &Reduced<Register<S>>) -> Option<Rising> {
     Some(found)
 }
 
-/// How many more critical points than known each arc could have, and whether it has none and G₋ rises there (1, else 0).
+/// How many more critical points than known each arc could have, and whether it has none and G₋ rises there (1, else 0);
+/// and whether none has more.
 #[inline(always)]
 fn counted<S: Simd>(
     simd: S,
@@ -148,9 +151,10 @@ fn counted<S: Simd>(
     modes: &[[Register<S>; 2]; 4],
     origin: Angle<Register<S>>,
     fan: &Fan,
-) -> [Row; 2] {
+) -> ([Row; 2], bool) {
     let mut out = [[0.0; ARCS]; 2];
     let doubt = harmonics.doubt();
+    let mut doubts = doubt.like(0.0);
     let (zero, one) = (doubt.like(0.0), doubt.like(1.0));
     for from in (0..ARCS).step_by(S::F64_LANES) {
         let mut ends = [Value { product: zero, minus: zero, plus: zero }; 2];
@@ -168,10 +172,11 @@ fn counted<S: Simd>(
         let coefficients = arc_coefficients(harmonics.mean, &around, [first.product, last.product], &fan.basis);
         let excess = (changes(&coefficients, doubt) - first.changes(last)).abs();
         let rises = <Register<S>>::both(first.rises(last), excess.below(one));
+        doubts = doubts + excess;
         excess.store(&mut out[0], from);
         <Register<S>>::pick(rises, one, zero).store(&mut out[1], from);
     }
-    out
+    (out, !<Register<S>>::any(zero.below(doubts)))
 }
 
 /// What [`Minimum`] says, for the minima in the lanes.
@@ -235,6 +240,7 @@ impl Points {
         out
     }
 
+    #[inline(always)]
     fn minimum(&self, lane: usize) -> Minimum {
         let vector = |rows: &[Row; 3]| Vec3::new(rows[0][lane], rows[1][lane], rows[2][lane]);
         let (base_point, moving_point) = (vector(&self.base), vector(&self.moving));
@@ -252,16 +258,15 @@ impl Points {
 
     /// The minima in ascending order. More than two have never been seen.
     #[inline(always)]
-    fn write(&self, count: usize, out: &mut Minima) {
-        if count > 2 {
-            let mut order = [0, 1, 2, 3];
-            order[..count].sort_unstable_by(|&p, &q| self.distance[p].total_cmp(&self.distance[q]));
-            out.fill(order[..count].iter().map(|&lane| self.minimum(lane)));
-            return;
-        }
-        // Both in any case: whether there is a second is anyone's guess. The lanes of one alone are the same.
+    fn write(&self, count: usize, out: &mut ArrayVec<Minimum, MAX_MINIMA>) {
+        // Two in any case: whether there is a second is anyone's guess. The lanes of one alone are the same.
         let first = usize::from(self.distance[1] < self.distance[0]);
-        out.fill([self.minimum(first), self.minimum(1 - first)].into_iter());
-        out.keep(count);
+        out.push(self.minimum(first));
+        out.push(self.minimum(1 - first));
+        out.truncate(count);
+        if count > 2 {
+            out.extend((2..count).map(|lane| self.minimum(lane)));
+            out.sort_unstable_by(|p, q| p.distance.total_cmp(&q.distance));
+        }
     }
 }
