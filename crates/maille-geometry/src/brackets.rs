@@ -42,7 +42,9 @@ impl<T: Lane> Angle<T> {
     pub fn ahead(self, top: T, bottom: T) -> Self {
         let (square, whole) = (top * top, bottom * bottom);
         let inverse = top.like(1.0) / (whole + square);
-        self.turned((whole - square) * inverse, (top + top) * bottom * inverse)
+        // Divided last: the quotient takes as long as all else.
+        let Angle { cos, sin } = self.turned(whole - square, (top + top) * bottom);
+        Angle { cos: cos * inverse, sin: sin * inverse }
     }
 }
 

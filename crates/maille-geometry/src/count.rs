@@ -339,11 +339,11 @@ pub(crate) fn arc_coefficients<T: Lane>(mean: T, modes: &[[T; 2]; 4], ends: [T; 
 /// Changes of sign in the coefficients of an arc, doubtful ones counted as changes.
 #[inline(always)]
 pub(crate) fn changes<T: Lane>(coefficients: &[T; 9], doubt: T) -> T {
-    let mut sums = [doubt.like(0.0); 2];
+    let mut sums = [doubt.like(0.0); 4];
     for i in 0..8 {
-        sums[i % 2] = sums[i % 2].more((coefficients[i] * coefficients[i + 1]).below(doubt));
+        sums[i % 4] = sums[i % 4].more((coefficients[i] * coefficients[i + 1]).below(doubt));
     }
-    sums[0] + sums[1]
+    (sums[0] + sums[1]) + (sums[2] + sums[3])
 }
 
 /// The coefficients of the two halves of an arc (de Casteljau), from sums that are halved at the end.
@@ -388,7 +388,17 @@ mod tests {
                 crate::brackets::Value::at(&pair, TABLE.ends[k].cos, TABLE.ends[k].sin).product
             });
             for (k, center) in TABLE.centers.into_iter().enumerate() {
-                let arc = harmonics.around(Direction::at(k as f64 * TAU / 8.0).into_turn(), [ends[k], ends[(k + 1) % ARCS]], &TABLE);
+                let Direction { cos, sin } = Direction::at(k as f64 * TAU / ARCS as f64);
+                let arc = harmonics.around([cos, sin], [ends[k], ends[(k + 1) % ARCS]], &TABLE);
+                let both = [
+                    harmonics.coefficients::<0>(&ends, &TABLE),
+                    harmonics.coefficients::<1>(&ends, &TABLE),
+                    harmonics.coefficients::<2>(&ends, &TABLE),
+                    harmonics.coefficients::<3>(&ends, &TABLE),
+                ];
+                for (p, q) in arc.iter().zip(&both[k % 4][k / 4]) {
+                    assert!((p - q).abs() < 1e-14 * harmonics.size);
+                }
                 let whole: [f64; 9] = std::array::from_fn(|i| arc[i] * TABLE.weights[i]);
                 let [left, right] = halves(&whole);
                 for (b, from, to) in [(whole, -1.0, 1.0), (left, -1.0, 0.0), (right, 0.0, 1.0)] {

@@ -126,6 +126,9 @@ const SPARE: f64 = 1e-14;
 /// Sines of the planes' angle below this go to the single kernel.
 const LEAST_TILT: f64 = 1e-7;
 
+/// Squared sines below this are taken from a cross product that is projected once more, see [`crate::relative::Relative`].
+const STEEP_SQ: f64 = 1e-2;
+
 impl<T: Lane> Placed<T> {
     /// The circles are certainly more than `reach` apart, as in [`crate::circle_distance_floor`], but without a root:
     /// the spheres round them are, or one lies above the other's slab, or inside of its ring as seen along its axis.
@@ -167,8 +170,13 @@ impl<T: Lane> Placed<T> {
         let scale = dot(between, between).sqrt().max(base_radius).max(radius);
         let inverse = one / scale;
         let tilt = cross(normal, base_normal);
-        let flat = sum(tilt, one, base_normal, -dot(base_normal, tilt));
-        let length = dot(flat, flat).sqrt();
+        let (mut flat, mut length_sq) = (tilt, dot(tilt, tilt));
+        let shallow = length_sq.below(one * STEEP_SQ);
+        if T::any(shallow) {
+            flat = choose(shallow, sum(tilt, one, base_normal, -dot(base_normal, tilt)), tilt);
+            length_sq = dot(flat, flat);
+        }
+        let length = length_sq.sqrt();
         let along = one / length;
         let y = [flat[0] * along, flat[1] * along, flat[2] * along];
         let x = cross(y, base_normal);

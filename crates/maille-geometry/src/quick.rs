@@ -16,7 +16,7 @@ use crate::relative::Reduced;
 const STEPS: usize = 8;
 const ALWAYS: usize = 2;
 /// After a step shorter than this (the tangent of half of it) the cubic rest is below rounding.
-const SHORT: f64 = 5e-6;
+const SHORT: f64 = 2e-6;
 /// Steps of the bracketed iteration at most, and the step after which the quadratic rest is below rounding.
 const BISECTIONS: usize = 60;
 const NEWTON_SHORT: f64 = 1e-9;

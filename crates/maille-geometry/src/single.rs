@@ -5,16 +5,17 @@
 
 use crate::brackets::{Angle, Bracket, Value, is_steep};
 use crate::count::{ARCS, Fan, Harmonics, TABLE, arc_coefficients, changes, turned};
+use crate::grid::Direction;
 use crate::lane::{Lane, Register};
 use crate::minima::{Minima, Minimum, PairKind};
-use crate::placed::{Framed, Placed, dot, splat, sum};
+use crate::placed::{Framed, Placed, Vector, dot, splat, sum};
 use crate::quick::roots;
 use crate::relative::Reduced;
 use crate::{Circle, MAX_MINIMA, ROUNDING, Vec3};
 use arrayvec::ArrayVec;
 use pulp::{Simd, WithSimd};
 
-/// One number for each arc, or for each minimum.
+/// A number of each arc.
 type Row = [f64; ARCS];
 
 /// Finds the minima of a pair, if it is an ordinary one.
@@ -34,31 +35,37 @@ struct Single<'a> {
     out: &'a mut Minima,
 }
 
-/// Arcs on which G₋ rises through 0: their centres, and tan of a quarter of their widths.
+/// Arcs on which G₋ rises through 0.
 struct Rising {
-    cos: Row,
-    sin: Row,
-    edge: Row,
-    count: usize,
+    middles: [Direction; ARCS],
+    /// tan of a quarter of their widths.
+    edges: Row,
     has_parts: bool,
+    count: usize,
 }
 
 impl Rising {
     /// Adds an arc if `rises` is 1. Written in any case, so that nothing branches.
     #[inline(always)]
-    fn add(&mut self, [cos, sin]: [f64; 2], edge: f64, rises: f64) {
-        let place = self.count % ARCS;
-        (self.cos[place], self.sin[place], self.edge[place]) = (cos, sin, edge);
-        self.count += usize::from(rises == 1.0);
+    fn add(&mut self, middle: Direction, rises: f64) {
+        self.middles[self.count % ARCS] = middle;
+        // 1.0 has this bit, 0.0 has not.
+        self.count += (rises.to_bits() >> 52) as usize & 1;
     }
 
-    /// The first one again in the lanes that are left.
+    /// Lanes with the arcs, the first one again in those that are left.
     #[inline(always)]
-    fn fill(&mut self) {
-        for k in 1..MAX_MINIMA {
-            if k >= self.count {
-                (self.cos[k], self.sin[k], self.edge[k]) = (self.cos[0], self.sin[0], self.edge[0]);
-            }
+    fn bracket<S: Simd>(&self, simd: S) -> Bracket<Register<S>> {
+        let (mut cos, mut sin, mut edges) = ([0.0; MAX_MINIMA], [0.0; MAX_MINIMA], [0.0; MAX_MINIMA]);
+        for lane in 0..MAX_MINIMA {
+            let k = if lane < self.count { lane } else { 0 };
+            (cos[lane], sin[lane]) = (self.middles[k].cos, self.middles[k].sin);
+            edges[lane] = self.edges[k];
+        }
+        let middle = Angle { cos: Register::load(simd, &cos, 0), sin: Register::load(simd, &sin, 0) };
+        match self.has_parts {
+            false => Bracket::arc(&TABLE.levels[0], middle),
+            true => Bracket::new(middle, Register::load(simd, &edges, 0)),
         }
     }
 }
@@ -69,6 +76,7 @@ impl WithSimd for Single<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> bool {
         let Single { a, b, out } = self;
+        assert!(S::F64_LANES == MAX_MINIMA, "a lane for each minimum");
         let swapped = a.radius < b.radius;
         let (base, moving) = if swapped { (b, a) } else { (a, b) };
         let framed = Placed::one(simd, base, moving).framed();
@@ -77,16 +85,10 @@ impl WithSimd for Single<'_> {
             return false;
         }
         let Some(rising) = rising(simd, pair) else { return false };
-        if rising.count == 0 || rising.count > MAX_MINIMA.min(S::F64_LANES) {
+        if rising.count == 0 || rising.count > MAX_MINIMA {
             return false;
         }
-        let middle = Angle { cos: Register::load(simd, &rising.cos, 0), sin: Register::load(simd, &rising.sin, 0) };
-        let level = &TABLE.levels[0];
-        let bracket = match rising.has_parts {
-            false => Bracket::arc(level, middle),
-            true => Bracket::new(middle, Register::load(simd, &rising.edge, 0)),
-        };
-        let ([at], [good]) = roots([pair], &[bracket], 1);
+        let ([at], [good]) = roots([pair], &[rising.bracket(simd)], 1);
         if <Register<S>>::any(good.below(good.like(1.0))) {
             return false;
         }
@@ -107,7 +109,9 @@ fn concentric<S: Simd>(pair: &Reduced<Register<S>>) -> bool {
 fn rising<S: Simd>(simd: S, pair: &Reduced<Register<S>>) -> Option<Rising> {
     let table = &*TABLE;
     let harmonics = Harmonics::new(pair, table);
-    let mut found = Rising { cos: [1.0; ARCS], sin: [0.0; ARCS], edge: [table.levels[0].edge; ARCS], count: 0, has_parts: false };
+    let level = &table.levels[0];
+    let mut found =
+        Rising { middles: [table.centers[0]; ARCS], edges: [level.edge; ARCS], has_parts: false, count: 0 };
     let mut modes = [[harmonics.mean; 2]; 4];
     for k in 0..4 {
         modes[k] = [harmonics.cosine[k], harmonics.sine[k]];
@@ -115,10 +119,9 @@ fn rising<S: Simd>(simd: S, pair: &Reduced<Register<S>>) -> Option<Rising> {
     let origin = Angle::like(Angle { cos: pair.radius, sin: pair.radius }, table.centers[0]);
     let ([excess, rises], certain) = counted(simd, pair, &harmonics, &modes, origin, &table.whole);
     for k in 0..ARCS {
-        found.add([table.centers[k].cos, table.centers[k].sin], table.levels[0].edge, rises[k]);
+        found.add(table.centers[k], rises[k]);
     }
     if certain {
-        found.fill();
         return Some(found);
     }
     found.has_parts = true;
@@ -131,13 +134,11 @@ fn rising<S: Simd>(simd: S, pair: &Reduced<Register<S>>) -> Option<Rising> {
             return None;
         }
         for part in (0..ARCS).filter(|part| rises[*part] == 1.0) {
-            let [[cos, sin], ..] = table.parts.turns;
-            let crate::grid::Direction { cos: x, sin: y } = table.centers[k];
-            let middle = [x * cos[part] - y * sin[part], y * cos[part] + x * sin[part]];
-            found.add(middle, table.levels[table.parts.level].edge, 1.0);
+            let [[cos, sin], ..] = &table.parts.turns;
+            found.edges[found.count % ARCS] = table.levels[table.parts.level].edge;
+            found.add(table.centers[k].turned(Direction { cos: cos[part], sin: sin[part] })[1], 1.0);
         }
     }
-    found.fill();
     Some(found)
 }
 
@@ -179,17 +180,38 @@ fn counted<S: Simd>(
     (out, !<Register<S>>::any(zero.below(doubts)))
 }
 
+/// A number of each minimum.
+type Lanes = [f64; MAX_MINIMA];
+
+#[inline(always)]
+fn lanes<S: Simd>(number: Register<S>) -> Lanes {
+    let mut out = [0.0; MAX_MINIMA];
+    number.store(&mut out, 0);
+    out
+}
+
 /// What [`Minimum`] says, for the minima in the lanes.
 struct Points {
-    distance: Row,
-    base: [Row; 3],
-    moving: [Row; 3],
+    distance: Lanes,
+    base: [Lanes; 3],
+    moving: [Lanes; 3],
     /// `g_αα`, `g_αθ`, `g_θθ`, with α the angle on the base.
-    hessian: [Row; 3],
-    slope: Row,
+    hessian: [Lanes; 3],
+    slope: Lanes,
     /// Along the axes of B's frame.
-    direction_b: [Row; 2],
+    direction_b: [Lanes; 2],
     swapped: bool,
+}
+
+/// The points of a circle in some directions.
+#[inline(always)]
+fn points<S: Simd>(simd: S, circle: &Circle, direction: Vector<Register<S>>) -> [Lanes; 3] {
+    let (center, radius) = (splat(simd, &circle.center), Register::all(simd, circle.radius));
+    [
+        lanes(direction[0].fused(radius, center[0])),
+        lanes(direction[1].fused(radius, center[1])),
+        lanes(direction[2].fused(radius, center[2])),
+    ]
 }
 
 impl Points {
@@ -203,55 +225,37 @@ impl Points {
         swapped: bool,
     ) -> Self {
         let pair = &framed.pair;
-        let row = [0.0; ARCS];
-        let mut out = Points {
-            distance: row,
-            base: [row; 3],
-            moving: [row; 3],
-            hessian: [row; 3],
-            slope: row,
-            direction_b: [row; 2],
-            swapped,
-        };
         let [ex, ey, rho] = pair.foot(cos, sin);
         let inverse = rho.like(1.0) / rho;
         let (foot_x, foot_y) = (ex * inverse, ey * inverse);
         let ([x, y], unit_sq) = (framed.axes, framed.scale * framed.scale);
         let (base_direction, moving_direction) = (sum(x, foot_x, y, foot_y), sum(framed.steepest, cos, y, sin));
-        (pair.distance(cos, rho) * framed.scale).store(&mut out.distance, 0);
-        for (circle, direction, place) in
-            [(base, base_direction, &mut out.base), (moving, moving_direction, &mut out.moving)]
-        {
-            let (center, radius) = (splat(simd, &circle.center), Register::all(simd, circle.radius));
-            for axis in 0..3 {
-                direction[axis].fused(radius, center[axis]).store(&mut place[axis], 0);
-            }
-        }
         let [base_second, mixed, moving_second, slope] = pair.derivatives(cos, sin, [foot_x, foot_y, rho]);
-        for (number, place) in [base_second, mixed, moving_second].into_iter().zip(&mut out.hessian) {
-            (number * unit_sq).store(place, 0);
-        }
-        (slope * unit_sq).store(&mut out.slope, 0);
         let (circle_b, direction) = if swapped { (base, base_direction) } else { (moving, moving_direction) };
         let (u, v) = circle_b.frame();
-        for (axis, place) in [u, v].into_iter().zip(&mut out.direction_b) {
-            dot(direction, splat(simd, &axis)).store(place, 0);
+        Points {
+            distance: lanes(pair.distance(cos, rho) * framed.scale),
+            base: points(simd, base, base_direction),
+            moving: points(simd, moving, moving_direction),
+            hessian: [lanes(base_second * unit_sq), lanes(mixed * unit_sq), lanes(moving_second * unit_sq)],
+            slope: lanes(slope * unit_sq),
+            direction_b: [lanes(dot(direction, splat(simd, &u))), lanes(dot(direction, splat(simd, &v)))],
+            swapped,
         }
-        out
     }
 
     #[inline(always)]
     fn minimum(&self, lane: usize) -> Minimum {
-        let vector = |rows: &[Row; 3]| Vec3::new(rows[0][lane], rows[1][lane], rows[2][lane]);
-        let (base_point, moving_point) = (vector(&self.base), vector(&self.moving));
-        let [base, mixed, moving] = [0, 1, 2].map(|k| self.hessian[k][lane]);
-        let direction_b = [self.direction_b[0][lane], self.direction_b[1][lane]];
+        let (base, moving, [second, mixed, moving_second]) = (&self.base, &self.moving, &self.hessian);
         Minimum::of_base(
             self.distance[lane],
-            [base_point, moving_point],
-            direction_b,
+            [
+                Vec3::new(base[0][lane], base[1][lane], base[2][lane]),
+                Vec3::new(moving[0][lane], moving[1][lane], moving[2][lane]),
+            ],
+            [self.direction_b[0][lane], self.direction_b[1][lane]],
             self.slope[lane],
-            [base, mixed, moving],
+            [second[lane], mixed[lane], moving_second[lane]],
             self.swapped,
         )
     }

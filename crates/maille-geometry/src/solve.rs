@@ -88,7 +88,8 @@ impl Rows {
             for (part, row) in parts.iter_mut().zip(rows) {
                 *part = Register::load(simd, row, from);
             }
-            *bracket = Bracket::of_parts(parts);
+            // The others keep theirs, to the bit.
+            *bracket = Bracket::pick(left.like(0.0).below(left), Bracket::of_parts(parts), *bracket);
         }
         *count = Register::load(simd, &self.counts, from);
     }

@@ -27,13 +27,24 @@ fn batch(set: Instructions, pairs: &[Pair]) -> Vec<Approaches> {
     out
 }
 
+/// Bit for bit on one set, whatever the neighbours are; between sets to rounding.
 #[test]
-fn every_instruction_set_gives_the_same_bits() {
+fn every_instruction_set_gives_the_same_minima() {
     for (name, pairs) in pairs() {
         let baseline = batch(Instructions::Baseline, &pairs);
         for set in Instructions::available() {
-            let differ = batch(set, &pairs).iter().zip(&baseline).filter(|(p, q)| p != q).count();
-            assert_eq!(differ, 0, "{name} {set:?}");
+            let found = batch(set, &pairs);
+            let others = batch(set, &pairs[7..]);
+            assert!(found[7..].iter().zip(&others).all(|(p, q)| p == q), "{name} {set:?}");
+            for (k, (p, q)) in found.iter().zip(&baseline).enumerate() {
+                let ((a, b), [p, q]) = (&pairs[k], [p.as_slice(), q.as_slice()]);
+                let unit = scale(a, b);
+                assert!((p[0].distance - q[0].distance).abs() < 1e-10 * unit, "{name} {set:?} {k}: {p:?} {q:?}");
+                if !name.ends_with("degenerate") {
+                    let same = p.iter().zip(q).all(|(p, q)| (p.distance - q.distance).abs() < 1e-10 * unit);
+                    assert!(p.len() == q.len() && same, "{name} {set:?} {k}: {p:?} {q:?}");
+                }
+            }
         }
     }
 }
@@ -74,7 +85,7 @@ fn what_is_out_of_reach_has_no_minima_and_nothing_else_is_lost() {
         let reach: Vec<f64> = pairs.iter().enumerate().map(|(k, (a, b))| scale(a, b) * 0.1 * (k % 7) as f64).collect();
         let mut out = vec![Approaches::NONE; pairs.len()];
         circle_distance_approaches(&pairs, &reach, &mut out);
-        let all = batch(Instructions::Baseline, &pairs);
+        let all = batch(Instructions::available().last().unwrap(), &pairs);
         for ((found, whole), reach) in out.iter().zip(&all).zip(&reach) {
             match found.as_slice().is_empty() {
                 true => assert!(whole.as_slice()[0].distance > *reach, "{name}"),
