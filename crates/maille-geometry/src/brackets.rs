@@ -2,10 +2,11 @@
 //!
 //! Where it proves nothing, [`crate::halving`] goes on.
 
-use crate::count::{ARCS, Arcs, Harmonics, Level, changes};
+use crate::arcs::{ARCS, Arcs, Level};
+use crate::count::{Harmonics, changes};
 use crate::grid::Direction;
 use crate::lane::Lane;
-use crate::relative::Reduced;
+use crate::reduced::Reduced;
 
 /// Minima of a register's pairs; a third one has never been seen.
 pub(crate) const SLOTS: usize = 2;

@@ -2,11 +2,12 @@
 //! of the pairs; and those of one pair as often as it takes.
 
 use crate::MAX_MINIMA;
+use crate::arcs::{ARCS, Arcs, LEVELS};
 use crate::brackets::{Angle, Bracket, Counted, SLOTS, Value};
-use crate::count::{ARCS, Arcs, Harmonics, LEVELS, changes, halves};
+use crate::count::{Harmonics, changes, halves};
 use crate::grid::Direction;
 use crate::lane::Lane;
-use crate::relative::Reduced;
+use crate::reduced::Reduced;
 
 /// Halvings of an arc at most.
 const HALVINGS: usize = 6;
@@ -132,18 +133,14 @@ impl Brackets {
         k: usize,
         table: &Arcs,
     ) -> Option<()> {
-        let turn = Angle { cos: table.centers[k].cos, sin: table.centers[k].sin }.turned(table.centers[0].cos, -table.centers[0].sin);
+        let turn = Angle { cos: table.centers[k].cos, sin: table.centers[k].sin }
+            .turned(table.centers[0].cos, -table.centers[0].sin);
         let ends = [counted.values[k], counted.values[(k + 1) % ARCS]];
         let mut coefficients = harmonics.around([turn.cos, turn.sin], ends.map(|value| value.product), table);
         for i in 0..coefficients.len() {
             coefficients[i] *= table.weights[i];
         }
-        let arc = Arc {
-            from: -1.0,
-            to: 1.0,
-            ends,
-            coefficients,
-        };
+        let arc = Arc { from: -1.0, to: 1.0, ends, coefficients };
         arc.examine(
             &Doubtful { pair, doubt: harmonics.certain(), center: table.centers[k], edge: table.levels[0].edge },
             HALVINGS,

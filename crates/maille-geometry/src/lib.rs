@@ -12,15 +12,16 @@
 //! | how wide are the gaps between two rings? | [`torus_score`], [`torus_scores`] |
 //! | are two rings linked, and in which sense? | [`linking_number`], [`interlocks`] |
 //!
-//! The order of the modules is `circle ← lane, grid ← relative ← count ← brackets ← halving, quick, bounds ← search ← minima
-//! ← placed, solve, batch, polynomial, torus`, with `linking` and `floor` beside them: `relative` reduces a pair to six
-//! numbers and evaluates the distance along one circle, `count`, `brackets` and `quick` find the minima of ordinary pairs,
-//! `halving`, `placed`, `solve` and `batch` those of many pairs in registers, `bounds` proves what it can on an interval,
-//! `search` (on the angles of `grid`) and `polynomial` find the minima in two other ways.
+//! The order of the modules is `circle ← lane, grid ← reduced ← relative ← arcs ← count ← brackets ← halving, quick, bounds ←
+//! search ← placed ← single, minima ← solve, batch, polynomial, torus`, with `linking` and `floor` beside them: `relative`
+//! reduces a pair to six numbers and evaluates the distance along one circle, `count`, `brackets` and `quick` find the minima of
+//! ordinary pairs, `single` those of one pair in registers, `halving`, `placed`, `solve` and `batch` those of many, `bounds`
+//! proves what it can on an interval, `search` (on the angles of `grid`) and `polynomial` find the minima in two other ways.
 //!
 //! Lengths carry the caller's unit, angles are radians. Radii must be positive and finite and normals of unit length;
 //! debug builds assert it in [`Circle::new`].
 
+mod arcs;
 mod batch;
 mod bounds;
 mod brackets;
@@ -35,6 +36,7 @@ mod minima;
 mod placed;
 mod polynomial;
 mod quick;
+mod reduced;
 mod relative;
 mod search;
 mod single;

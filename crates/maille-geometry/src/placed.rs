@@ -3,7 +3,7 @@
 use crate::Circle;
 use crate::brackets::Angle;
 use crate::lane::{Lane, Register};
-use crate::relative::Reduced;
+use crate::reduced::Reduced;
 use pulp::Simd;
 
 /// Pairs side by side: several registers of the widest kind, for a register that is loaded from numbers just stored waits.

@@ -5,12 +5,12 @@
 //! what comes near them) it says so of, and [`crate::search`] takes them.
 
 use crate::MAX_MINIMA;
+use crate::arcs::TABLE;
 use crate::brackets::{Angle, Bracket, is_steep};
-use crate::count::TABLE;
 use crate::grid::Direction;
 use crate::halving::Brackets;
 use crate::lane::Lane;
-use crate::relative::Reduced;
+use crate::reduced::Reduced;
 
 /// Steps of Halley's iteration at most, and those that are taken unasked.
 const STEPS: usize = 8;

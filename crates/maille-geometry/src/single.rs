@@ -3,14 +3,15 @@
 //! The count of [`crate::brackets`] for all eight arcs at once; an arc in doubt is cut into eight parts, counted in the same way.
 //! What is still in doubt is left to [`crate::quick`].
 
+use crate::arcs::{ARCS, Fan, TABLE};
 use crate::brackets::{Angle, Bracket, Value, is_steep};
-use crate::count::{ARCS, Fan, Harmonics, TABLE, arc_coefficients, changes, turned};
+use crate::count::{Harmonics, arc_coefficients, changes, turned};
 use crate::grid::Direction;
 use crate::lane::{Lane, Register};
 use crate::minima::{Minima, Minimum, PairKind};
 use crate::placed::{Framed, Placed, Vector, dot, splat, sum};
 use crate::quick::roots;
-use crate::relative::Reduced;
+use crate::reduced::Reduced;
 use crate::{Circle, MAX_MINIMA, ROUNDING, Vec3};
 use arrayvec::ArrayVec;
 use pulp::{Simd, WithSimd};
@@ -110,8 +111,7 @@ fn rising<S: Simd>(simd: S, pair: &Reduced<Register<S>>) -> Option<Rising> {
     let table = &*TABLE;
     let harmonics = Harmonics::new(pair, table);
     let level = &table.levels[0];
-    let mut found =
-        Rising { middles: [table.centers[0]; ARCS], edges: [level.edge; ARCS], has_parts: false, count: 0 };
+    let mut found = Rising { middles: [table.centers[0]; ARCS], edges: [level.edge; ARCS], has_parts: false, count: 0 };
     let mut modes = [[harmonics.mean; 2]; 4];
     for k in 0..4 {
         modes[k] = [harmonics.cosine[k], harmonics.sine[k]];

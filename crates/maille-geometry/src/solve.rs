@@ -2,14 +2,15 @@
 //!
 //! No closures in what runs on registers: what is not inlined into the function of an instruction set cannot use it.
 
+use crate::arcs::TABLE;
 use crate::batch::{Approach, Approaches};
 use crate::brackets::{Bracket, Counted, SLOTS, is_steep};
-use crate::count::{Harmonics, TABLE};
+use crate::count::Harmonics;
 use crate::halving::{Brackets, halved};
 use crate::lane::{Lane, Register};
 use crate::placed::{Block, Row, WIDTH};
 use crate::quick::roots;
-use crate::relative::Reduced;
+use crate::reduced::Reduced;
 use crate::{Circle, Vec3};
 use pulp::{Simd, WithSimd};
 

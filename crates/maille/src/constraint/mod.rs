@@ -263,7 +263,9 @@ impl Program for SheetProgram<'_> {
         if matches!(derivatives, Derivatives::None) {
             for near in within {
                 let key = pair_key(&near.pair);
-                rows.extend(near.minima().iter().map(|m| Row::value(key, m.angle_b_rad(), m.distance - required(near))));
+                rows.extend(
+                    near.minima().iter().map(|m| Row::value(key, m.angle_b_rad(), m.distance - required(near))),
+                );
             }
             return rows;
         }
