@@ -175,3 +175,47 @@ fn enumerate(a: &Circle, b: &Circle, out: &mut Minima) {
         }
     };
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{RngExt, SeedableRng};
+
+    /// What a machine without registers finds is the same, to rounding.
+    #[test]
+    fn registers_change_nothing_but_rounding() {
+        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(17);
+        let mut in_registers = 0;
+        for _ in 0..20_000 {
+            let mut vector = |size: f64| Vec3::from_fn(|_, _| size * rng.random_range(-1.0..1.0));
+            let unit = nalgebra::UnitVector3::new_normalize;
+            let a = Circle::new(Vec3::zeros(), unit(vector(1.0)), 1.0);
+            let b = Circle::new(vector(1.5), unit(vector(1.0)), rng.random_range(0.3..1.5));
+            let mut expected = Minima { kind: PairKind::Generic, continuum: false, found: ArrayVec::new() };
+            let mut found = expected.clone();
+            enumerate(&a, &b, &mut expected);
+            if !single::minima(&a, &b, &mut found) {
+                continue;
+            }
+            in_registers += 1;
+            assert_eq!((found.kind, found.found.len()), (expected.kind, expected.found.len()), "{a:?} {b:?}");
+            for (p, q) in found.as_slice().iter().zip(expected.as_slice()) {
+                assert!((p.distance - q.distance).abs() < 1e-13, "{p:?} {q:?}");
+                // Where the minimum is, flat ones excepted: there the distance says little about the place.
+                let [[aa, ab], [_, bb]] = q.hessian;
+                if aa * bb - ab * ab > 1e-3 {
+                    assert!((p.point_a - q.point_a).norm() < 1e-11, "{p:?} {q:?}");
+                    assert!((p.point_b - q.point_b).norm() < 1e-11, "{p:?} {q:?}");
+                    assert!((p.angle_b_rad() - q.angle_b_rad()).sin().abs() < 1e-11, "{p:?} {q:?}");
+                    let second = p.hessian.as_flattened().iter().zip(q.hessian.as_flattened());
+                    assert!(second.into_iter().all(|(x, y)| (x - y).abs() < 1e-10), "{p:?} {q:?}");
+                }
+            }
+        }
+        #[cfg(target_arch = "x86_64")]
+        if pulp::x86::V3::try_new().is_some() {
+            assert!(in_registers > 19_000, "{in_registers}");
+        }
+        let _ = in_registers;
+    }
+}
