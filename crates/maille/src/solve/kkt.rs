@@ -160,7 +160,7 @@ fn cleared<P: Program>(program: &P, x: &P::Point, active: &[Multiplier]) -> Opti
 
 /// Step and multipliers of Newton's method on c + Σ μ ∇g = 0, g = 0 with the known multipliers in H = −Σ μ ∇²g.
 fn newton_step(c: &[f64], rows: &[Row], known: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
-    let h = lagrangian_hessian(c.len(), rows, known);
+    let h = lagrangian_hessian(c.len(), rows, known, &[]);
     // Motions that hardly matter get huge steps from tiny residuals: hold them as much as it takes.
     HOLDS
         .iter()

@@ -1,6 +1,6 @@
 //! The rows of a program, gaps g ≥ 0 with derivatives, and the multipliers that go with them from point to point.
 
-use faer::Mat;
+use super::symmetric::Symmetric;
 
 /// One gap g(x) ≥ 0 with its derivatives in the unknowns `columns`.
 #[derive(Clone, Debug)]
@@ -77,17 +77,20 @@ pub fn multiplier_at(key: u64, angle: f64, minimum: bool, known: &[Multiplier]) 
         .map_or(0.0, |(_, value)| value)
 }
 
-/// −Σ μ ∇²g over all unknowns; the rows with μ ≠ 0 must have Hessians.
-pub fn lagrangian_hessian<'r>(n: usize, rows: impl IntoIterator<Item = &'r Row>, multipliers: &[f64]) -> Mat<f64> {
-    let mut h = Mat::zeros(n, n);
-    for (row, mu) in rows.into_iter().zip(multipliers).filter(|(_, mu)| **mu != 0.0) {
+/// −Σ μ ∇²g over all unknowns; the rows with μ ≠ 0 must have Hessians. There is room for `more` blocks.
+pub fn lagrangian_hessian<'r>(
+    n: usize,
+    rows: impl IntoIterator<Item = &'r Row> + Clone,
+    multipliers: &[f64],
+    more: &[&[usize]],
+) -> Symmetric {
+    let loaded = || rows.clone().into_iter().zip(multipliers).filter(|(_, mu)| **mu != 0.0);
+    let cliques = loaded().map(|(row, _)| &row.columns[..]);
+    let mut h = Symmetric::new(n, cliques.chain(more.iter().copied()));
+    for (row, mu) in loaded() {
         let k = row.columns.len();
         assert_eq!(row.hessian.len(), k * k, "a loaded row without its Hessian");
-        for (p, &i) in row.columns.iter().enumerate() {
-            for (q, &j) in row.columns.iter().enumerate() {
-                h[(i, j)] -= mu * row.hessian[p * k + q];
-            }
-        }
+        h.add(&row.columns, |p, q| -mu * row.hessian[p * k + q]);
     }
     h
 }

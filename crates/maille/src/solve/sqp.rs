@@ -10,8 +10,8 @@ use super::{
     convex::convexified,
     qp::{self, QuadraticProgram, SparseRows},
     rows::{Derivatives, Multiplier, Row, lagrangian_hessian, multiplier_of, violation},
+    symmetric::Symmetric,
 };
-use faer::Mat;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What is maximised.
@@ -88,21 +88,14 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
-fn times(h: &Mat<f64>, x: &[f64]) -> Vec<f64> {
-    let mut out = vec![0.0; x.len()];
-    for (column, &x) in h.col_iter().zip(x) {
-        out.iter_mut().zip(column.iter()).for_each(|(a, b)| *a += b * x);
-    }
-    out
-}
-
 /// A metric for corrections: what carries nothing gives way first.
-pub(super) fn stiff_where_loaded(n: usize, rows: &[Row], multipliers: &[f64]) -> Mat<f64> {
-    let mut metric = Mat::zeros(n, n);
-    (0..n).for_each(|i| metric[(i, i)] = 0.01);
+pub(super) fn stiff_where_loaded(n: usize, rows: &[Row], multipliers: &[f64]) -> Symmetric {
+    let mut loaded = vec![false; n];
     for (row, _) in rows.iter().zip(multipliers).filter(|(_, mu)| **mu > 1e-6) {
-        row.columns.iter().for_each(|&i| metric[(i, i)] = 1.0);
+        row.columns.iter().for_each(|&i| loaded[i] = true);
     }
+    let mut metric = Symmetric::new(n, []);
+    loaded.iter().enumerate().for_each(|(i, loaded)| metric.add_to_diagonal(i, if *loaded { 1.0 } else { 0.01 }));
     metric
 }
 
@@ -110,15 +103,14 @@ pub(super) fn stiff_where_loaded(n: usize, rows: &[Row], multipliers: &[f64]) ->
 /// multipliers, and the violation t that is left.
 pub(super) fn elastic_program(
     rows: &[Row],
-    h: &Mat<f64>,
+    h: &Symmetric,
     linear: &[f64],
     weight: f64,
     radius: f64,
 ) -> (Vec<f64>, Vec<f64>, f64) {
     let n = linear.len();
-    let mut hessian = Mat::zeros(n + 1, n + 1);
-    hessian.submatrix_mut(0, 0, n, n).copy_from(h);
-    hessian[(n, n)] = 1e-8;
+    let mut hessian = Symmetric::around(h, n + 1, []);
+    hessian.add_to_diagonal(n, 1e-8);
     let linear: Vec<f64> = linear.iter().copied().chain([weight]).collect();
     // Rows that no step in the box can reach are left out: they change nothing.
     let within = |row: &Row| row.gap < radius * row.gradient.iter().map(|a| a.abs()).sum::<f64>();
@@ -182,7 +174,7 @@ pub fn maximize<P: Program>(
         }
         end.iterations += 1;
         let known: Vec<f64> = rows.iter().map(|row| multiplier_of(row, &end.multipliers)).collect();
-        let h = convexified(lagrangian_hessian(n, &rows, &known), &rows, &known, floor);
+        let h = convexified(lagrangian_hessian(n, &rows, &known, &[]), &rows, &known, floor);
         let (step, multipliers, left) = elastic_program(&rows, &h, &descent, penalty, radius);
         let keep = |multipliers: &[f64]| -> Vec<Multiplier> {
             let pairs = rows.iter().zip(multipliers).filter(|(_, mu)| **mu > 1e-9);
@@ -211,7 +203,8 @@ pub fn maximize<P: Program>(
         let mut trial = program.moved(&end.point, &step);
         let (mut reached, mut worst) = judge(&trial);
         let wanted = promised * fraction;
-        let bent = times(&h, &step);
+        let mut bent = vec![0.0; n];
+        h.add_times(1.0, &step, &mut bent);
         // What the curved rows take away again, by the model.
         let expected = wanted - 0.5 * dot(&bent, &step);
         if merit - reached < 0.5 * wanted && worst > 0.0 {
