@@ -125,6 +125,28 @@ impl Model {
         Ok(model)
     }
 
+    /// The design's own cell of a periodic model.
+    pub fn primitive(&self) -> Model {
+        let copies = self.cell.copies();
+        let mut out = self.clone();
+        if copies == 1 || !self.periodic {
+            return out;
+        }
+        // The first copy is that of shift (0, 0).
+        out.elements.truncate(self.elements.len() / copies);
+        out.rings.truncate(self.rings.len() / copies);
+        out.start.poses.truncate(out.elements.len());
+        for element in &mut out.elements {
+            element.name.truncate(element.name.rfind('@').unwrap_or(element.name.len()));
+        }
+        out.cell = Cell::PRIMITIVE;
+        let [a1, a2] = self.cell.primitive(self.start.a1, self.start.a2);
+        let cell = Matrix2::from_fn(|i, j| f64::from(self.cell.rows()[j][i]));
+        (out.start.a1, out.start.a2, out.reference_inverse) = (a1, a2, cell * self.reference_inverse);
+        out.links = topology::links(&out, &out.start, &topology::close_pairs(&out, &out.start, 0.0));
+        out
+    }
+
     /// Sum of the minor radii of two rings: the core distance r̂ at which their tori touch.
     pub fn contact_distance(&self, ring_a: usize, ring_b: usize) -> f64 {
         self.rings[ring_a].minor_radius + self.rings[ring_b].minor_radius

@@ -3,7 +3,7 @@
 use super::{Posed, SheetProgram, metric::Factored};
 use crate::{
     contact::kernel::{Grad, Hess, PairFrame, RootMotion},
-    solve::rows::{Derivatives, Row, multiplier_at},
+    solve::rows::{Derivatives, Row},
     topology::{RingPair, near::NearPair},
 };
 use maille_geometry::Vec3;
@@ -129,7 +129,7 @@ impl SheetProgram<'_> {
             out
         };
         let loaded = |angle: f64, minimum: bool| match derivatives {
-            Derivatives::Second(multipliers) => multiplier_at(key, angle, minimum, multipliers) != 0.0,
+            Derivatives::Second(loads) => loads.at(key, angle, minimum) != 0.0,
             _ => false,
         };
         let mut add = |angle: f64, minimum: bool, distance: f64, grad: &Grad, hess: Option<&Hess>| {

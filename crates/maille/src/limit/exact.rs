@@ -138,7 +138,9 @@ impl<'a> ExactMethod<'a> {
     /// others where it asks for more (see [`Self::limits`]). Panics if there is none.
     pub fn new(models: &'a [Model], options: ExactOptions) -> Self {
         let chain = ChainBound::new(&models[0]);
-        let link = LinkBound::new(&models[0], &chain);
+        // A larger cell's program is convex and symmetric under the shifts of the design's own cell: the mean of a solution over
+        // them is one too, so that the own cell has the same bound.
+        let link = LinkBound::new(&models[0].primitive(), &chain);
         ExactMethod { models, options, chain, link, image: OnceLock::new() }
     }
 

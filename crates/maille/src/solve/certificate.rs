@@ -5,7 +5,7 @@
 
 use super::{
     qp::{self, QuadraticProgram, SparseRows},
-    rows::{Derivatives, Multiplier, Row, lagrangian_hessian, multiplier_of},
+    rows::{Derivatives, Loads, Multiplier, Row, lagrangian_hessian},
     reduced::curvature,
     saddle::{gram, least_squares_multipliers},
     sqp::Program,
@@ -69,9 +69,9 @@ impl Certificate {
     }
 }
 
-/// Indices of the rows that `active` names, with their multipliers.
-pub(super) fn matched(rows: &[Row], active: &[Multiplier]) -> Vec<(usize, f64)> {
-    rows.iter().enumerate().map(|(k, r)| (k, multiplier_of(r, active))).filter(|(_, mu)| *mu != 0.0).collect()
+/// Indices of the rows that `loads` name, with their multipliers.
+pub(super) fn matched(rows: &[Row], loads: &Loads) -> Vec<(usize, f64)> {
+    rows.iter().enumerate().map(|(k, r)| (k, loads.of(r))).filter(|(_, mu)| *mu != 0.0).collect()
 }
 
 pub(super) fn labelled(rows: &[Row], multipliers: &[f64]) -> Vec<Multiplier> {
@@ -118,7 +118,7 @@ fn dual_residual(c: &[f64], rows: &[Row], multipliers: &[f64]) -> f64 {
 pub(super) fn certify<P: Program>(program: &P, x: &P::Point, active: &[Multiplier]) -> Certificate {
     let c = &program.objective()[..];
     let rows = program.rows(x, BAND, Derivatives::First);
-    let chosen_rows: Vec<Row> = matched(&rows, active).iter().map(|(k, _)| rows[*k].clone()).collect();
+    let chosen_rows: Vec<Row> = matched(&rows, &Loads::new(active)).iter().map(|(k, _)| rows[*k].clone()).collect();
     // Least squares first: exact to rounding. Where signs are wrong, the constrained ones.
     let mut multipliers = least_squares_multipliers(c, &chosen_rows);
     let least = |mu: &[f64]| mu.iter().copied().fold(f64::INFINITY, f64::min);
@@ -146,9 +146,10 @@ pub fn measure_curvature<P: Program>(program: &P, x: &P::Point, certificate: &mu
         return;
     }
     let n = program.objective().len();
-    let rows = program.rows(x, BAND, Derivatives::Second(&certificate.multipliers));
+    let loads = Loads::new(&certificate.multipliers);
+    let rows = program.rows(x, BAND, Derivatives::Second(&loads));
     let (chosen, multipliers): (Vec<&Row>, Vec<f64>) =
-        matched(&rows, &certificate.multipliers).into_iter().map(|(k, mu)| (&rows[k], mu)).unzip();
+        matched(&rows, &loads).into_iter().map(|(k, mu)| (&rows[k], mu)).unzip();
     let hidden = program.hidden_curvature(x, &certificate.multipliers);
     let moves = |v: &Vec<f64>| (0..n).filter(|&i| v[i] != 0.0).collect();
     let places: Vec<Vec<usize>> = hidden.iter().map(moves).collect();

@@ -4,7 +4,7 @@
 
 use super::{
     certificate::{BAND, Certificate, GAP_TOLERANCE, certify, labelled, matched, measure_curvature},
-    rows::{Derivatives, Multiplier, Row, lagrangian_hessian, multiplier_of, violation},
+    rows::{Derivatives, Loads, Multiplier, Row, lagrangian_hessian, violation},
     saddle,
     sqp::{Program, SqpEnd, elastic_program, stiff_where_loaded},
 };
@@ -88,7 +88,8 @@ fn polished<P: Program>(program: &P, mut x: P::Point, mut active: Vec<Multiplier
         // Take in what is violated, or let the most negative multiplier go.
         let before = active.len();
         let rows = program.rows(&x, BAND, Derivatives::None);
-        let violated = rows.iter().filter(|r| r.gap < -GAP_TOLERANCE && multiplier_of(r, &active) == 0.0);
+        let loads = Loads::new(&active);
+        let violated = rows.iter().filter(|r| r.gap < -GAP_TOLERANCE && loads.of(r) == 0.0);
         active.extend(
             violated
                 .map(|r| Multiplier { key: r.key, angle: r.angle, minimum: r.minimum, value: 1e-300 })
@@ -117,8 +118,9 @@ fn newton<P: Program>(program: &P, x: &mut P::Point, active: &mut Vec<Multiplier
             break;
         }
         *budget -= 1;
-        let rows = program.rows(x, BAND, Derivatives::Second(active));
-        let chosen = matched(&rows, active);
+        let loads = Loads::new(active);
+        let rows = program.rows(x, BAND, Derivatives::Second(&loads));
+        let chosen = matched(&rows, &loads);
         let chosen_rows: Vec<Row> = chosen.iter().map(|(k, _)| rows[*k].clone()).collect();
         let known: Vec<f64> = chosen.iter().map(|(_, mu)| *mu).collect();
         let Some((step, multipliers)) = newton_step(&c, &chosen_rows, &known) else { break };
@@ -145,7 +147,8 @@ fn cleared<P: Program>(program: &P, x: &P::Point, active: &[Multiplier]) -> Opti
     let worst = violation(&program.rows(x, 0.0, Derivatives::None));
     let mut rows = program.rows(x, BAND + 4.0 * worst, Derivatives::First);
     let n = program.objective().len();
-    let loads: Vec<f64> = rows.iter().map(|row| multiplier_of(row, active)).collect();
+    let loads = Loads::new(active);
+    let loads: Vec<f64> = rows.iter().map(|row| loads.of(row)).collect();
     let metric = stiff_where_loaded(n, &rows, &loads);
     let most = MOST.min(MOST_STEP / worst);
     rows.retain_mut(|row| {

@@ -9,7 +9,7 @@
 use super::{
     convex::convexified,
     qp::{self, QuadraticProgram, SparseRows},
-    rows::{Derivatives, Multiplier, Row, lagrangian_hessian, multiplier_of, violation},
+    rows::{Derivatives, Loads, Multiplier, Row, lagrangian_hessian, violation},
     symmetric::Symmetric,
 };
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -165,7 +165,8 @@ pub fn maximize<P: Program>(
     let mut floor = share * MOST_FLOOR;
     let mut end = SqpEnd { point: start, multipliers: known, iterations: 0, settled: false, violation: f64::INFINITY };
     let mut reach = band(radius);
-    let mut rows = program.rows(&end.point, reach, Derivatives::Second(&end.multipliers));
+    let mut loads = Loads::new(&end.multipliers);
+    let mut rows = program.rows(&end.point, reach, Derivatives::Second(&loads));
     end.violation = violation(&rows);
     while end.iterations < options.max_iterations && !cancel.load(Ordering::Relaxed) {
         if end.violation < 1e-13 && program.value(&end.point) >= options.enough {
@@ -173,7 +174,7 @@ pub fn maximize<P: Program>(
             break;
         }
         end.iterations += 1;
-        let known: Vec<f64> = rows.iter().map(|row| multiplier_of(row, &end.multipliers)).collect();
+        let known: Vec<f64> = rows.iter().map(|row| loads.of(row)).collect();
         let h = convexified(lagrangian_hessian(n, &rows, &known, &[]), &rows, &known, floor);
         let (step, multipliers, left) = elastic_program(&rows, &h, &descent, penalty, radius);
         let keep = |multipliers: &[f64]| -> Vec<Multiplier> {
@@ -183,6 +184,7 @@ pub fn maximize<P: Program>(
         let size = step.iter().fold(0.0f64, |a, s| a.max(s.abs()));
         let promised = dot(&c, &step) + penalty * (end.violation - left);
         end.multipliers = keep(&multipliers);
+        loads = Loads::new(&end.multipliers);
         floor = share * size.clamp(LEAST_FLOOR, MOST_FLOOR);
         penalty = penalty.max(2.0 * multipliers.iter().sum::<f64>().min(1e4));
         if promised < options.tolerance || size < 1e-12 {
@@ -232,14 +234,14 @@ pub fn maximize<P: Program>(
                 radius *= 0.5;
             }
             reach = band(radius);
-            rows = program.rows(&end.point, reach, Derivatives::Second(&end.multipliers));
+            rows = program.rows(&end.point, reach, Derivatives::Second(&loads));
         } else {
             radius = 0.3 * radius.min(size);
             if radius < 1e-13 {
                 break;
             }
             // The same rows with the Hessians of those that are loaded now.
-            rows = program.rows(&end.point, reach, Derivatives::Second(&end.multipliers));
+            rows = program.rows(&end.point, reach, Derivatives::Second(&loads));
         }
     }
     end
