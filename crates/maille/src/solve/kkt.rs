@@ -53,6 +53,8 @@ pub fn polish<P: Program>(program: &P, end: &SqpEnd<P::Point>) -> (P::Point, Cer
 fn polished<P: Program>(program: &P, mut x: P::Point, mut active: Vec<Multiplier>) -> (P::Point, Certificate) {
     let mut best: Option<(P::Point, Certificate)> = None;
     let mut budget = LEAST_BUDGET.max(program.objective().len() / 2);
+    // Where rows were taken in: what stood there before.
+    let mut taken: Option<(f64, Vec<Multiplier>)> = None;
     while budget > 0 {
         newton(program, &mut x, &mut active, &mut budget);
         let mut certificate = certify(program, &x, &active);
@@ -77,7 +79,10 @@ fn polished<P: Program>(program: &P, mut x: P::Point, mut active: Vec<Multiplier
         if certificate.holds_to_first_order() {
             measure_curvature(program, &x, &mut certificate);
         }
-        let done = certificate.holds();
+        let figures = (certificate.smallest_gap, certificate.multipliers.clone());
+        // Rows were taken in, but nothing has moved: the same would go on.
+        let done = certificate.holds() || taken.as_ref() == Some(&figures);
+        taken = None;
         if best.as_ref().is_none_or(|b| certificate.score() < b.1.score()) {
             active = certificate.multipliers.clone();
             best = Some((x.clone(), certificate));
@@ -95,7 +100,9 @@ fn polished<P: Program>(program: &P, mut x: P::Point, mut active: Vec<Multiplier
                 .map(|r| Multiplier { key: r.key, angle: r.angle, minimum: r.minimum, value: 1e-300 })
                 .collect::<Vec<_>>(),
         );
-        if active.len() == before {
+        if active.len() > before {
+            taken = Some(figures);
+        } else {
             match active.iter().enumerate().min_by(|a, b| a.1.value.total_cmp(&b.1.value)) {
                 Some((k, m)) if m.value < 0.0 => drop(active.swap_remove(k)),
                 _ => break,
