@@ -75,7 +75,9 @@ impl SheetProgram<'_> {
             let first = self.columns[element].1;
             turns[element].iter().enumerate().for_each(|(k, axis)| map.add(first + k, block, axis, 1.0));
         }
-        let image = |[a1, a2]: [Vec3; 2]| a1 * f64::from(pair.shift[0]) + a2 * f64::from(pair.shift[1]);
+        let [from, to] = [i, j].map(|e| self.model.elements[e].anchor);
+        let shift: [f64; 2] = std::array::from_fn(|k| f64::from(pair.shift[k]) + (to[k] - from[k]));
+        let image = |[a1, a2]: [Vec3; 2]| a1 * shift[0] + a2 * shift[1];
         let mut free = Vec::new();
         for (m, parameter) in self.pull.parameters.iter().enumerate() {
             let rate = image(factored.map_or(parameter.rate, |f| self.pull.base.map(|a| f.rate(m, &a))));

@@ -16,6 +16,8 @@ const MOST_LOSS: f64 = 1e-10;
 const LOADED: [f64; 2] = [1e-5, 1e-3];
 /// Newton steps at most; half as many as there are unknowns if that is more.
 const LEAST_BUDGET: usize = 30;
+/// Rows are taken in or let go so often in a row while the point stays.
+const MOST_IDLE: usize = 30;
 /// Times that overlaps are cleared in a row.
 const CLEARINGS: usize = 6;
 /// Largest step of the polish in one unknown.
@@ -55,8 +57,9 @@ fn polished<P: Program>(program: &P, mut x: P::Point, mut active: Vec<Multiplier
     let mut budget = LEAST_BUDGET.max(program.objective().len() / 2);
     // Where rows were taken in: what stood there before.
     let mut taken: Option<(f64, Vec<Multiplier>)> = None;
-    while budget > 0 {
-        newton(program, &mut x, &mut active, &mut budget);
+    let mut idle = 0;
+    while budget > 0 && idle < MOST_IDLE {
+        idle = if newton(program, &mut x, &mut active, &mut budget) { 0 } else { idle + 1 };
         let mut certificate = certify(program, &x, &active);
         for _ in 0..CLEARINGS {
             if !certificate.lacks_only_room() {
@@ -116,9 +119,10 @@ fn polished<P: Program>(program: &P, mut x: P::Point, mut active: Vec<Multiplier
 }
 
 /// Newton's method on the rows `active`, whose multipliers it improves; `x` moves while steps stay small and the budget
-/// of steps lasts.
-fn newton<P: Program>(program: &P, x: &mut P::Point, active: &mut Vec<Multiplier>, budget: &mut usize) {
+/// of steps lasts. Whether it has moved.
+fn newton<P: Program>(program: &P, x: &mut P::Point, active: &mut Vec<Multiplier>, budget: &mut usize) -> bool {
     let c = program.objective();
+    let mut moved = false;
     let mut last = f64::INFINITY;
     for _ in 0..10 {
         if *budget == 0 {
@@ -137,12 +141,14 @@ fn newton<P: Program>(program: &P, x: &mut P::Point, active: &mut Vec<Multiplier
             break;
         }
         *x = program.moved(x, &step);
+        moved = true;
         // After a quadratic step of this size only rounding moves on.
         if size < 1e-13 || size < 1e-9 && size > 0.1 * last {
             break;
         }
         last = size;
     }
+    moved
 }
 
 /// `x` moved by the smallest step that clears its overlaps, in units of the worst of them, where rounding does not count.
