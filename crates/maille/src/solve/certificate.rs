@@ -5,8 +5,8 @@
 
 use super::{
     qp::{self, QuadraticProgram, SparseRows},
-    rows::{Derivatives, Loads, Multiplier, Row, lagrangian_hessian},
     reduced::curvature,
+    rows::{Derivatives, Loads, Multiplier, Row, lagrangian_hessian},
     saddle::{gram, least_squares_multipliers},
     sqp::Program,
 };

@@ -143,9 +143,6 @@ const FURTHEST: f64 = 100.0;
 const LEAST_FLOOR: f64 = 1e-4;
 /// See [`LEAST_FLOOR`].
 const MOST_FLOOR: f64 = 0.1;
-/// With more unknowns than these both shrink: the same strain then moves more of them, and the
-/// curvature of the limit is spread over all.
-const FEW: f64 = 20.0;
 
 /// Maximises `program` from `start`; `known` are multipliers of an earlier iteration, if there was one.
 pub fn maximize<P: Program>(
@@ -161,8 +158,7 @@ pub fn maximize<P: Program>(
     let mut radius = options.first_radius;
     let mut penalty = options.penalty;
     let band = |radius: f64| 0.1 + 2.0 * radius;
-    let share = (FEW / n as f64).min(1.0);
-    let mut floor = share * MOST_FLOOR;
+    let mut floor = MOST_FLOOR;
     let mut end = SqpEnd { point: start, multipliers: known, iterations: 0, settled: false, violation: f64::INFINITY };
     let mut reach = band(radius);
     let mut loads = Loads::new(&end.multipliers);
@@ -185,7 +181,7 @@ pub fn maximize<P: Program>(
         let promised = dot(&c, &step) + penalty * (end.violation - left);
         end.multipliers = keep(&multipliers);
         loads = Loads::new(&end.multipliers);
-        floor = share * size.clamp(LEAST_FLOOR, MOST_FLOOR);
+        floor = size.clamp(LEAST_FLOOR, MOST_FLOOR);
         penalty = penalty.max(2.0 * multipliers.iter().sum::<f64>().min(1e4));
         if promised < options.tolerance || size < 1e-12 {
             end.settled = true;

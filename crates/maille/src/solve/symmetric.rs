@@ -30,7 +30,11 @@ impl Entries {
     fn new<'c>(n: usize, first: Option<&Symmetric>, cliques: impl IntoIterator<Item = &'c [usize]>) -> Self {
         let mut columns: Vec<Vec<usize>> = (0..n).map(|i| vec![i]).collect();
         if let Some(first) = first {
-            columns.iter_mut().enumerate().take(first.n).for_each(|(j, column)| first.each_below(j, |i, _| column.push(i)));
+            columns
+                .iter_mut()
+                .enumerate()
+                .take(first.n)
+                .for_each(|(j, column)| first.each_below(j, |i, _| column.push(i)));
         }
         let mut last: &[usize] = &[];
         for clique in cliques {
