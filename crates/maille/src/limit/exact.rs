@@ -65,6 +65,9 @@ pub struct ExactParameters {
     free_slack: f64,
     rung: f64,
     best_rungs: usize,
+    nearly: f64,
+    nearly_tries: u64,
+    nearly_shake: f64,
 }
 
 impl ExactOptions {
@@ -87,6 +90,9 @@ impl ExactOptions {
             free_slack: FREE_SLACK,
             rung: RUNG,
             best_rungs: BEST_RUNGS,
+            nearly: NEARLY,
+            nearly_tries: NEARLY_TRIES,
+            nearly_shake: NEARLY_SHAKE,
         }
     }
 }

@@ -286,3 +286,60 @@ impl Symmetric {
         out
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The same sums in a large matrix, whose zeros are left out, and in its dense image.
+    #[test]
+    fn sparse_and_dense_agree() {
+        let n = SPARSE_FROM + 30;
+        let cliques: Vec<Vec<usize>> = (0..n - 40).map(|k| vec![(7 * k) % n, k, k + 40]).collect();
+        let places = || cliques.iter().filter(|of| of[0] != of[1] && of[0] != of[2]).map(|of| &of[..]);
+        let mut sparse = Symmetric::new(n, places());
+        let mut dense = faer::Mat::<f64>::zeros(n, n);
+        for of in places() {
+            let entry = |p: usize, q: usize| ((of[p] * of[q]) as f64).sin();
+            sparse.add(of, entry);
+            (0..3).for_each(|p| (0..3).for_each(|q| dense[(of[p], of[q])] += entry(p, q)));
+        }
+        let mut sorted = cliques[11].clone();
+        sorted.sort_unstable();
+        let (mut at, a) = (Vec::new(), [1.0, -2.0, 0.5]);
+        sparse.positions(&sorted, &mut at);
+        assert!(sparse.add_square(&sorted, &a, 3.0, &at).is_empty());
+        (0..3).for_each(|p| (0..3).for_each(|q| dense[(sorted[p], sorted[q])] += 3.0 * a[p] * a[q]));
+        sparse.add_to_diagonal(5, 1.5);
+        dense[(5, 5)] += 1.5;
+        let all: Vec<usize> = (0..n).collect();
+        let close = |a: &faer::Mat<f64>, b: &faer::Mat<f64>| (a - b).norm_max() < 1e-12;
+        assert!(sparse.entries().is_some() && close(&sparse.block(&all), &dense));
+
+        let x: Vec<f64> = (0..n).map(|i| (0.3 * i as f64).cos()).collect();
+        let mut out = vec![1.0; n];
+        sparse.add_times(-2.0, &x, &mut out);
+        for i in 0..n {
+            let row = (0..n).map(|j| dense[(i, j)] * x[j]).sum::<f64>();
+            assert!((out[i] - (1.0 - 2.0 * row)).abs() < 1e-10);
+            let others = (0..n).filter(|j| *j != i).map(|j| dense[(i, j)].abs()).sum::<f64>();
+            assert!((sparse.off_diagonal_sums()[i] - others).abs() < 1e-10);
+            assert_eq!(sparse.met()[i], (0..n).any(|j| dense[(i, j)] != 0.0));
+        }
+        // In the corner of a larger one with more room.
+        let around = Symmetric::around(&sparse, n + 1, [&[3, n][..]]);
+        assert!(close(&around.block(&all), &dense) && around.diagonal(n) == 0.0);
+    }
+
+    /// A dense matrix keeps all its entries where it becomes part of a sparse one.
+    #[test]
+    fn the_step_from_dense_to_sparse() {
+        let n = SPARSE_FROM - 1;
+        let mut dense = Symmetric::new(n, []);
+        dense.add(&[2, 77, 5], |p, q| (1 + p + q) as f64);
+        let grown = Symmetric::around(&dense, n + 1, []);
+        assert!(dense.entries().is_none() && grown.entries().is_some());
+        let all: Vec<usize> = (0..n).collect();
+        assert_eq!(grown.block(&all), dense.block(&all));
+    }
+}
