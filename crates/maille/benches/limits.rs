@@ -8,6 +8,7 @@ use maille::{
         exact::{ExactMethod, ExactOptions},
     },
     model::Model,
+    record::Status,
 };
 use maille_io::{builtin, read_design};
 use std::{sync::atomic::AtomicBool, time::Instant};
@@ -15,6 +16,7 @@ use std::{sync::atomic::AtomicBool, time::Instant};
 fn main() {
     if std::env::args().all(|argument| argument != "--test") {
         medians();
+        scaling();
     }
     divan::main();
 }
@@ -63,6 +65,46 @@ fn medians() {
     println!("maps of 1.1, 2 and 3.1 together: median {:.2} ms", 1e3 * median(&mut joint));
 }
 
+/// Single limits of ever larger cells of 1.1 along six directions: median time and programs, and the exponent p of time ~ Nᵖ
+/// that fits the medians best.
+fn scaling() {
+    let mut points = Vec::new();
+    for cell in ["2x2", "3x3", "4x4", "6x6", "10x10"] {
+        let models = [model("1.1", cell)];
+        let method = ExactMethod::new(&models, ExactOptions { starts: 1, ..ExactOptions::default() });
+        let mut found: Vec<(f64, u64)> = Vec::new();
+        let mut global = 0;
+        for direction in [0.0, 15.0, 30.0, 75.0, 100.0, 140.0] {
+            let begun = Instant::now();
+            method.limits(direction, &[0.0], &AtomicBool::new(false), &mut |_, limit| {
+                found.push((begun.elapsed().as_secs_f64(), limit.iterations));
+                global += usize::from(limit.status == Status::Global);
+            });
+        }
+        let mut times: Vec<f64> = found.iter().map(|f| f.0).collect();
+        let mut programs: Vec<u64> = found.iter().map(|f| f.1).collect();
+        times.sort_by(f64::total_cmp);
+        programs.sort_unstable();
+        let middle = found.len() / 2;
+        let median = 0.5 * (times[middle - 1] + times[middle]);
+        let n = models[0].elements.len();
+        points.push(((n as f64).ln(), median.ln()));
+        println!(
+            "1.1 {cell}: {n} elements: median {:.1} ms, {:.1} to {:.1}; programs {} to {}; {global} of {} global",
+            1e3 * median,
+            1e3 * times[0],
+            1e3 * times[times.len() - 1],
+            programs[0],
+            programs[programs.len() - 1],
+            found.len()
+        );
+    }
+    let mean = |of: &dyn Fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / points.len() as f64;
+    let (x, y) = (mean(&|p| p.0), mean(&|p| p.1));
+    let exponent = mean(&|p| (p.0 - x) * (p.1 - y)) / mean(&|p| (p.0 - x).powi(2));
+    println!("median time ~ N^{exponent:.2}");
+}
+
 /// Small cells with continuation in l2: 2 to 4 elements.
 #[divan::bench(args = ["1.1", "2", "3.1"], sample_count = 5, sample_size = 1)]
 fn exact_map(bencher: Bencher<'_, '_>, name: &str) {
@@ -75,13 +117,13 @@ fn exact_map(bencher: Bencher<'_, '_>, name: &str) {
     });
 }
 
-/// One limit of larger cells: 12 and 27 elements of 1.1, and 36 of 3.1.
-#[divan::bench(args = ["1.1 2x2", "1.1 3x3", "3.1 3x3"], sample_count = 3, sample_size = 1)]
+/// One limit of larger cells: 12, 27 and 48 elements of 1.1, and 36 of 3.1.
+#[divan::bench(args = ["1.1 2x2", "1.1 3x3", "1.1 4x4", "3.1 3x3"], sample_count = 3, sample_size = 1)]
 fn exact_cell(bencher: Bencher<'_, '_>, what: &str) {
     one_limit(bencher, what);
 }
 
-/// The same of much larger ones, once: 108 and 300 elements of 1.1, and 100 of 3.1. Minutes.
+/// The same of much larger ones, once: 108 and 300 elements of 1.1, and 100 of 3.1. Seconds.
 #[divan::bench(args = ["1.1 6x6", "3.1 5x5", "1.1 10x10"], sample_count = 1, sample_size = 1)]
 fn exact_large_cell(bencher: Bencher<'_, '_>, what: &str) {
     one_limit(bencher, what);

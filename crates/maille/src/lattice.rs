@@ -39,6 +39,11 @@ impl Cell {
         }
     }
 
+    /// Its rows.
+    pub fn rows(&self) -> [[i32; 2]; 2] {
+        self.rows
+    }
+
     /// Number of primitive cells in this one: |det|.
     pub fn copies(&self) -> usize {
         self.det().unsigned_abs() as usize

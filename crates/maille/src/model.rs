@@ -35,6 +35,8 @@ pub struct Element {
     pub rings: Range<usize>,
     /// Radius about the reference point that holds all core circles: max |offset| + R.
     pub reach: f64,
+    /// Where its copy of the design's cell stands in a larger one, in lattice vectors: that part of a strain it can follow.
+    pub anchor: [f64; 2],
 }
 
 /// A design compiled for one cell.
@@ -83,8 +85,13 @@ impl Model {
         let vector = |x: [f64; 3]| Vec3::from(x) / unit;
         let (p1, p2) = (vector(design.lattice.a1), vector(design.lattice.a2));
         let [a1, a2] = cell.vectors(p1, p2);
+        let reference_inverse = Matrix2::new(a1.x, a2.x, a1.y, a2.y).try_inverse().ok_or_else(|| {
+            vec![InvalidInput::new("lattice.a2", "is parallel to a1", "give two independent translations")]
+        })?;
         let (mut elements, mut rings, mut poses) = (Vec::new(), Vec::new(), Vec::new());
         for coset in cell.cosets() {
+            let shift = p1 * f64::from(coset[0]) + p2 * f64::from(coset[1]);
+            let anchor = (reference_inverse * shift.xy()).into();
             for spec in &design.elements {
                 let first = rings.len();
                 for ring in &spec.rings {
@@ -102,14 +109,10 @@ impl Model {
                 } else {
                     format!("{}@{},{}", spec.name, coset[0], coset[1])
                 };
-                elements.push(Element { name, rings: first..rings.len(), reach });
-                let shift = p1 * f64::from(coset[0]) + p2 * f64::from(coset[1]);
+                elements.push(Element { name, rings: first..rings.len(), reach, anchor });
                 poses.push(Pose { position: vector(spec.center) + shift, rotation: UnitQuaternion::identity() });
             }
         }
-        let reference_inverse = Matrix2::new(a1.x, a2.x, a1.y, a2.y).try_inverse().ok_or_else(|| {
-            vec![InvalidInput::new("lattice.a2", "is parallel to a1", "give two independent translations")]
-        })?;
         let largest_radius = rings.iter().map(|r| r.major_radius).fold(0.0, f64::max);
         let start = State { poses, a1, a2 };
         let name = design.name.clone();
@@ -123,6 +126,28 @@ impl Model {
         }
         model.links = topology::links(&model, &model.start, &pairs);
         Ok(model)
+    }
+
+    /// The design's own cell of a periodic model.
+    pub fn primitive(&self) -> Model {
+        let copies = self.cell.copies();
+        let mut out = self.clone();
+        if copies == 1 || !self.periodic {
+            return out;
+        }
+        // The first copy is that of shift (0, 0).
+        out.elements.truncate(self.elements.len() / copies);
+        out.rings.truncate(self.rings.len() / copies);
+        out.start.poses.truncate(out.elements.len());
+        for element in &mut out.elements {
+            element.name.truncate(element.name.rfind('@').unwrap_or(element.name.len()));
+        }
+        out.cell = Cell::PRIMITIVE;
+        let [a1, a2] = self.cell.primitive(self.start.a1, self.start.a2);
+        let cell = Matrix2::from_fn(|i, j| f64::from(self.cell.rows()[j][i]));
+        (out.start.a1, out.start.a2, out.reference_inverse) = (a1, a2, cell * self.reference_inverse);
+        out.links = topology::links(&out, &out.start, &topology::close_pairs(&out, &out.start, 0.0));
+        out
     }
 
     /// Sum of the minor radii of two rings: the core distance r̂ at which their tori touch.

@@ -277,3 +277,23 @@ fn states_stay_below_the_bound() {
         }
     }
 }
+
+/// The mean over its copies makes a solution of a larger cell one of the design's own.
+#[test]
+fn the_own_cell_has_the_bound_of_a_larger_one() {
+    for (name, cell) in [("1.1", "2x2"), ("3.1", "2,1;0,2"), ("5.1", "1x2")] {
+        let large = model(name, 0.1, cell);
+        let own = large.primitive();
+        let compiled = model(name, 0.1, "1x1");
+        assert_eq!(own.links, compiled.links, "{name}");
+        assert_eq!(own.elements.len(), compiled.elements.len());
+        assert!((own.start.a1 - compiled.start.a1).norm() + (own.start.a2 - compiled.start.a2).norm() < 1e-12);
+        assert!((own.reference_inverse - compiled.reference_inverse).norm() < 1e-12);
+        let chain = ChainBound::new(&large);
+        let [of_large, of_own] = [&large, &own].map(|m| LinkBound::new(m, &chain));
+        for (direction_deg, l2) in [(0.0, 0.0), (15.0, -0.125), (40.0, 0.125)] {
+            let [a, b] = [&of_large, &of_own].map(|bound| bound.limit(direction_deg, l2).l1);
+            assert!((a - b).abs() < 1e-9 || a == b, "{name} {cell}: {a} {b}");
+        }
+    }
+}

@@ -2,7 +2,8 @@
 //!
 //! Unknowns of a step: a translation and a turn for every element (the first element's translation is fixed, because
 //! a common translation changes nothing; the turn of a single ring about its own axis is left out for the same
-//! reason), then the free parameters p. The lattice is affine in p, a_k = base_k + Σ p_m rate_mk, or its metric is (see
+//! reason), then the free parameters p. The lattice carries the copies of the design's cell along, so that in a large cell
+//! translations are what is left beside a common strain. The lattice is affine in p, a_k = base_k + Σ p_m rate_mk, or its metric is (see
 //! [`metric`]). The core distance s that two rings must keep is affine: s = (r_a + r_b)(1 + Σ p_m thicken_m) + Σ p_m
 //! widen_m.
 
@@ -230,7 +231,7 @@ impl<'a> SheetProgram<'a> {
                 rates.map(|(m, parameter)| parameter.rate[k] * y[self.first_parameter + m]).sum()
             })
         };
-        Motion { elements, lattice }
+        Motion { elements, lattice, carried: true }
     }
 
     /// The parameters after the step `y`.
@@ -278,7 +279,7 @@ impl Program for SheetProgram<'_> {
     }
 
     fn guard(&self, x: &Posed) -> StepBound {
-        StepBound::of(&x.state, Rc::clone(self.near(x)))
+        StepBound::of(self.model, &x.state, Rc::clone(self.near(x)))
     }
 
     fn largest_step(&self, x: &Posed, guard: &StepBound, step: &[f64]) -> f64 {
@@ -302,8 +303,9 @@ impl Program for SheetProgram<'_> {
 
     fn moved(&self, x: &Posed, step: &[f64]) -> Posed {
         let motion = self.motion(x, step);
-        let poses =
-            x.state.poses.iter().zip(&motion.elements).map(|(pose, (shift, turn))| pose.moved(shift, turn)).collect();
+        let moved = x.state.poses.iter().zip(&motion.elements).enumerate();
+        let moved = moved.map(|(e, (pose, (shift, turn)))| pose.moved(&(shift + motion.carries(self.model, e)), turn));
+        let poses = moved.collect();
         self.posed(State { poses, ..x.state.clone() }, self.stepped(x, step))
     }
 

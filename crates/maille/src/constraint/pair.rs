@@ -3,7 +3,7 @@
 use super::{Posed, SheetProgram, metric::Factored};
 use crate::{
     contact::kernel::{Grad, Hess, PairFrame, RootMotion},
-    solve::rows::{Derivatives, Row, multiplier_at},
+    solve::rows::{Derivatives, Row},
     topology::{RingPair, near::NearPair},
 };
 use maille_geometry::Vec3;
@@ -75,7 +75,9 @@ impl SheetProgram<'_> {
             let first = self.columns[element].1;
             turns[element].iter().enumerate().for_each(|(k, axis)| map.add(first + k, block, axis, 1.0));
         }
-        let image = |[a1, a2]: [Vec3; 2]| a1 * f64::from(pair.shift[0]) + a2 * f64::from(pair.shift[1]);
+        let [from, to] = [i, j].map(|e| self.model.elements[e].anchor);
+        let shift: [f64; 2] = std::array::from_fn(|k| f64::from(pair.shift[k]) + (to[k] - from[k]));
+        let image = |[a1, a2]: [Vec3; 2]| a1 * shift[0] + a2 * shift[1];
         let mut free = Vec::new();
         for (m, parameter) in self.pull.parameters.iter().enumerate() {
             let rate = image(factored.map_or(parameter.rate, |f| self.pull.base.map(|a| f.rate(m, &a))));
@@ -129,7 +131,7 @@ impl SheetProgram<'_> {
             out
         };
         let loaded = |angle: f64, minimum: bool| match derivatives {
-            Derivatives::Second(multipliers) => multiplier_at(key, angle, minimum, multipliers) != 0.0,
+            Derivatives::Second(loads) => loads.at(key, angle, minimum) != 0.0,
             _ => false,
         };
         let mut add = |angle: f64, minimum: bool, distance: f64, grad: &Grad, hess: Option<&Hess>| {

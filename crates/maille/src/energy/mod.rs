@@ -174,7 +174,7 @@ impl Objective for SheetEnergy<'_> {
             Some(_) => [block(step, lattice), block(step, lattice + 3)],
             None => [Vec3::zeros(); 2],
         };
-        let motion = Motion { elements, lattice: moved };
+        let motion = Motion { elements, lattice: moved, carried: false };
         guard.largest_fraction(self.model, &motion, STEP_CAP * self.model.largest_radius)
     }
 

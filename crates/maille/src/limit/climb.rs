@@ -127,7 +127,7 @@ fn feasible(program: &SheetProgram<'_>, x: &Posed) -> bool {
 pub(super) fn shaken_from(model: &Model, state: &State, size: f64, rng: &mut ChaCha8Rng) -> State {
     let mut vector = || Vec3::from_fn(|_, _| size * rng.random_range(-1.0..1.0));
     let elements = state.poses.iter().map(|_| (vector(), vector())).collect();
-    let motion = Motion { elements, lattice: [Vec3::zeros(); 2] };
+    let motion = Motion { elements, lattice: [Vec3::zeros(); 2], carried: false };
     let fraction = StepBound::new(model, state).largest_fraction(model, &motion, f64::INFINITY);
     let moved = state
         .poses

@@ -4,13 +4,12 @@
 //! second order where −Σ μ ∇²g is positive on the directions that keep the loaded rows.
 
 use super::{
-    eigen::{block, symmetric_eigen},
     qp::{self, QuadraticProgram, SparseRows},
-    rows::{Derivatives, Multiplier, Row, lagrangian_hessian, multiplier_of},
-    saddle::least_squares_multipliers,
+    reduced::curvature,
+    rows::{Derivatives, Loads, Multiplier, Row, lagrangian_hessian},
+    saddle::{gram, least_squares_multipliers},
     sqp::Program,
 };
-use faer::Mat;
 
 /// What was found at a polished point.
 #[derive(Clone, Debug)]
@@ -38,8 +37,6 @@ pub const GAP_TOLERANCE: f64 = 1e-12;
 pub const RESIDUAL_TOLERANCE: f64 = 1e-9;
 /// Overlaps below this can be cleared by what carries nothing, see the polish.
 const ALMOST: f64 = 0.03;
-/// Curvature below which a direction counts as a zero mode, relative to the largest curvature.
-const ZERO_MODE: f64 = 1e-7;
 
 /// Rows within this gap are looked at.
 pub(super) const BAND: f64 = 1e-2;
@@ -72,9 +69,9 @@ impl Certificate {
     }
 }
 
-/// Indices of the rows that `active` names, with their multipliers.
-pub(super) fn matched(rows: &[Row], active: &[Multiplier]) -> Vec<(usize, f64)> {
-    rows.iter().enumerate().map(|(k, r)| (k, multiplier_of(r, active))).filter(|(_, mu)| *mu != 0.0).collect()
+/// Indices of the rows that `loads` name, with their multipliers.
+pub(super) fn matched(rows: &[Row], loads: &Loads) -> Vec<(usize, f64)> {
+    rows.iter().enumerate().map(|(k, r)| (k, loads.of(r))).filter(|(_, mu)| *mu != 0.0).collect()
 }
 
 pub(super) fn labelled(rows: &[Row], multipliers: &[f64]) -> Vec<Multiplier> {
@@ -85,18 +82,10 @@ pub(super) fn labelled(rows: &[Row], multipliers: &[f64]) -> Vec<Multiplier> {
 /// Multipliers ≥ 0 with the least |c + Σ μ ∇g|, for dependent rows whose minimum-norm multipliers have wrong signs.
 fn non_negative_multipliers(c: &[f64], rows: &[Row], most: f64) -> Vec<f64> {
     let m = rows.len();
-    let n = c.len();
-    let gradient = |k: usize| {
-        let mut dense = vec![0.0; n];
-        for (&column, &value) in rows[k].columns.iter().zip(&rows[k].gradient) {
-            dense[column] += value;
-        }
-        dense
-    };
-    let gradients: Vec<Vec<f64>> = (0..m).map(gradient).collect();
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
-    let hessian = Mat::from_fn(m, m, |i, j| dot(&gradients[i], &gradients[j]) + if i == j { 1e-13 } else { 0.0 });
-    let linear: Vec<f64> = gradients.iter().map(|g| dot(g, c)).collect();
+    let mut hessian = gram(c.len(), rows);
+    (0..m).for_each(|k| hessian.add_to_diagonal(k, 1e-13));
+    let along = |row: &Row| row.columns.iter().zip(&row.gradient).map(|(&i, a)| a * c[i]).sum();
+    let linear: Vec<f64> = rows.iter().map(along).collect();
     let mut identity = SparseRows::default();
     (0..m).for_each(|k| identity.push([(k, 1.0)]));
     let half_width = vec![10.0 * most + 1.0; m];
@@ -129,7 +118,7 @@ fn dual_residual(c: &[f64], rows: &[Row], multipliers: &[f64]) -> f64 {
 pub(super) fn certify<P: Program>(program: &P, x: &P::Point, active: &[Multiplier]) -> Certificate {
     let c = &program.objective()[..];
     let rows = program.rows(x, BAND, Derivatives::First);
-    let chosen_rows: Vec<Row> = matched(&rows, active).iter().map(|(k, _)| rows[*k].clone()).collect();
+    let chosen_rows: Vec<Row> = matched(&rows, &Loads::new(active)).iter().map(|(k, _)| rows[*k].clone()).collect();
     // Least squares first: exact to rounding. Where signs are wrong, the constrained ones.
     let mut multipliers = least_squares_multipliers(c, &chosen_rows);
     let least = |mu: &[f64]| mu.iter().copied().fold(f64::INFINITY, f64::min);
@@ -157,48 +146,19 @@ pub fn measure_curvature<P: Program>(program: &P, x: &P::Point, certificate: &mu
         return;
     }
     let n = program.objective().len();
-    let rows = program.rows(x, BAND, Derivatives::Second(&certificate.multipliers));
+    let loads = Loads::new(&certificate.multipliers);
+    let rows = program.rows(x, BAND, Derivatives::Second(&loads));
     let (chosen, multipliers): (Vec<&Row>, Vec<f64>) =
-        matched(&rows, &certificate.multipliers).into_iter().map(|(k, mu)| (&rows[k], mu)).unzip();
-    let mut hessian = lagrangian_hessian(n, chosen.iter().copied(), &multipliers);
-    for v in program.hidden_curvature(x, &certificate.multipliers) {
-        for i in 0..n {
-            for j in 0..n {
-                hessian[(i, j)] -= v[i] * v[j];
-            }
-        }
+        matched(&rows, &loads).into_iter().map(|(k, mu)| (&rows[k], mu)).unzip();
+    let hidden = program.hidden_curvature(x, &certificate.multipliers);
+    let moves = |v: &Vec<f64>| (0..n).filter(|&i| v[i] != 0.0).collect();
+    let places: Vec<Vec<usize>> = hidden.iter().map(moves).collect();
+    let more: Vec<&[usize]> = places.iter().map(|at| &at[..]).collect();
+    let mut hessian = lagrangian_hessian(n, chosen.iter().copied(), &multipliers, &more);
+    for (v, at) in hidden.iter().zip(&places) {
+        hessian.add(at, |p, q| -v[at[p]] * v[at[q]]);
     }
     let loaded: Vec<&Row> =
         chosen.into_iter().zip(&multipliers).filter(|(_, mu)| **mu > 1e-8).map(|(r, _)| r).collect();
-    (certificate.min_curvature, certificate.zero_modes) = curvature(n, &hessian, &loaded);
-}
-
-/// Least non-zero curvature of `h` on the null space of `loaded`, and the number of its zero modes.
-fn curvature(n: usize, h: &Mat<f64>, loaded: &[&Row]) -> (Option<f64>, usize) {
-    let mut gram = Mat::zeros(n, n);
-    for row in loaded {
-        for (&i, &a) in row.columns.iter().zip(&row.gradient) {
-            for (&j, &b) in row.columns.iter().zip(&row.gradient) {
-                gram[(i, j)] += a * b;
-            }
-        }
-    }
-    // Unknowns that neither meets are zero modes.
-    let met: Vec<usize> =
-        (0..n).filter(|&j| [h, &gram].iter().any(|matrix| matrix.col(j).iter().any(|v| *v != 0.0))).collect();
-    let idle = n - met.len();
-    let Ok(eigen) = symmetric_eigen(&block(&gram, &met)) else { return (Some(f64::NAN), 0) };
-    let largest = eigen.values.last().copied().unwrap_or(0.0).max(1e-300);
-    let free: Vec<usize> = (0..met.len()).filter(|&k| eigen.values[k] < 1e-12 * largest).collect();
-    let basis = Mat::from_fn(met.len(), free.len(), |i, k| eigen.vectors[(i, free[k])]);
-    if free.is_empty() {
-        return (None, idle);
-    }
-    let reduced = basis.transpose() * block(h, &met) * &basis;
-    let symmetric = Mat::from_fn(free.len(), free.len(), |i, j| 0.5 * (reduced[(i, j)] + reduced[(j, i)]));
-    let Ok(eigen) = symmetric_eigen(&symmetric) else { return (Some(f64::NAN), 0) };
-    let scale = eigen.values.iter().fold(0.0f64, |a, v| a.max(v.abs())).max(1e-300);
-    let is_zero = |v: &f64| v.abs() <= ZERO_MODE * scale.max(1.0);
-    let zero_modes = idle + eigen.values.iter().filter(|v| is_zero(v)).count();
-    (eigen.values.iter().copied().find(|v| !is_zero(v)), zero_modes)
+    (certificate.min_curvature, certificate.zero_modes) = curvature(&hessian, &loaded);
 }

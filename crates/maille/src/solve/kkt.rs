@@ -4,7 +4,7 @@
 
 use super::{
     certificate::{BAND, Certificate, GAP_TOLERANCE, certify, labelled, matched, measure_curvature},
-    rows::{Derivatives, Multiplier, Row, lagrangian_hessian, multiplier_of, violation},
+    rows::{Derivatives, Loads, Multiplier, Row, lagrangian_hessian, violation},
     saddle,
     sqp::{Program, SqpEnd, elastic_program, stiff_where_loaded},
 };
@@ -16,6 +16,8 @@ const MOST_LOSS: f64 = 1e-10;
 const LOADED: [f64; 2] = [1e-5, 1e-3];
 /// Newton steps at most; half as many as there are unknowns if that is more.
 const LEAST_BUDGET: usize = 30;
+/// Rows are taken in or let go so often in a row while the point stays.
+const MOST_IDLE: usize = 30;
 /// Times that overlaps are cleared in a row.
 const CLEARINGS: usize = 6;
 /// Largest step of the polish in one unknown.
@@ -53,8 +55,11 @@ pub fn polish<P: Program>(program: &P, end: &SqpEnd<P::Point>) -> (P::Point, Cer
 fn polished<P: Program>(program: &P, mut x: P::Point, mut active: Vec<Multiplier>) -> (P::Point, Certificate) {
     let mut best: Option<(P::Point, Certificate)> = None;
     let mut budget = LEAST_BUDGET.max(program.objective().len() / 2);
-    while budget > 0 {
-        newton(program, &mut x, &mut active, &mut budget);
+    // Where rows were taken in: what stood there before.
+    let mut taken: Option<(f64, Vec<Multiplier>)> = None;
+    let mut idle = 0;
+    while budget > 0 && idle < MOST_IDLE {
+        idle = if newton(program, &mut x, &mut active, &mut budget) { 0 } else { idle + 1 };
         let mut certificate = certify(program, &x, &active);
         for _ in 0..CLEARINGS {
             if !certificate.lacks_only_room() {
@@ -77,7 +82,10 @@ fn polished<P: Program>(program: &P, mut x: P::Point, mut active: Vec<Multiplier
         if certificate.holds_to_first_order() {
             measure_curvature(program, &x, &mut certificate);
         }
-        let done = certificate.holds();
+        let figures = (certificate.smallest_gap, certificate.multipliers.clone());
+        // Rows were taken in, but nothing has moved: the same would go on.
+        let done = certificate.holds() || taken.as_ref() == Some(&figures);
+        taken = None;
         if best.as_ref().is_none_or(|b| certificate.score() < b.1.score()) {
             active = certificate.multipliers.clone();
             best = Some((x.clone(), certificate));
@@ -88,13 +96,16 @@ fn polished<P: Program>(program: &P, mut x: P::Point, mut active: Vec<Multiplier
         // Take in what is violated, or let the most negative multiplier go.
         let before = active.len();
         let rows = program.rows(&x, BAND, Derivatives::None);
-        let violated = rows.iter().filter(|r| r.gap < -GAP_TOLERANCE && multiplier_of(r, &active) == 0.0);
+        let loads = Loads::new(&active);
+        let violated = rows.iter().filter(|r| r.gap < -GAP_TOLERANCE && loads.of(r) == 0.0);
         active.extend(
             violated
                 .map(|r| Multiplier { key: r.key, angle: r.angle, minimum: r.minimum, value: 1e-300 })
                 .collect::<Vec<_>>(),
         );
-        if active.len() == before {
+        if active.len() > before {
+            taken = Some(figures);
+        } else {
             match active.iter().enumerate().min_by(|a, b| a.1.value.total_cmp(&b.1.value)) {
                 Some((k, m)) if m.value < 0.0 => drop(active.swap_remove(k)),
                 _ => break,
@@ -108,17 +119,19 @@ fn polished<P: Program>(program: &P, mut x: P::Point, mut active: Vec<Multiplier
 }
 
 /// Newton's method on the rows `active`, whose multipliers it improves; `x` moves while steps stay small and the budget
-/// of steps lasts.
-fn newton<P: Program>(program: &P, x: &mut P::Point, active: &mut Vec<Multiplier>, budget: &mut usize) {
+/// of steps lasts. Whether it has moved.
+fn newton<P: Program>(program: &P, x: &mut P::Point, active: &mut Vec<Multiplier>, budget: &mut usize) -> bool {
     let c = program.objective();
+    let mut moved = false;
     let mut last = f64::INFINITY;
     for _ in 0..10 {
         if *budget == 0 {
             break;
         }
         *budget -= 1;
-        let rows = program.rows(x, BAND, Derivatives::Second(active));
-        let chosen = matched(&rows, active);
+        let loads = Loads::new(active);
+        let rows = program.rows(x, BAND, Derivatives::Second(&loads));
+        let chosen = matched(&rows, &loads);
         let chosen_rows: Vec<Row> = chosen.iter().map(|(k, _)| rows[*k].clone()).collect();
         let known: Vec<f64> = chosen.iter().map(|(_, mu)| *mu).collect();
         let Some((step, multipliers)) = newton_step(&c, &chosen_rows, &known) else { break };
@@ -128,12 +141,14 @@ fn newton<P: Program>(program: &P, x: &mut P::Point, active: &mut Vec<Multiplier
             break;
         }
         *x = program.moved(x, &step);
+        moved = true;
         // After a quadratic step of this size only rounding moves on.
         if size < 1e-13 || size < 1e-9 && size > 0.1 * last {
             break;
         }
         last = size;
     }
+    moved
 }
 
 /// `x` moved by the smallest step that clears its overlaps, in units of the worst of them, where rounding does not count.
@@ -145,7 +160,8 @@ fn cleared<P: Program>(program: &P, x: &P::Point, active: &[Multiplier]) -> Opti
     let worst = violation(&program.rows(x, 0.0, Derivatives::None));
     let mut rows = program.rows(x, BAND + 4.0 * worst, Derivatives::First);
     let n = program.objective().len();
-    let loads: Vec<f64> = rows.iter().map(|row| multiplier_of(row, active)).collect();
+    let loads = Loads::new(active);
+    let loads: Vec<f64> = rows.iter().map(|row| loads.of(row)).collect();
     let metric = stiff_where_loaded(n, &rows, &loads);
     let most = MOST.min(MOST_STEP / worst);
     rows.retain_mut(|row| {
@@ -160,7 +176,7 @@ fn cleared<P: Program>(program: &P, x: &P::Point, active: &[Multiplier]) -> Opti
 
 /// Step and multipliers of Newton's method on c + Σ μ ∇g = 0, g = 0 with the known multipliers in H = −Σ μ ∇²g.
 fn newton_step(c: &[f64], rows: &[Row], known: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
-    let h = lagrangian_hessian(c.len(), rows, known);
+    let h = lagrangian_hessian(c.len(), rows, known, &[]);
     // Motions that hardly matter get huge steps from tiny residuals: hold them as much as it takes.
     HOLDS
         .iter()

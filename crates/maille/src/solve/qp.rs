@@ -4,11 +4,9 @@
 //!
 //! H symmetric positive semidefinite; every x is boxed, so the program is feasible iff A x ≥ b meets the box, and the
 //! caller keeps it so with an elastic unknown. Slacks are kept positive throughout; multipliers belong to A x ≥ b and
-//! are non-negative. The rows of A are sparse, H is dense: each iteration forms H + Aᵀ diag(z/s) A and factors it by
-//! Cholesky.
+//! are non-negative. The rows of A are sparse: each iteration forms H + Aᵀ diag(z/s) A and factors it by Cholesky.
 
-use super::cholesky::Cholesky;
-use faer::Mat;
+use super::{cholesky::Cholesky, symmetric::Symmetric};
 
 /// Rows of A, by their entries that are not zero.
 #[derive(Clone, Debug)]
@@ -46,7 +44,7 @@ impl SparseRows {
 /// The program's data.
 pub struct QuadraticProgram<'a> {
     /// H.
-    pub hessian: &'a Mat<f64>,
+    pub hessian: &'a Symmetric,
     /// c.
     pub linear: &'a [f64],
     /// A, b.len() rows.
@@ -120,10 +118,10 @@ pub fn solve(program: &QuadraticProgram<'_>) -> QpSolution {
             cone.z[side] = 1e-2 * scale / cone.s[side].max(1e-1);
         }
     }
-    let hessian: Vec<f64> = program.hessian.col_iter().flat_map(|column| column.iter().copied()).collect();
     let mut best = QpSolution { x: x.clone(), multipliers: vec![0.0; m], residual: f64::INFINITY, iterations: 0 };
     let (mut dual, mut primal) = (vec![0.0; n], vec![0.0; m]);
-    let mut system = Cholesky::new(n);
+    let (matrix, positions) = room(program);
+    let mut system = Cholesky::new(matrix);
     let mut direction = Direction { x: vec![0.0; n], s: vec![0.0; sides], z: vec![0.0; sides] };
     let mut target = vec![0.0; sides];
     for iteration in 0..MAX_ITERATIONS {
@@ -131,9 +129,7 @@ pub fn solve(program: &QuadraticProgram<'_>) -> QpSolution {
         for i in 0..n {
             dual[i] = program.linear[i] - cone.z[m + i] + cone.z[m + n + i];
         }
-        for (column, &xj) in hessian.chunks_exact(n).zip(&x) {
-            dual.iter_mut().zip(column).for_each(|(d, h)| *d += h * xj);
-        }
+        program.hessian.add_times(1.0, &x, &mut dual);
         for k in 0..m {
             let (columns, values) = row(k);
             primal[k] = sparse_dot(columns, values, &x) - program.lower[k] - cone.s[k];
@@ -153,23 +149,21 @@ pub fn solve(program: &QuadraticProgram<'_>) -> QpSolution {
         cone.inverse.iter_mut().zip(&cone.s).for_each(|(inverse, s)| *inverse = 1.0 / s);
         // H + Aᵀ diag(z/s) A + diag(box).
         let matrix = system.matrix_mut();
-        matrix.copy_from_slice(&hessian);
+        matrix.set(program.hessian);
+        let mut at = &positions[..];
         for k in 0..m {
             let ((columns, values), weight) = (row(k), cone.z[k] * cone.inverse[k]);
-            for (p, (&j, a)) in columns.iter().zip(values).enumerate() {
-                let (wa, column) = (weight * a, &mut matrix[j * n..(j + 1) * n]);
-                columns[p..].iter().zip(&values[p..]).for_each(|(&i, a)| column[i] += wa * a);
-            }
+            at = matrix.add_square(columns, values, weight, at);
         }
         for i in 0..n {
             let sides = cone.z[m + i] * cone.inverse[m + i] + cone.z[m + n + i] * cone.inverse[m + n + i];
-            matrix[i * n + i] += sides + 1e-13;
+            matrix.add_to_diagonal(i, sides + 1e-13);
         }
         if !system.factor() {
             break;
         }
         target.fill(0.0);
-        direction.find(program, &system, &cone, (&dual, &primal), &target);
+        direction.find(program, &mut system, &cone, (&dual, &primal), &target);
         let (primal_step, dual_step) = (to_boundary(&cone.s, &direction.s), to_boundary(&cone.z, &direction.z));
         let after = |k: usize| (cone.s[k] + primal_step * direction.s[k]) * (cone.z[k] + dual_step * direction.z[k]);
         let predicted = (0..sides).map(after).sum::<f64>() / sides as f64;
@@ -177,7 +171,7 @@ pub fn solve(program: &QuadraticProgram<'_>) -> QpSolution {
         for k in 0..sides {
             target[k] = centering - direction.s[k] * direction.z[k];
         }
-        direction.find(program, &system, &cone, (&dual, &primal), &target);
+        direction.find(program, &mut system, &cone, (&dual, &primal), &target);
         // One common step length: with a quadratic term separate ones need not lower the dual residual.
         let step = to_boundary(&cone.s, &direction.s).min(to_boundary(&cone.z, &direction.z));
         let step = (TO_BOUNDARY * step).min(1.0);
@@ -197,6 +191,17 @@ pub fn solve(program: &QuadraticProgram<'_>) -> QpSolution {
     best
 }
 
+/// A matrix with room for H + AᵀA, and the places of the rows' entries in it.
+fn room(program: &QuadraticProgram<'_>) -> (Symmetric, Vec<usize>) {
+    let n = program.linear.len();
+    let columns = |k: usize| program.rows.row(k).0;
+    let cliques = (0..program.lower.len()).map(columns);
+    let matrix = Symmetric::around(program.hessian, n, cliques.clone());
+    let mut positions = Vec::new();
+    cliques.for_each(|of| matrix.positions(of, &mut positions));
+    (matrix, positions)
+}
+
 /// A Newton direction of x, s and z.
 struct Direction {
     x: Vec<f64>,
@@ -209,7 +214,7 @@ impl Direction {
     fn find(
         &mut self,
         program: &QuadraticProgram<'_>,
-        system: &Cholesky,
+        system: &mut Cholesky,
         cone: &Cone,
         (dual, primal): (&[f64], &[f64]),
         target: &[f64],
@@ -253,7 +258,8 @@ mod tests {
     /// minimise (x−1)² + (y−2)² with x + y ≤ 2 and y ≤ ½: x = 1, y = ½; the rows' multipliers are 0 and 3.
     #[test]
     fn known_solution() {
-        let hessian = Mat::from_fn(2, 2, |i, j| if i == j { 2.0 } else { 0.0 });
+        let mut hessian = Symmetric::new(2, []);
+        (0..2).for_each(|i| hessian.add_to_diagonal(i, 2.0));
         let program = QuadraticProgram {
             hessian: &hessian,
             linear: &[-2.0, -4.0],
@@ -270,7 +276,7 @@ mod tests {
     /// A linear program (H = 0) in a box, with a redundant pair of equal rows.
     #[test]
     fn linear_program_with_dependent_rows() {
-        let hessian = Mat::zeros(2, 2);
+        let hessian = Symmetric::new(2, []);
         let program = QuadraticProgram {
             hessian: &hessian,
             linear: &[-1.0, 0.0],

@@ -1,6 +1,6 @@
 //! The rows of a program, gaps g ≥ 0 with derivatives, and the multipliers that go with them from point to point.
 
-use faer::Mat;
+use super::symmetric::Symmetric;
 
 /// One gap g(x) ≥ 0 with its derivatives in the unknowns `columns`.
 #[derive(Clone, Debug)]
@@ -36,7 +36,7 @@ pub enum Derivatives<'a> {
     /// Gradients.
     First,
     /// Gradients, and Hessians of the rows to which one of these multipliers belongs.
-    Second(&'a [Multiplier]),
+    Second(&'a Loads),
 }
 
 /// A multiplier with the row that it belongs to.
@@ -57,37 +57,57 @@ pub fn violation(rows: &[Row]) -> f64 {
     rows.iter().map(|r| -r.gap).fold(0.0, f64::max)
 }
 
-/// Multiplier of `row` among `known`: that of the nearest angle under the same key.
-pub fn multiplier_of(row: &Row, known: &[Multiplier]) -> f64 {
-    multiplier_at(row.key, row.angle, row.minimum, known)
+/// Multipliers to be looked up by their rows.
+#[derive(Clone, Debug)]
+pub struct Loads {
+    /// By key; in the given order under one key.
+    sorted: Vec<Multiplier>,
 }
 
-/// [`multiplier_of`] the row with this key, angle and kind.
-pub fn multiplier_at(key: u64, angle: f64, minimum: bool, known: &[Multiplier]) -> f64 {
-    let apart = |m: &Multiplier| {
-        let turn = (m.angle - angle).rem_euclid(std::f64::consts::TAU);
-        turn.min(std::f64::consts::TAU - turn)
-    };
-    known
-        .iter()
-        .filter(|m| m.key == key && m.minimum == minimum)
-        .map(|m| (apart(m), m.value))
-        .filter(|(apart, _)| *apart < if minimum { 0.4 } else { 0.05 })
-        .min_by(|a, b| a.0.total_cmp(&b.0))
-        .map_or(0.0, |(_, value)| value)
+impl Loads {
+    /// Of `known`.
+    pub fn new(known: &[Multiplier]) -> Self {
+        let mut sorted = known.to_vec();
+        sorted.sort_by_key(|m| m.key);
+        Loads { sorted }
+    }
+
+    /// Multiplier of `row`: that of the nearest angle under the same key, or 0.
+    pub fn of(&self, row: &Row) -> f64 {
+        self.at(row.key, row.angle, row.minimum)
+    }
+
+    /// [`Self::of`] the row with this key, angle and kind.
+    pub fn at(&self, key: u64, angle: f64, minimum: bool) -> f64 {
+        let apart = |m: &Multiplier| {
+            let turn = (m.angle - angle).rem_euclid(std::f64::consts::TAU);
+            turn.min(std::f64::consts::TAU - turn)
+        };
+        self.sorted[self.sorted.partition_point(|m| m.key < key)..]
+            .iter()
+            .take_while(|m| m.key == key)
+            .filter(|m| m.minimum == minimum)
+            .map(|m| (apart(m), m.value))
+            .filter(|(apart, _)| *apart < if minimum { 0.4 } else { 0.05 })
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .map_or(0.0, |(_, value)| value)
+    }
 }
 
-/// −Σ μ ∇²g over all unknowns; the rows with μ ≠ 0 must have Hessians.
-pub fn lagrangian_hessian<'r>(n: usize, rows: impl IntoIterator<Item = &'r Row>, multipliers: &[f64]) -> Mat<f64> {
-    let mut h = Mat::zeros(n, n);
-    for (row, mu) in rows.into_iter().zip(multipliers).filter(|(_, mu)| **mu != 0.0) {
+/// −Σ μ ∇²g over all unknowns; the rows with μ ≠ 0 must have Hessians. There is room for `more` blocks.
+pub fn lagrangian_hessian<'r>(
+    n: usize,
+    rows: impl IntoIterator<Item = &'r Row> + Clone,
+    multipliers: &[f64],
+    more: &[&[usize]],
+) -> Symmetric {
+    let loaded = || rows.clone().into_iter().zip(multipliers).filter(|(_, mu)| **mu != 0.0);
+    let cliques = loaded().map(|(row, _)| &row.columns[..]);
+    let mut h = Symmetric::new(n, cliques.chain(more.iter().copied()));
+    for (row, mu) in loaded() {
         let k = row.columns.len();
         assert_eq!(row.hessian.len(), k * k, "a loaded row without its Hessian");
-        for (p, &i) in row.columns.iter().enumerate() {
-            for (q, &j) in row.columns.iter().enumerate() {
-                h[(i, j)] -= mu * row.hessian[p * k + q];
-            }
-        }
+        h.add(&row.columns, |p, q| -mu * row.hessian[p * k + q]);
     }
     h
 }

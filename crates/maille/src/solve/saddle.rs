@@ -5,8 +5,7 @@
 //! Each time a motion of curvature λ keeps δ₁/(λ + δ₁) of its error; what neither H nor A sees is never moved, and
 //! multipliers stay combinations of the rows. One Cholesky factorisation of H + δ₁ + AᵀA/δ₂ serves all.
 
-use super::{cholesky::Cholesky, rows::Row};
-use faer::Mat;
+use super::{cholesky::Cholesky, rows::Row, symmetric::Symmetric};
 
 /// δ₂.
 const DUAL: f64 = 1e-6;
@@ -32,21 +31,14 @@ fn largest(v: &[f64]) -> f64 {
 
 /// d and μ with H d − Aᵀ μ = c and A d = −gap, least norm; `None` where H + `primal` is not positive on the motions that
 /// keep the rows. `primal` is δ₁.
-pub(super) fn solve(h: &Mat<f64>, rows: &[Row], c: &[f64], primal: f64) -> Option<(Vec<f64>, Vec<f64>)> {
+pub(super) fn solve(h: &Symmetric, rows: &[Row], c: &[f64], primal: f64) -> Option<(Vec<f64>, Vec<f64>)> {
     let (n, m) = (c.len(), rows.len());
-    let mut system = Cholesky::new(n);
-    let matrix = system.matrix_mut();
-    for (column, of) in matrix.chunks_exact_mut(n).zip(h.col_iter()) {
-        column.iter_mut().zip(of.iter()).for_each(|(a, b)| *a = *b);
-    }
+    let mut matrix = Symmetric::around(h, n, rows.iter().map(|row| &row.columns[..]));
     for row in rows {
-        for (&j, &b) in row.columns.iter().zip(&row.gradient) {
-            for (&i, &a) in row.columns.iter().zip(&row.gradient) {
-                matrix[j * n + i] += a * b / DUAL;
-            }
-        }
+        matrix.add(&row.columns, |p, q| row.gradient[q] * row.gradient[p] / DUAL);
     }
-    (0..n).for_each(|i| matrix[i * n + i] += primal);
+    (0..n).for_each(|i| matrix.add_to_diagonal(i, primal));
+    let mut system = Cholesky::new(matrix);
     if !system.factor() {
         return None;
     }
@@ -55,11 +47,7 @@ pub(super) fn solve(h: &Mat<f64>, rows: &[Row], c: &[f64], primal: f64) -> Optio
     for _ in 0..REPETITIONS {
         // What is left: p = c − H d + Aᵀ μ, q = −gap − A d.
         let mut left = c.to_vec();
-        for (column, &x) in h.col_iter().zip(&d) {
-            if x != 0.0 {
-                left.iter_mut().zip(column.iter()).for_each(|(a, b)| *a -= b * x);
-            }
-        }
+        h.add_times(-1.0, &d, &mut left);
         add_combination(rows, &mu, &mut left);
         let short: Vec<f64> = along(rows, &d).iter().zip(rows).map(|(a, row)| -row.gap - a).collect();
         let size = largest(&left).max(largest(&short));
@@ -80,18 +68,36 @@ pub(super) fn solve(h: &Mat<f64>, rows: &[Row], c: &[f64], primal: f64) -> Optio
     Some((d, mu))
 }
 
-/// μ of least norm among those with the least |c + Aᵀ μ|: the same method on A Aᵀ.
-pub(super) fn least_squares_multipliers(c: &[f64], rows: &[Row]) -> Vec<f64> {
-    let (n, m) = (c.len(), rows.len());
-    let mut system = Cholesky::new(m);
-    let matrix = system.matrix_mut();
+/// A Aᵀ.
+pub(super) fn gram(n: usize, rows: &[Row]) -> Symmetric {
+    let mut meeting: Vec<Vec<usize>> = vec![Vec::new(); n];
+    for (k, row) in rows.iter().enumerate() {
+        row.columns.iter().for_each(|&i| meeting[i].push(k));
+    }
+    let mut matrix = Symmetric::new(rows.len(), meeting.iter().map(|of| &of[..]));
     let mut dense = vec![0.0; n];
     for (k, row) in rows.iter().enumerate() {
         row.columns.iter().zip(&row.gradient).for_each(|(&i, a)| dense[i] += a);
-        matrix[k * m..(k + 1) * m].copy_from_slice(&along(rows, &dense));
+        let mut met: Vec<usize> = row.columns.iter().flat_map(|&i| meeting[i].iter().copied()).collect();
+        met.retain(|other| *other >= k);
+        met.sort_unstable();
+        met.dedup();
+        for other in met {
+            let of = &rows[other];
+            let product = of.columns.iter().zip(&of.gradient).map(|(&i, a)| a * dense[i]).sum();
+            matrix.set_entry(other, k, product);
+        }
         row.columns.iter().for_each(|&i| dense[i] = 0.0);
-        matrix[k * m + k] += 1e-9;
     }
+    matrix
+}
+
+/// μ of least norm among those with the least |c + Aᵀ μ|: the same method on A Aᵀ.
+pub(super) fn least_squares_multipliers(c: &[f64], rows: &[Row]) -> Vec<f64> {
+    let m = rows.len();
+    let mut matrix = gram(c.len(), rows);
+    (0..m).for_each(|k| matrix.add_to_diagonal(k, 1e-9));
+    let mut system = Cholesky::new(matrix);
     let mut mu = vec![0.0; m];
     if !system.factor() {
         return vec![f64::NAN; m];
@@ -123,7 +129,8 @@ mod tests {
     /// Curvature along x only, the same row along y twice, nothing along z: x = 1, y = −½, z stays, the multipliers share.
     #[test]
     fn dependent_rows_share_and_idle_motions_stay() {
-        let h = Mat::from_fn(3, 3, |i, j| f64::from(u8::from(i == 0 && j == 0)));
+        let mut h = Symmetric::new(3, []);
+        h.add_to_diagonal(0, 1.0);
         let rows = [row(&[1], &[1.0], 0.5), row(&[1], &[1.0], 0.5)];
         let (d, mu) = solve(&h, &rows, &[1.0, -2.0, 0.0], 1e-6).unwrap();
         let near = |a: f64, b: f64| (a - b).abs() < 1e-12;
@@ -138,7 +145,8 @@ mod tests {
     /// Where the motions that keep the rows have negative curvature there is no minimum.
     #[test]
     fn a_saddle_is_refused() {
-        let h = Mat::from_fn(2, 2, |i, j| if i == j { 1.0 - 2.0 * i as f64 } else { 0.0 });
+        let mut h = Symmetric::new(2, []);
+        (0..2).for_each(|i| h.add_to_diagonal(i, 1.0 - 2.0 * i as f64));
         assert!(solve(&h, &[row(&[0], &[1.0], 0.0)], &[0.0, 0.0], 1e-6).is_none());
         assert!(solve(&h, &[row(&[1], &[1.0], 0.0)], &[0.0, 0.0], 1e-6).is_some());
     }

@@ -9,9 +9,9 @@
 use super::{
     convex::convexified,
     qp::{self, QuadraticProgram, SparseRows},
-    rows::{Derivatives, Multiplier, Row, lagrangian_hessian, multiplier_of, violation},
+    rows::{Derivatives, Loads, Multiplier, Row, lagrangian_hessian, violation},
+    symmetric::Symmetric,
 };
-use faer::Mat;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What is maximised.
@@ -88,21 +88,14 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
-fn times(h: &Mat<f64>, x: &[f64]) -> Vec<f64> {
-    let mut out = vec![0.0; x.len()];
-    for (column, &x) in h.col_iter().zip(x) {
-        out.iter_mut().zip(column.iter()).for_each(|(a, b)| *a += b * x);
-    }
-    out
-}
-
 /// A metric for corrections: what carries nothing gives way first.
-pub(super) fn stiff_where_loaded(n: usize, rows: &[Row], multipliers: &[f64]) -> Mat<f64> {
-    let mut metric = Mat::zeros(n, n);
-    (0..n).for_each(|i| metric[(i, i)] = 0.01);
+pub(super) fn stiff_where_loaded(n: usize, rows: &[Row], multipliers: &[f64]) -> Symmetric {
+    let mut loaded = vec![false; n];
     for (row, _) in rows.iter().zip(multipliers).filter(|(_, mu)| **mu > 1e-6) {
-        row.columns.iter().for_each(|&i| metric[(i, i)] = 1.0);
+        row.columns.iter().for_each(|&i| loaded[i] = true);
     }
+    let mut metric = Symmetric::new(n, []);
+    loaded.iter().enumerate().for_each(|(i, loaded)| metric.add_to_diagonal(i, if *loaded { 1.0 } else { 0.01 }));
     metric
 }
 
@@ -110,15 +103,14 @@ pub(super) fn stiff_where_loaded(n: usize, rows: &[Row], multipliers: &[f64]) ->
 /// multipliers, and the violation t that is left.
 pub(super) fn elastic_program(
     rows: &[Row],
-    h: &Mat<f64>,
+    h: &Symmetric,
     linear: &[f64],
     weight: f64,
     radius: f64,
 ) -> (Vec<f64>, Vec<f64>, f64) {
     let n = linear.len();
-    let mut hessian = Mat::zeros(n + 1, n + 1);
-    hessian.submatrix_mut(0, 0, n, n).copy_from(h);
-    hessian[(n, n)] = 1e-8;
+    let mut hessian = Symmetric::around(h, n + 1, []);
+    hessian.add_to_diagonal(n, 1e-8);
     let linear: Vec<f64> = linear.iter().copied().chain([weight]).collect();
     // Rows that no step in the box can reach are left out: they change nothing.
     let within = |row: &Row| row.gap < radius * row.gradient.iter().map(|a| a.abs()).sum::<f64>();
@@ -151,9 +143,6 @@ const FURTHEST: f64 = 100.0;
 const LEAST_FLOOR: f64 = 1e-4;
 /// See [`LEAST_FLOOR`].
 const MOST_FLOOR: f64 = 0.1;
-/// With more unknowns than these both shrink: the same strain then moves more of them, and the
-/// curvature of the limit is spread over all.
-const FEW: f64 = 20.0;
 
 /// Maximises `program` from `start`; `known` are multipliers of an earlier iteration, if there was one.
 pub fn maximize<P: Program>(
@@ -169,11 +158,11 @@ pub fn maximize<P: Program>(
     let mut radius = options.first_radius;
     let mut penalty = options.penalty;
     let band = |radius: f64| 0.1 + 2.0 * radius;
-    let share = (FEW / n as f64).min(1.0);
-    let mut floor = share * MOST_FLOOR;
+    let mut floor = MOST_FLOOR;
     let mut end = SqpEnd { point: start, multipliers: known, iterations: 0, settled: false, violation: f64::INFINITY };
     let mut reach = band(radius);
-    let mut rows = program.rows(&end.point, reach, Derivatives::Second(&end.multipliers));
+    let mut loads = Loads::new(&end.multipliers);
+    let mut rows = program.rows(&end.point, reach, Derivatives::Second(&loads));
     end.violation = violation(&rows);
     while end.iterations < options.max_iterations && !cancel.load(Ordering::Relaxed) {
         if end.violation < 1e-13 && program.value(&end.point) >= options.enough {
@@ -181,8 +170,8 @@ pub fn maximize<P: Program>(
             break;
         }
         end.iterations += 1;
-        let known: Vec<f64> = rows.iter().map(|row| multiplier_of(row, &end.multipliers)).collect();
-        let h = convexified(lagrangian_hessian(n, &rows, &known), &rows, &known, floor);
+        let known: Vec<f64> = rows.iter().map(|row| loads.of(row)).collect();
+        let h = convexified(lagrangian_hessian(n, &rows, &known, &[]), &rows, &known, floor);
         let (step, multipliers, left) = elastic_program(&rows, &h, &descent, penalty, radius);
         let keep = |multipliers: &[f64]| -> Vec<Multiplier> {
             let pairs = rows.iter().zip(multipliers).filter(|(_, mu)| **mu > 1e-9);
@@ -191,7 +180,8 @@ pub fn maximize<P: Program>(
         let size = step.iter().fold(0.0f64, |a, s| a.max(s.abs()));
         let promised = dot(&c, &step) + penalty * (end.violation - left);
         end.multipliers = keep(&multipliers);
-        floor = share * size.clamp(LEAST_FLOOR, MOST_FLOOR);
+        loads = Loads::new(&end.multipliers);
+        floor = size.clamp(LEAST_FLOOR, MOST_FLOOR);
         penalty = penalty.max(2.0 * multipliers.iter().sum::<f64>().min(1e4));
         if promised < options.tolerance || size < 1e-12 {
             end.settled = true;
@@ -211,7 +201,8 @@ pub fn maximize<P: Program>(
         let mut trial = program.moved(&end.point, &step);
         let (mut reached, mut worst) = judge(&trial);
         let wanted = promised * fraction;
-        let bent = times(&h, &step);
+        let mut bent = vec![0.0; n];
+        h.add_times(1.0, &step, &mut bent);
         // What the curved rows take away again, by the model.
         let expected = wanted - 0.5 * dot(&bent, &step);
         if merit - reached < 0.5 * wanted && worst > 0.0 {
@@ -239,14 +230,14 @@ pub fn maximize<P: Program>(
                 radius *= 0.5;
             }
             reach = band(radius);
-            rows = program.rows(&end.point, reach, Derivatives::Second(&end.multipliers));
+            rows = program.rows(&end.point, reach, Derivatives::Second(&loads));
         } else {
             radius = 0.3 * radius.min(size);
             if radius < 1e-13 {
                 break;
             }
             // The same rows with the Hessians of those that are loaded now.
-            rows = program.rows(&end.point, reach, Derivatives::Second(&end.multipliers));
+            rows = program.rows(&end.point, reach, Derivatives::Second(&loads));
         }
     }
     end

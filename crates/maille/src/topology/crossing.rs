@@ -6,7 +6,10 @@
 //! not ensure for elements of several rings.
 
 use super::near::{NearPair, near_pairs};
-use crate::{model::Model, state::State};
+use crate::{
+    model::{Element, Model},
+    state::{Pose, State},
+};
 use maille_geometry::Vec3;
 use std::rc::Rc;
 
@@ -16,6 +19,16 @@ pub struct Motion {
     pub elements: Vec<(Vec3, Vec3)>,
     /// Change of a1 and a2.
     pub lattice: [Vec3; 2],
+    /// Whether the lattice carries the elements along, each at its copy of the design's cell: translations are then what is left.
+    pub carried: bool,
+}
+
+impl Motion {
+    /// Where the lattice carries element `e` to.
+    pub fn carries(&self, model: &Model, e: usize) -> Vec3 {
+        let [u, v] = if self.carried { model.elements[e].anchor } else { [0.0; 2] };
+        self.lattice[0] * u + self.lattice[1] * v
+    }
 }
 
 /// Core distances around a state, from which steps are bounded. A distance is looked for only where its floor would cut
@@ -23,7 +36,9 @@ pub struct Motion {
 pub struct StepBound {
     pairs: Rc<[NearPair]>,
     reach_growth: f64,
+    /// Twice the farthest of an element from the first one; of where the lattice carries it.
     spread: f64,
+    spread_carried: f64,
 }
 
 /// Pairs up to this many largest radii apart bound a step one by one.
@@ -34,24 +49,34 @@ const SAFETY: f64 = 0.9;
 impl StepBound {
     /// At `state`.
     pub fn new(model: &Model, state: &State) -> Self {
-        Self::of(state, near_pairs(model, state, MARGIN * model.largest_radius).into())
+        Self::of(model, state, near_pairs(model, state, MARGIN * model.largest_radius).into())
     }
 
     /// At `state`, whose near pairs up to [`MARGIN`] largest radii or more are `pairs`.
-    pub fn of(state: &State, pairs: Rc<[NearPair]>) -> Self {
+    pub fn of(model: &Model, state: &State, pairs: Rc<[NearPair]>) -> Self {
         // |Δa1 s1 + Δa2 s2| ≤ (|Δa1| |b1| + |Δa2| |b2|) |s1 a1 + s2 a2| with the dual vectors b of the lattice.
         let (g11, g12, g22) = (state.a1.norm_squared(), state.a1.dot(&state.a2), state.a2.norm_squared());
         let reach_growth = (g11.max(g22) / (g11 * g22 - g12 * g12)).sqrt();
         let origin = state.poses[0].position;
         let spread = 2.0 * state.poses.iter().map(|p| (p.position - origin).norm()).fold(0.0, f64::max);
-        StepBound { pairs, reach_growth, spread }
+        let beside = |(pose, element): (&Pose, &Element)| {
+            let [u, v] = element.anchor;
+            (pose.position - origin - state.a1 * u - state.a2 * v).norm()
+        };
+        let spread_carried = 2.0 * state.poses.iter().zip(&model.elements).map(beside).fold(0.0, f64::max);
+        StepBound { pairs, reach_growth, spread, spread_carried }
     }
 
     /// Largest fraction of `motion`, at most 1, in which no circles can meet and no element moves more than `cap`.
     pub fn largest_fraction(&self, model: &Model, motion: &Motion, cap: f64) -> f64 {
         let [da1, da2] = motion.lattice;
         let swing = |e: usize| model.elements[e].reach * motion.elements[e].1.norm();
-        let mut largest = da1.norm().max(da2.norm());
+        // What is carried along moves little where a large cell grows by much.
+        let (own, spread) = match motion.carried {
+            true => (model.cell.primitive(da1, da2), self.spread_carried),
+            false => ([da1, da2], self.spread),
+        };
+        let mut largest = own[0].norm().max(own[1].norm());
         for e in 0..model.elements.len() {
             largest = largest.max(motion.elements[e].0.norm() + swing(e));
         }
@@ -67,13 +92,14 @@ impl StepBound {
         let margin = MARGIN * model.largest_radius;
         let widest = model.elements.iter().map(|e| e.reach).fold(0.0, f64::max);
         let growth = (da1.norm() + da2.norm()) * self.reach_growth;
-        limit(2.0 * largest + growth * (2.0 * widest + margin + self.spread), SAFETY * margin);
+        limit(2.0 * largest + growth * (2.0 * widest + margin + spread), SAFETY * margin);
         limit(growth, 0.5);
         for near in self.pairs.iter() {
             let pair = &near.pair;
             let (i, j) = (model.rings[pair.ring_a].element, model.rings[pair.ring_b].element);
             let (p, q) = (f64::from(pair.shift[0]), f64::from(pair.shift[1]));
-            let relative = motion.elements[j].0 - motion.elements[i].0 + da1 * p + da2 * q;
+            let apart = motion.carries(model, j) - motion.carries(model, i);
+            let relative = motion.elements[j].0 - motion.elements[i].0 + da1 * p + da2 * q + apart;
             let motion = relative.norm() + swing(i) + swing(j);
             if motion > SAFETY * near.floor {
                 limit(motion, SAFETY * near.distance());
