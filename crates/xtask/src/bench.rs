@@ -41,7 +41,7 @@ pub fn write(root: &Path, saved: Option<&str>) -> Result<(), String> {
     let page = root.join(PAGE);
     let text = std::fs::read_to_string(&page).map_err(|e| format!("{PAGE} cannot be read: {e}"))?;
     let (before, _) = text.split_once(MARK).ok_or_else(|| format!("{PAGE} has no line `{MARK}`"))?;
-    let whole = format!("{before}{MARK}\n\n{}", table(&medians)?);
+    let whole = format!("{before}{MARK}\n\n{}{}\n{}", machine(), beside(&output), table(&medians)?);
     let new = page.with_extension("md.tmp");
     std::fs::write(&new, whole).and_then(|()| std::fs::rename(&new, &page)).map_err(|e| format!("{PAGE}: {e}"))
 }
@@ -55,6 +55,28 @@ fn run(root: &Path) -> Result<String, String> {
         return Err(format!("cargo bench ended with {}", output.status));
     }
     String::from_utf8(output.stdout).map_err(|e| format!("cargo bench printed no text: {e}"))
+}
+
+/// What the figures were measured on, as far as the system tells.
+fn machine() -> String {
+    let told = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let field = |name: &str| {
+        told.lines().find(|line| line.starts_with(name)).and_then(|line| line.split(':').nth(1)).map(str::trim)
+    };
+    let model = field("model name").unwrap_or("a processor that the system does not name");
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let widest = ["avx512f", "avx2"].into_iter().find(|set| field("flags").is_some_and(|flags| flags.contains(set)));
+    format!("{cores} cores of {model}, widest instructions {}.\n\n", widest.unwrap_or("baseline"))
+}
+
+/// What the benches print beside divan's trees.
+fn beside(output: &str) -> String {
+    let lines = output.lines().filter(|line| !line.contains('│') && !line.contains("Timer precision"));
+    let mut out = String::new();
+    for line in lines.filter(|line| !line.trim().is_empty()) {
+        let _ = writeln!(out, "    {line}");
+    }
+    out
 }
 
 /// The medians of divan's trees. A line below a bench gives its items a second; without one the bench is one item.
@@ -86,7 +108,8 @@ fn parse(output: &str) -> Result<Vec<Median>, String> {
 
 /// A figure with its unit, as `28.24 ms` or `330.3 K`.
 fn quantity(text: &str) -> Result<f64, String> {
-    let (number, unit) = text.trim().split_once(' ').ok_or_else(|| format!("`{text}` is no figure"))?;
+    // Rates below a thousand have no unit.
+    let (number, unit) = text.trim().split_once(' ').unwrap_or((text.trim(), ""));
     let factor = match unit.trim() {
         "" => 1.0,
         "K" => 1e3,
@@ -144,11 +167,17 @@ pair                   fastest       │ slowest       │ median        │ mea
 ├─ enumeration                       │               │               │               │         │
 │  ├─ near degenerate  24.28 ms      │ 37.78 ms      │ 28.24 ms      │ 28.54 ms      │ 100     │ 100
 │  │                   41.17 Kitem/s │ 26.46 Kitem/s │ 35.4 Kitem/s  │ 35.03 Kitem/s │         │
+├─ slow                300 ms        │ 300 ms        │ 300 ms        │ 300 ms        │ 5       │ 5
+│                      83.16 item/s  │ 80 item/s     │ 80 item/s     │ 80 item/s     │         │
 ╰─ alone               1.5 s         │ 2.5 s         │ 2 s           │ 2 s           │ 100     │ 100
 ";
         let found = parse(output).unwrap();
-        let expected =
-            [("pair batch 0 near", 5e-8), ("pair enumeration near degenerate", 1.0 / 35.4e3), ("pair alone", 2.0)];
+        let expected = [
+            ("pair batch 0 near", 5e-8),
+            ("pair enumeration near degenerate", 1.0 / 35.4e3),
+            ("pair slow", 0.0125),
+            ("pair alone", 2.0),
+        ];
         assert_eq!(found.len(), expected.len(), "{found:?}");
         for (median, (path, seconds)) in found.iter().zip(expected) {
             assert_eq!(median.path, path);
