@@ -126,3 +126,32 @@ pub(crate) fn colour(status: Status) -> [u8; 3] {
 fn one_line(text: &str) -> String {
     text.replace(['\r', '\n'], " ")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn vertex(direction: [f64; 3], distance: Option<f64>, bound: Option<f64>) -> BoundaryVertex {
+        let status = if distance.is_some() { Status::Local } else { Status::L2NotReached };
+        let (lattice, poses) = ([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], Vec::new());
+        BoundaryVertex { direction, status, distance, first: None, bound, n_distinct: 0, lattice, poses }
+    }
+
+    #[test]
+    fn an_unreached_ray_is_a_hole() {
+        let vertices = vec![
+            vertex([1.0, 0.0, 0.0], None, None),
+            vertex([0.0, 1.0, 0.0], Some(0.5), None),
+            vertex([0.0, 0.0, 1.0], Some(0.25), Some(0.75)),
+            vertex([-1.0, 0.0, 0.0], Some(0.125), None),
+        ];
+        let triangles = vec![[0, 1, 2], [1, 3, 2], [0, 2, 3], [0, 3, 1]];
+        let surface = Boundary { vertices, triangles, arch: 0.0, open: 0, jumps: 0, complete: true };
+        let obj = boundary_obj(&surface, "a");
+        assert_eq!(obj.lines().skip(2).collect::<Vec<_>>(), ["v 0 0.5 0", "v 0 0 0.25", "v -0.125 0 0", "f 1 3 2"]);
+        let ply = boundary_ply(&surface, "a");
+        assert!(ply.contains("element vertex 3\n") && ply.contains("element face 1\n"));
+        assert!(ply.contains("0 0.5 0 -1 ") && ply.contains("0 0 0.25 0.75 ") && ply.ends_with("3 0 2 1\n"));
+        assert!(boundary_csv(&surface).contains("\n0,1.0,0.0,0.0,l2-not-reached,,,,,,,0\n"));
+    }
+}
