@@ -1,5 +1,6 @@
-//! `--at direction=30,l2=-0.125`: a row of a record.
+//! `--at direction=30,l2=-0.125`: a row of a record; `--at roomiest`: a state that is found now.
 
+use maille::limit::extreme::Extreme;
 use std::fmt;
 
 /// Which row of a record is meant.
@@ -13,15 +14,24 @@ pub struct At {
     pub frame: Option<usize>,
 }
 
+/// What is to be shown: a row of a record or a frame, or an extreme of the design.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Place {
+    At(At),
+    Extreme(Extreme),
+}
+
+/// Reads `roomiest`, `tightest`, or a place in a record.
+pub fn parse_place(text: &str) -> Result<Place, String> {
+    match text.trim() {
+        "roomiest" => Ok(Place::Extreme(Extreme::WidestGap)),
+        "tightest" => Ok(Place::Extreme(Extreme::ThickestWire)),
+        _ => parse_at(text).map(Place::At),
+    }
+}
+
 /// Reads `direction=30,l2=-0.125`; what is not named stays open.
 pub fn parse_at(text: &str) -> Result<At, String> {
-    // What is not in a record has to be computed first, and that is another command's work.
-    if let "roomiest" | "tightest" = text.trim() {
-        return Err(format!(
-            "the {text} state is in no record, and this command computes nothing; save it as a design, and show that:\n  \
-             maille {text} DESIGN --save {text}.toml\n  maille export {text}.toml"
-        ));
-    }
     let mut at = At::default();
     for part in text.split(',') {
         let wrong = || format!("\"{part}\" is no place; give direction=30,l2=-0.125");

@@ -4,7 +4,7 @@ use crate::{
     exit::{self, wrong},
     input::{Input, file_name},
     interrupt,
-    map::pool,
+    map::{RunArgs, pool},
     numbers::{parse_cell, positive},
     output::{self, say},
     progress::Progress,
@@ -22,7 +22,6 @@ use maille_io::{
 use miette::{IntoDiagnostic, Result, WrapErr};
 use serde_json::json;
 use std::{
-    collections::BTreeMap,
     fs,
     io::Write,
     path::{Path, PathBuf},
@@ -37,11 +36,12 @@ use std::{
 /// certified state, with the proven outer bound; more rays where the surface bends. Writes a folder with boundary.csv (one row
 /// a vertex: where the straight way is first stopped, and the farthest state), boundary.obj and boundary.ply (the mesh),
 /// boundary.svg and boundary.png (three sections and a view) and boundary.jsonl (every state). The same command again goes on
-/// where the last one stopped.
+/// where the last one stopped; with another --tolerance or more --vertices it keeps the rays that are there.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   maille boundary european-4-in-1
+  maille boundary european-4-in-1 --tolerance 3e-4 --vertices 20000      finer, from the rays that are there
   maille boundary 1.1 --tolerance 0.005 --vertices 500 --out results/surface-1.1
 
 Exit codes: 0 every ray has a certified end, 5 some have none, 130 interrupted.")]
@@ -52,7 +52,7 @@ pub struct Args {
     #[arg(long, default_value_t = BoundaryOptions::default().tolerance, value_parser = positive)]
     tolerance: f64,
     /// Vertices at most
-    #[arg(long, default_value_t = 1500, value_parser = clap::value_parser!(u32).range(162..=100_000))]
+    #[arg(long, default_value_t = BoundaryOptions::default().most as u32, value_parser = clap::value_parser!(u32).range(162..=100_000))]
     vertices: u32,
     /// Starts of each ray beside its neighbours' states
     #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=1000))]
@@ -66,15 +66,8 @@ pub struct Args {
     /// Seed of the shaking
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Folder of the files [default: maille-out/DESIGN-boundary]
-    #[arg(long)]
-    out: Option<PathBuf>,
-    /// Replace a surface of other inputs in that folder
-    #[arg(long)]
-    overwrite: bool,
-    /// Threads [default: all cores]; results do not depend on it
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
-    threads: Option<u16>,
+    #[command(flatten)]
+    run: RunArgs,
     /// No progress and no summary
     #[arg(long, short)]
     quiet: bool,
@@ -93,14 +86,15 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         seed: args.seed,
     };
     let usual = || PathBuf::from("maille-out").join(format!("{}-boundary", file_name(&input.design.name)));
-    let out = args.out.clone().unwrap_or_else(usual);
-    let parameters = json!({ "boundary": options, "cell": args.cell.to_string() });
+    let out = args.run.out.clone().unwrap_or_else(usual);
+    // Tolerance and number of vertices say which rays there are, not where one ends.
+    let parameters = json!({ "starts": options.starts, "seed": options.seed, "cell": args.cell.to_string() });
     let head = BoundaryHead {
         program_version: env!("CARGO_PKG_VERSION").into(),
         input_hash: input_hash(&input.design, &parameters),
         design: input.design.name.clone(),
     };
-    let (known, journal) = open(&out, &head, args.overwrite)?;
+    let (known, journal) = open(&out, &head, args.run.overwrite)?;
     if !known.is_empty() && !args.quiet {
         eprintln!("{} rays are in {} already", known.len(), out.display());
     }
@@ -108,15 +102,16 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let begun = Instant::now();
     let progress = Progress::new(0, args.quiet);
     let journal = Mutex::new((journal, None));
-    let found = |number: usize, vertex: &BoundaryVertex| {
+    let found = |vertex: &BoundaryVertex| {
         let mut journal = journal.lock().unwrap_or_else(|e| e.into_inner());
-        if let Err(error) = journal.0.write_all(journal_line(number, vertex).as_bytes()) {
+        if let Err(error) = journal.0.write_all(journal_line(vertex).as_bytes()) {
             journal.1.get_or_insert(error);
             cancel.store(true, Ordering::Relaxed);
         }
-        progress.step(format!("ray {number}"));
+        let [x, y, z] = vertex.direction;
+        progress.step(format!("ray {x:.3}, {y:.3}, {z:.3}"));
     };
-    let pool = pool(args.threads)?;
+    let pool = pool(args.run.threads)?;
     let mut planned = |rays: usize| progress.more(rays as u64);
     let surface = pool.install(|| boundary(&model, &options, &known, &cancel, &mut planned, &found));
     progress.finish();
@@ -125,7 +120,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     }
     write(&out, &input, &surface, &options)?;
     if !args.quiet {
-        summary(&out, &input, &surface, known.len(), begun.elapsed().as_secs_f64());
+        summary(&out, &input, &surface, &options, known.len(), begun.elapsed().as_secs_f64());
     }
     let interrupted = !surface.complete;
     if interrupted && !args.quiet {
@@ -140,7 +135,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 }
 
 /// The vertices of an earlier run, and the journal to go on with.
-fn open(out: &Path, head: &BoundaryHead, overwrite: bool) -> Result<(BTreeMap<usize, BoundaryVertex>, fs::File)> {
+fn open(out: &Path, head: &BoundaryHead, overwrite: bool) -> Result<(Vec<BoundaryVertex>, fs::File)> {
     let path = out.join(JOURNAL);
     if out.is_file() {
         let problem = format!("{} is a file; the surface is a folder", out.display());
@@ -148,7 +143,7 @@ fn open(out: &Path, head: &BoundaryHead, overwrite: bool) -> Result<(BTreeMap<us
     }
     let context = || format!("cannot write {}", path.display());
     fs::create_dir_all(out).into_diagnostic().wrap_err_with(context)?;
-    let mut known = BTreeMap::new();
+    let mut known = Vec::new();
     match fs::read_to_string(&path) {
         Ok(text) if !overwrite => match read_journal(&text) {
             Some((old, vertices)) if old == *head => known = vertices,
@@ -171,7 +166,7 @@ fn open(out: &Path, head: &BoundaryHead, overwrite: bool) -> Result<(BTreeMap<us
         _ => {}
     }
     // Written anew, so that a line that was cut off does not stay.
-    let lines: String = known.iter().map(|(number, vertex)| journal_line(*number, vertex)).collect();
+    let lines: String = known.iter().map(journal_line).collect();
     output::write(&path, (journal_head(head) + &lines).as_bytes())?;
     let journal = fs::OpenOptions::new().append(true).open(&path).into_diagnostic().wrap_err_with(context)?;
     Ok((known, journal))
@@ -181,12 +176,10 @@ fn write(out: &Path, input: &Input, surface: &Boundary, options: &BoundaryOption
     let name = &input.design.name;
     let title = format!("Attainable strains of {name}");
     let caption = vec![format!(
-        "{} rays, {} triangles; between the rays the surface is expected within {:.1e} of the triangles (asked: {:.1e}). \
-         Beyond its bound no state of any cell lies on a ray.",
+        "{} rays, {} triangles; {}. Beyond its bound no state of any cell lies on a ray.",
         surface.vertices.len(),
         surface.triangles.len(),
-        surface.arch,
-        options.tolerance,
+        accuracy(surface, options),
     )];
     let svg = boundary_svg(surface, &title, caption);
     let png = svg_to_png(&svg, 2.0).into_diagnostic().wrap_err("cannot draw the figure")?;
@@ -197,7 +190,24 @@ fn write(out: &Path, input: &Input, surface: &Boundary, options: &BoundaryOption
     output::write(&out.join("boundary.png"), &png)
 }
 
-fn summary(out: &Path, input: &Input, surface: &Boundary, known: usize, wall_s: f64) {
+/// How near the triangles are expected to be, and why not nearer.
+fn accuracy(surface: &Boundary, options: &BoundaryOptions) -> String {
+    let Boundary { arch, open, jumps, .. } = surface;
+    let asked = options.tolerance;
+    let not =
+        |why: String| format!("the tolerance of {asked:.1e} is not reached: {why}; worst expected distance {arch:.1e}");
+    let edges = |n: usize| if n == 1 { "1 edge".to_owned() } else { format!("{n} edges") };
+    match (surface.complete, *open, *jumps) {
+        (false, ..) => "the rays are not all solved".into(),
+        (_, 0, 0) => format!("the surface is expected within {arch:.1e} of the triangles (asked: {asked:.1e})"),
+        (_, 0, jumps) => not(format!("{} beyond it lie where the distance jumps from ray to ray", edges(jumps))),
+        (_, open, jumps) => {
+            not(format!("stopped at {} rays with {} beyond it", surface.vertices.len(), edges(open + jumps)))
+        }
+    }
+}
+
+fn summary(out: &Path, input: &Input, surface: &Boundary, options: &BoundaryOptions, known: usize, wall_s: f64) {
     let vertices = &surface.vertices;
     say!("{}: {} rays, {} triangles", input.design.name, vertices.len(), surface.triangles.len());
     for (k, name) in ["exx", "eyy", "exy"].into_iter().enumerate() {
@@ -214,7 +224,14 @@ fn summary(out: &Path, input: &Input, surface: &Boundary, known: usize, wall_s: 
     let apart = |v: &&BoundaryVertex| v.distance.zip(v.first).is_some_and(|(far, first)| far - first > 1e-7);
     let count = vertices.iter().filter(apart).count();
     say!("  {count} rays go further than where the straight way is first stopped");
-    say!("  largest expected distance between surface and triangles {:.2e}", surface.arch);
+    say!("  {}", accuracy(surface, options));
+    if surface.complete && surface.open > 0 {
+        say!("  the same command with more --vertices goes on from here");
+    }
+    let holes = vertices.iter().filter(|v| v.distance.is_none()).count();
+    if holes > 0 {
+        say!("  {holes} rays were not reached: holes in the mesh");
+    }
     say!(
         "{} rays in {wall_s:.1} s; look at {}",
         vertices.len().saturating_sub(known),

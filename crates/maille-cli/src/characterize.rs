@@ -4,7 +4,7 @@ use crate::{
     exit::{self, wrong},
     input::{Input, file_name},
     interrupt,
-    map::{CellChoice, Map, pool, unanswered},
+    map::{CellChoice, Map, RunArgs, pool, unanswered},
     numbers::{Numbers, parse, parse_cell, parse_l2, positive},
     output,
     plot::Shown,
@@ -39,6 +39,7 @@ Examples:
   maille characterize 3.1 --method energy --cell \"1,0;-1,2\" --protocol corners --tau 0.1 --out corners-3.1
   maille characterize my-weave.toml --out results/my-weave
   maille characterize 1.1 --lateral free --out maille-out/1.1-free
+  maille characterize 1.1 --lateral free --compression --directions 0:180:15
   maille characterize my-weave.toml --directions 0,45,90 --l2 0 --watch
   maille characterize 1.1 --json | jq '.limits[] | .largest.l1'
 
@@ -59,6 +60,10 @@ pub struct Args {
     /// The shear: held at 0, or left to the sheet (exact method)
     #[arg(long, value_enum, default_value_t = Held::Fixed)]
     shear: Held,
+    /// The least l1 in place of the largest: how far the sheet can be pushed together. All cells up to 3x3 are solved, and no
+    /// limit is global, as a larger cell can fold further (exact method)
+    #[arg(long)]
+    compression: bool,
     /// Minor radius of every ring that gives none, in the file's unit
     #[arg(long, value_parser = positive)]
     minor_radius: Option<f64>,
@@ -72,15 +77,8 @@ pub struct Args {
     /// What polar.svg and polar.png show
     #[arg(long, value_enum, default_value_t = Shown::Stretch)]
     quantity: Shown,
-    /// Folder of the record [default: maille-out/DESIGN]
-    #[arg(long)]
-    out: Option<PathBuf>,
-    /// Replace a record of other inputs in that folder
-    #[arg(long)]
-    overwrite: bool,
-    /// Threads [default: all cores]; results do not depend on it
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
-    threads: Option<u16>,
+    #[command(flatten)]
+    run: RunArgs,
     /// Seed of everything random
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -93,7 +91,7 @@ pub struct Args {
     /// No progress and no summary
     #[arg(long, short, conflicts_with = "json")]
     quiet: bool,
-    /// Exact method: starts of a limit whose bound is not attained
+    /// Exact method: starts of a limit whose bound is not attained; with --compression starts of each cell
     #[arg(long, default_value_t = ExactOptions::default().starts, value_parser = |t: &str| small(t, 10_000))]
     starts: usize,
     #[command(flatten, next_help_heading = "Energy method (lengths in units of the reference radius R)")]
@@ -183,6 +181,10 @@ const USUAL_L2: [f64; 5] = [-0.25, -0.125, 0.0, 0.125, 0.25];
 /// What is left to the sheet, and the lateral strains that are held.
 fn held(args: &Args) -> Result<(Across, Vec<f64>)> {
     let across = Across { lateral_free: args.lateral == Held::Free, shear_free: args.shear == Held::Free };
+    if args.compression && matches!(args.method, MethodArg::Energy) {
+        let help = "leave out --compression, or --method energy";
+        return Err(wrong(exit::USAGE, "the energy method finds largest limits alone", help));
+    }
     if across.any() && matches!(args.method, MethodArg::Energy) {
         let help = "leave out --lateral and --shear, or --method energy";
         return Err(wrong(exit::USAGE, "the energy method holds width and shear", help));
@@ -273,17 +275,23 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 fn once(args: &Args) -> Result<ExitCode> {
     let (across, l2) = held(args)?;
     let input = Input::read(&args.design, args.minor_radius)?;
+    let folder = file_name(&input.design.name) + if args.compression { "-compression" } else { "" };
     let map = Map {
         method: match args.method {
-            MethodArg::Exact => Method::Exact(ExactOptions { starts: args.starts.max(1), seed: args.seed, across }),
+            MethodArg::Exact => Method::Exact(ExactOptions {
+                starts: args.starts.max(1),
+                seed: args.seed,
+                across,
+                compression: args.compression,
+            }),
             MethodArg::Energy => Method::Energy(args.energy.options(args.seed)),
         },
         cell: args.cell,
         directions_deg: args.directions.0.clone(),
         l2,
         quantity: args.quantity.into(),
-        out: args.out.clone().unwrap_or_else(|| PathBuf::from("maille-out").join(file_name(&input.design.name))),
-        overwrite: args.overwrite || args.watch,
+        out: args.run.out.clone().unwrap_or_else(|| PathBuf::from("maille-out").join(folder)),
+        overwrite: args.run.overwrite || args.watch,
     };
     let begun = Instant::now();
     let open = map.open(&input)?;
@@ -296,7 +304,7 @@ fn once(args: &Args) -> Result<ExitCode> {
         }
     }
     let cancel = interrupt::flag()?;
-    let pool = pool(args.threads)?;
+    let pool = pool(args.run.threads)?;
     let (left, total) = (open.left(), open.total());
     let progress = Progress::new(left as u64, args.quiet);
     let found = |row: &LimitRow| {

@@ -1,4 +1,5 @@
-//! `maille tightest` and `maille roomiest`: the thickest wire of a weave, and its state with the most room.
+//! `maille tightest` and `maille roomiest`: the thickest wire of a weave, and its state with the most room; the search of
+//! `--at roomiest` too.
 
 use crate::{
     certificate,
@@ -10,6 +11,7 @@ use crate::{
     output::{self, say},
 };
 use maille::{
+    design::Design,
     lattice::Cell,
     limit::extreme::{Extreme, ExtremeOptions, ExtremeOutcome, extreme},
     model::Model,
@@ -47,7 +49,7 @@ pub struct TightestArgs {
 Examples:
   maille roomiest european-4-in-1
   maille roomiest 3.1 --lattice free --save roomy.toml
-  maille export roomy.toml --tile 8x8          to print
+  maille export 3.1 --at roomiest --tile 8x8          the same state as a mesh, to print
 
 Exit codes: 0 certified, 5 no certified state was found, 130 interrupted.")]
 pub struct RoomiestArgs {
@@ -66,10 +68,10 @@ struct Common {
     #[arg(long, value_enum)]
     lattice: Option<Lattice>,
     /// Starts: the design's state, then shaken ones
-    #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    #[arg(long, default_value_t = USUAL.0, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     starts: u32,
     /// Seed of the shaking
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = USUAL.1)]
     seed: u64,
     /// Write the state as a design file
     #[arg(long, value_name = "FILE")]
@@ -82,8 +84,9 @@ struct Common {
     json: bool,
 }
 
-#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum Lattice {
+/// Whether the lattice may change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Lattice {
     Free,
     Fixed,
 }
@@ -101,19 +104,14 @@ pub fn roomiest(args: &RoomiestArgs) -> Result<ExitCode> {
     run(&args.common, Extreme::WidestGap)
 }
 
+/// Starts and seed where no option names them.
+const USUAL: (u32, u64) = (8, 1);
+
 fn run(args: &Common, what: Extreme) -> Result<ExitCode> {
     let input = Input::read(&args.design, args.minor_radius)?;
-    let model = input.compile(&input.design, Cell::PRIMITIVE)?;
-    if model.links.is_empty() {
-        let help = "`maille inspect` shows links; rings that hold each other bound the wire, and nothing else does";
-        return Err(wrong(exit::DESIGN, "no rings of this design are linked", help));
-    }
-    let lattice_free = args.lattice.map_or(what == Extreme::ThickestWire, |lattice| lattice == Lattice::Free);
-    let options = ExtremeOptions { lattice_free, starts: args.starts as usize, seed: args.seed };
-    let cancel = interrupt::flag()?;
     let begun = Instant::now();
-    let found = pool(args.threads)?.install(|| extreme(&model, what, &options, &cancel));
-    let answer = Answer { input: &input, model: &model, what, lattice_free, found: &found };
+    let answer = search(&input, what, args.lattice, (args.starts, args.seed), args.threads)?;
+    let found = &answer.found;
     if args.json {
         output::print_json(&answer.json(begun.elapsed().as_secs_f64()))?;
     } else {
@@ -130,12 +128,66 @@ fn run(args: &Common, what: Extreme) -> Result<ExitCode> {
     }))
 }
 
+fn search<'a>(
+    input: &'a Input,
+    what: Extreme,
+    lattice: Option<Lattice>,
+    (starts, seed): (u32, u64),
+    threads: Option<u16>,
+) -> Result<Answer<'a>> {
+    let model = input.compile(&input.design, Cell::PRIMITIVE)?;
+    if model.links.is_empty() {
+        let help = "`maille inspect` shows links; rings that hold each other bound the wire, and nothing else does";
+        return Err(wrong(exit::DESIGN, "no rings of this design are linked", help));
+    }
+    let lattice_free = lattice.map_or(what == Extreme::ThickestWire, |lattice| lattice == Lattice::Free);
+    let options = ExtremeOptions { lattice_free, starts: starts as usize, seed };
+    let cancel = interrupt::flag()?;
+    let found = pool(threads)?.install(|| extreme(&model, what, &options, &cancel));
+    Ok(Answer { input, model, what, lattice_free, found })
+}
+
+/// The extreme state as a design, and a line on what it is. Fails where no state was found, or Ctrl-C stopped the search.
+pub fn as_design(
+    input: &Input,
+    what: Extreme,
+    lattice: Option<Lattice>,
+    threads: Option<u16>,
+) -> Result<(Design, String)> {
+    let answer = search(input, what, lattice, USUAL, threads)?;
+    let name = &input.design.name;
+    match (answer.found.status, answer.found.value) {
+        (Status::Interrupted, _) => Err(wrong(exit::INTERRUPTED, "interrupted", "nothing was written")),
+        (_, None) => {
+            let problem = format!("no start led to a state of {name} without overlap");
+            Err(wrong(exit::INCOMPLETE, problem, "--lattice free, or a smaller --minor-radius"))
+        }
+        (status, Some(_)) => {
+            let unit = input.design.unit.as_deref().map(|unit| format!(" {unit}")).unwrap_or_default();
+            let size = match answer.gap() {
+                Some(gap) => format!("smallest gap {gap:.9}{unit}"),
+                None => format!("minor radius {:.9}{unit}", answer.sizes()[0].minor_radius),
+            };
+            Ok((answer.design(), format!("{}, {}: {size}", answer.title(), status.name())))
+        }
+    }
+}
+
+/// What `--at` calls it.
+pub fn word(what: Extreme) -> &'static str {
+    match what {
+        Extreme::ThickestWire => "tightest",
+        Extreme::WidestGap => "roomiest",
+    }
+}
+
+/// What was asked, and what was found.
 struct Answer<'a> {
     input: &'a Input,
-    model: &'a Model,
+    model: Model,
     what: Extreme,
     lattice_free: bool,
-    found: &'a ExtremeOutcome,
+    found: ExtremeOutcome,
 }
 
 /// A ring's size in the design's unit.
@@ -167,13 +219,13 @@ impl Answer<'_> {
     }
 
     /// The state as a design.
-    fn design(&self) -> maille::design::Design {
-        let mut out = self.found.state.design(&self.input.design, self.model);
-        let (words, factor) = match self.what {
-            Extreme::ThickestWire => ("tightest", self.found.value.unwrap_or(1.0) * (1.0 - SPARED)),
-            Extreme::WidestGap => ("roomiest", 1.0),
+    fn design(&self) -> Design {
+        let mut out = self.found.state.design(&self.input.design, &self.model);
+        let factor = match self.what {
+            Extreme::ThickestWire => self.found.value.unwrap_or(1.0) * (1.0 - SPARED),
+            Extreme::WidestGap => 1.0,
         };
-        out.name = format!("{} {words}", out.name);
+        out.name = format!("{} {}", out.name, word(self.what));
         out.minor_radius = out.minor_radius.map(|r| r * factor);
         let rings = out.elements.iter_mut().flat_map(|element| &mut element.rings);
         rings.for_each(|ring| ring.minor_radius = ring.minor_radius.map(|r| r * factor));
@@ -184,12 +236,16 @@ impl Answer<'_> {
         self.found.value.filter(|_| self.what == Extreme::WidestGap).map(|gap| gap * self.model.unit)
     }
 
-    fn print(&self, wall_s: f64) {
-        let found = self.found;
-        let unit = self.input.design.unit.as_deref().map(|unit| format!(" {unit}")).unwrap_or_default();
+    fn title(&self) -> String {
         let lattice = if self.lattice_free { "free" } else { "fixed" };
-        let title = if self.what == Extreme::ThickestWire { "thickest wire" } else { "widest gaps" };
-        say!("{}, {title}, lattice {lattice}: {}", self.input.design.name, found.status.name());
+        let words = if self.what == Extreme::ThickestWire { "thickest wire" } else { "widest gaps" };
+        format!("{}, {words}, lattice {lattice}", self.input.design.name)
+    }
+
+    fn print(&self, wall_s: f64) {
+        let found = &self.found;
+        let unit = self.input.design.unit.as_deref().map(|unit| format!(" {unit}")).unwrap_or_default();
+        say!("{}: {}", self.title(), found.status.name());
         if found.value.is_none() {
             say!("  no start led to a state without overlap; try more --starts, or --lattice free");
             return;
@@ -213,7 +269,7 @@ impl Answer<'_> {
     }
 
     fn json(&self, wall_s: f64) -> serde_json::Value {
-        let found = self.found;
+        let found = &self.found;
         let finite = |x: f64| x.is_finite().then_some(x);
         let sizes = self.sizes().into_iter().map(|size| {
             json!({
@@ -232,7 +288,7 @@ impl Answer<'_> {
             "sizes": sizes.collect::<Vec<_>>(),
             "a1": vector(found.state.a1),
             "a2": vector(found.state.a2),
-            "poses": pose_records(self.model, &found.state),
+            "poses": pose_records(&self.model, &found.state),
             "certificate": certificate,
             "links_ok": found.links_ok,
             "n_starts": found.n_starts,

@@ -6,14 +6,15 @@ use crate::{
     input::Input,
     interrupt,
     map::CellChoice,
-    numbers::{parse_cell, positive},
+    numbers::{finite, parse_cell, positive},
     output::{self, say},
 };
 use maille::{
     characterize::Method,
     constraint::metric::factor,
-    lattice::Cell,
+    lattice::{Cell, direction},
     limit::{
+        CellTrend,
         exact::ExactOptions,
         strain::{StrainMethod, StrainOptions, StrainOutcome, StrainQuery},
     },
@@ -21,22 +22,24 @@ use maille::{
     record::{Status, pose_records},
 };
 use miette::Result;
-use nalgebra::Matrix2;
+use nalgebra::{Matrix2, Vector2};
 use serde_json::json;
 use std::{process::ExitCode, str::FromStr, time::Instant};
 
 /// One strain as large or as small as can be, the others held or free
 ///
 /// Strains are Green strains of the sheet, E = (C - 1)/2 with C = F^T F, relative to the spacing of the design: exx and eyy
-/// along its axes, exy the tensor shear (half the engineering shear). exx = s + s^2/2 where lines along x are stretched by 1 + s.
-/// What is named by neither --fix nor --free is held at 0. With --minimize all cells up to 3x3 are solved and listed, as a
-/// larger one can fold further; such an answer is the best that was found, and proved only if its status is global.
+/// along its axes, or with --direction along axes turned by an angle; exy is the tensor shear (half the engineering shear). exx = s + s^2/2 where lines along x are stretched by 1 + s.
+/// What is named by neither --fix nor --free is held at 0. With --minimize all cells up to 3x3 are solved and listed with
+/// their starts and the distinct limits that these led to; as a still larger cell can fold further, such an answer is the best
+/// that was found, and never global.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   maille limit european-4-in-1 --maximize eyy --free exx,exy
   maille limit 1.1 --maximize exx --fix eyy=0.05 --free exy
-  maille limit 1.1 --minimize exx --free eyy,exy --cell 2x2
+  maille limit 1.1 --minimize exx --direction 30 --free eyy,exy      pushed together along 30 degrees
+  maille limit european-4-in-1 --minimize eyy --free exx,exy --cell 1x5 --starts 64
   maille limit 3.1 --maximize exy --json
 
 Exit codes: 0 certified, or proved that what is held cannot be; 5 no certified state was found, 130 interrupted.")]
@@ -55,6 +58,9 @@ pub struct Args {
     /// Strains that are left to the sheet, as eyy,exy
     #[arg(long, value_name = "STRAIN", value_enum, value_delimiter = ',')]
     free: Vec<Strain>,
+    /// Direction of the strains' x axis, degrees counter-clockwise from that of the design
+    #[arg(long, default_value_t = 0.0, value_parser = finite, allow_hyphen_values = true)]
+    direction: f64,
     /// Minor radius of every ring that gives none, in the file's unit
     #[arg(long, value_parser = positive)]
     minor_radius: Option<f64>,
@@ -62,7 +68,7 @@ pub struct Args {
     /// up to 3x3 with --minimize
     #[arg(long, default_value = "auto", value_parser = cell_choice)]
     cell: CellChoice,
-    /// Starts of a query whose bound is not attained
+    /// Starts of a query whose bound is not attained; with --minimize of each cell
     #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     starts: u32,
     /// Seed of the shaking
@@ -88,18 +94,27 @@ impl Strain {
         ["exx", "eyy", "exy"][self as usize]
     }
 
-    /// E where this component is 1 and the others are 0.
-    fn unit(self) -> Matrix2<f64> {
+    /// E where this component is 1 and the others are 0, with x along `direction_deg`.
+    fn unit(self, direction_deg: f64) -> Matrix2<f64> {
+        let (x, y) = axes(direction_deg);
         match self {
-            Strain::Exx => Matrix2::new(1.0, 0.0, 0.0, 0.0),
-            Strain::Eyy => Matrix2::new(0.0, 0.0, 0.0, 1.0),
-            Strain::Exy => Matrix2::new(0.0, 1.0, 1.0, 0.0),
+            Strain::Exx => x * x.transpose(),
+            Strain::Eyy => y * y.transpose(),
+            Strain::Exy => x * y.transpose() + y * x.transpose(),
         }
     }
 
-    fn of(self, e: &Matrix2<f64>) -> f64 {
-        [e[(0, 0)], e[(1, 1)], e[(0, 1)]][self as usize]
+    fn of(self, e: &Matrix2<f64>, direction_deg: f64) -> f64 {
+        let (x, y) = axes(direction_deg);
+        let (a, b) = [(x, x), (y, y), (x, y)][self as usize];
+        a.dot(&(e * b))
     }
+}
+
+/// The axes of the strains.
+fn axes(direction_deg: f64) -> (Vector2<f64>, Vector2<f64>) {
+    let x = direction(direction_deg);
+    (x, Vector2::new(-x.y, x.x))
 }
 
 /// A strain with the value at which it is held.
@@ -143,12 +158,14 @@ fn query(args: &Args) -> Result<(StrainQuery, Strain, f64)> {
         }
         named.push(strain);
     }
-    let held = args.fix.iter().map(|held| held.strain.unit() * held.value).sum::<Matrix2<f64>>();
+    let held = args.fix.iter().map(|held| held.strain.unit(args.direction) * held.value).sum::<Matrix2<f64>>();
     if factor(&(Matrix2::identity() + held * 2.0)).is_none() {
         let help = "a strain of -0.5 is a length of 0; take larger values, or a smaller exy";
         return Err(wrong(exit::USAGE, "no lattice has the strains of --fix", help));
     }
-    let free = std::iter::once(goal.unit() * sign).chain(args.free.iter().map(|strain| strain.unit())).collect();
+    let free = std::iter::once(goal.unit(args.direction) * sign)
+        .chain(args.free.iter().map(|strain| strain.unit(args.direction)))
+        .collect();
     Ok((StrainQuery { held, free }, goal, sign))
 }
 
@@ -160,7 +177,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let models = cells.iter().map(|cell: &Cell| input.compile(&input.design, *cell)).collect::<Result<Vec<Model>>>()?;
     let cancel = interrupt::flag()?;
     let begun = Instant::now();
-    let options = StrainOptions { starts: args.starts as usize, seed: args.seed, all_cells: args.minimize.is_some() };
+    let options = StrainOptions { starts: args.starts as usize, seed: args.seed, compression: args.minimize.is_some() };
     let found = StrainMethod::new(&models, options).solve(&query, &[], &cancel);
     let model = &models[found.cell];
     let answer = Answer { args, cells: &cells, input: &input, model, found: &found, goal, sign };
@@ -204,10 +221,25 @@ impl Answer<'_> {
         }
     }
 
+    /// What each cell reached, with the sign of the strain.
+    fn by_cell(&self) -> impl Iterator<Item = CellTrend> {
+        self.found.trend.iter().map(|t| CellTrend { value: t.value.map(|p| self.sign * p), ..*t })
+    }
+
+    /// l1 of lines along a normal strain that was sought.
+    fn stretch(&self) -> Option<f64> {
+        let normal = self.goal != Strain::Exy;
+        self.found.value.filter(|_| normal).map(|p| (1.0 + 2.0 * self.sign * p).max(0.0).sqrt() - 1.0)
+    }
+
     fn print(&self, wall_s: f64) {
         let found = self.found;
         let most = if self.sign > 0.0 { "largest" } else { "least" };
-        say!("{}, {most} {}: {}", self.input.design.name, self.goal.name(), self.status());
+        let turned = match self.args.direction {
+            0.0 => String::new(),
+            angle => format!(" with x along {angle}\u{b0}"),
+        };
+        say!("{}, {most} {}{turned}: {}", self.input.design.name, self.goal.name(), self.status());
         match found.status {
             Status::L2Unreachable => return say!("  proved: no state of the sheet has the strains that are held"),
             Status::L2NotReached => {
@@ -218,8 +250,11 @@ impl Answer<'_> {
         }
         for strain in Strain::ALL {
             // Rounding shows no sign of a 0.
-            let value = (strain.of(&found.strain) * 1e9).round() / 1e9 + 0.0;
+            let value = (strain.of(&found.strain, self.args.direction) * 1e9).round() / 1e9 + 0.0;
             say!("  {}   {value:>15.9}  {}", strain.name(), self.role(strain));
+        }
+        if let Some(l1) = self.stretch() {
+            say!("  l1    {l1:>15.9}  of lines along {}", self.goal.name());
         }
         if let Some(bound) = found.bound {
             say!("  bound {:>15.9}  proved by the chains of links", self.sign * bound);
@@ -230,10 +265,10 @@ impl Answer<'_> {
             "  cell {}; {starts} starts led to {distinct} certified values; links {kept}; {wall_s:.2} s",
             self.model.cell
         );
-        if found.trend.len() > 1 {
-            let reached = |p: Option<f64>| p.map_or("none".into(), |p| format!("{:.6}", self.sign * p));
-            let cells = found.trend.iter().map(|(cell, p)| format!("{} {}", self.cells[*cell], reached(*p)));
-            say!("  by cell: {}", cells.collect::<Vec<_>>().join(", "));
+        if found.trend.len() > 1 || self.args.minimize.is_some() {
+            for cell in self.by_cell() {
+                say!("    {}", cell.words(&self.cells[cell.cell].to_string()));
+            }
         }
         if let Some(c) = &found.certificate {
             say!("  {}", certificate::line(c));
@@ -244,8 +279,12 @@ impl Answer<'_> {
         let found = self.found;
         let solved = found.value.is_some();
         let strain = |s: Strain| {
-            let value = solved.then(|| s.of(&found.strain));
+            let value = solved.then(|| s.of(&found.strain, self.args.direction));
             (s.name().to_owned(), json!({ "value": value, "is": self.role(s) }))
+        };
+        let cell = |t: CellTrend| {
+            let name = self.cells[t.cell].to_string();
+            json!({ "cell": name, "value": t.value, "n_starts": t.n_starts, "n_distinct": t.n_distinct })
         };
         let certificate = found.certificate.as_ref().map(|c| certificate::json(c, self.model.unit));
         let vector = |a: maille_geometry::Vec3| -> [f64; 3] { (a * self.model.unit).into() };
@@ -256,7 +295,9 @@ impl Answer<'_> {
             "bound": found.bound.map(|bound| self.sign * bound),
             "strains": Strain::ALL.map(strain).into_iter().collect::<serde_json::Map<_, _>>(),
             "cell": self.model.cell.to_string(),
-            "by_cell": found.trend.iter().map(|(cell, p)| json!({ "cell": self.cells[*cell].to_string(), "value": p.map(|p| self.sign * p) })).collect::<Vec<_>>(),
+            "by_cell": self.by_cell().map(cell).collect::<Vec<_>>(),
+            "direction_deg": self.args.direction,
+            "l1": self.stretch(),
             "a1": solved.then(|| vector(found.state.a1)),
             "a2": solved.then(|| vector(found.state.a2)),
             "poses": solved.then(|| pose_records(self.model, &found.state)),

@@ -27,6 +27,20 @@ use std::{
     time::{Duration, Instant},
 };
 
+/// Where a run writes, and on how many threads.
+#[derive(clap::Args)]
+pub struct RunArgs {
+    /// Folder that is written [default: maille-out/NAME, with -boundary or -compression for those]
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+    /// Replace what that folder holds of other inputs
+    #[arg(long)]
+    pub overwrite: bool,
+    /// Threads [default: all cores]; results do not depend on it
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+}
+
 /// `auto`, or one cell.
 #[derive(Clone, Copy)]
 pub enum CellChoice {

@@ -30,6 +30,7 @@ Examples:
   maille render 3.1 --view top --cell                             from above, with the unit cell
   maille render my-weave.toml --tile 6x4 --perspective --background dark --out slide.png
   maille render 1.1 --at direction=30,l2=-0.125                   a limit of maille-out/1.1, with its forces
+  maille render 1.1 --at roomiest                                 the state with the widest gaps
   maille render --from results/weave --at direction=0,l2=0 --color load --forces none
   maille render --from maille-out/1.1-simulate --at frame=3       a state of a simulated sheet
   maille render --from maille-out/1.1-simulate --frames 40        maille-out/1.1-simulate.gif
@@ -136,7 +137,7 @@ const FRAME_CENTISECONDS: u16 = 8;
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
-    let source = args.source.read(Wanted { locked: args.frames.is_some(), overlaps: true })?;
+    let source = args.source.read(Wanted { locked: args.frames.is_some(), overlaps: true, threads: args.threads })?;
     let contacts = source.contacts();
     if let Some(caution) = source.caution().filter(|_| !args.quiet) {
         eprintln!("note: {caution}");

@@ -1,8 +1,9 @@
 //! A state to show: of a design's start, of a record, or a series of frames from the one to the other.
 
 use crate::{
-    at::{At, parse_at},
+    at::{At, Place, parse_place},
     exit::{self, wrong},
+    extreme::{Lattice, as_design, word as extreme_word},
     input::{Input, file_name},
     numbers::positive,
 };
@@ -10,6 +11,7 @@ use maille::{
     design::Design,
     error::InvalidInput,
     lattice::Cell,
+    limit::extreme::Extreme,
     model::Model,
     record::{ContactRecord, FrameRecord, StateRecord, Status},
     state::State,
@@ -31,9 +33,13 @@ pub struct SourceArgs {
     #[arg(long, value_name = "RECORD")]
     pub from: Option<PathBuf>,
     /// Which state of the record, as direction=30,l2=-0.125; what only one state fits may be left out. Of a simulation:
-    /// frame=12 [default: the last]
-    #[arg(long, value_parser = parse_at, allow_hyphen_values = true)]
-    pub at: Option<At>,
+    /// frame=12 [default: the last]. Or roomiest, the state of the design with the widest gaps, and tightest, that with the
+    /// thickest wire: found now, as `maille roomiest` and `maille tightest` do
+    #[arg(long, value_parser = parse_place, allow_hyphen_values = true)]
+    pub at: Option<Place>,
+    /// With --at roomiest or tightest: whether the lattice may change [default: fixed for roomiest, free for tightest]
+    #[arg(long, value_enum)]
+    pub lattice: Option<Lattice>,
     /// Minor radius of every ring that gives none, in the file's unit
     #[arg(long, value_parser = positive, conflicts_with = "from")]
     pub minor_radius: Option<f64>,
@@ -49,6 +55,8 @@ pub struct Source {
     pub locked: Option<(StateRecord, State)>,
     /// The states of a simulation and which of them is shown; the model is a finite sheet.
     pub simulated: Option<(Vec<State>, usize)>,
+    /// The extreme state that the design now starts from: for the names of files, and in words.
+    pub extreme: Option<(&'static str, String)>,
 }
 
 /// One state of a series.
@@ -70,32 +78,60 @@ pub struct Wanted {
     pub locked: bool,
     /// A start with overlaps is shown, not refused.
     pub overlaps: bool,
+    /// Threads of a search [default: all cores].
+    pub threads: Option<u16>,
 }
 
 impl SourceArgs {
     /// Reads the design and its state, from the record where one is asked for.
     pub fn read(&self, wanted: Wanted) -> Result<Source> {
         let input = self.design.as_deref().map(|name| Input::read(name, self.minor_radius)).transpose()?;
+        let at = match self.at {
+            Some(Place::Extreme(what)) => return self.of_extreme(input.as_ref(), what, wanted),
+            Some(Place::At(at)) => Some(at),
+            None => None,
+        };
+        if self.lattice.is_some() {
+            let help = "name one of them with --at, or leave out --lattice";
+            return Err(wrong(exit::USAGE, "--lattice is for --at roomiest and --at tightest", help));
+        }
         let folder = match (&self.from, &input) {
             (Some(folder), _) => folder.clone(),
-            (None, Some(input)) if self.at.is_some() || wanted.locked => usual_folder(&input.design),
+            (None, Some(input)) if at.is_some() || wanted.locked => usual_folder(&input.design),
             (None, Some(input)) => {
                 let design = input.design.clone();
                 let compiled = if wanted.overlaps { &tolerant(&design) } else { &design };
                 let model = input.compile(compiled, Cell::PRIMITIVE)?;
-                return Ok(Source { design, model, locked: None, simulated: None });
+                return Ok(Source { design, model, locked: None, simulated: None, extreme: None });
             }
             (None, None) => {
                 return Err(wrong(exit::USAGE, "there is neither a design nor a record", "name one of them"));
             }
         };
         match folder.join(SIMULATION[0]).is_file() {
-            true => self.of_simulation(&folder),
-            false => self.of_record(input.as_ref(), &folder),
+            true => self.of_simulation(at, &folder),
+            false => self.of_record(at.unwrap_or_default(), input.as_ref(), &folder),
         }
     }
 
-    fn of_simulation(&self, folder: &Path) -> Result<Source> {
+    /// The extreme state is a design of its own, and the start of that one is shown.
+    fn of_extreme(&self, input: Option<&Input>, what: Extreme, wanted: Wanted) -> Result<Source> {
+        let Some(input) = input.filter(|_| self.from.is_none()) else {
+            let help = "name the design in place of --from: its state is found now, and no record holds it";
+            return Err(wrong(exit::USAGE, "a record has no roomiest and no tightest state", help));
+        };
+        if wanted.locked {
+            let help = "leave out --frames, or lead them to a limit with --at direction=30,l2=0";
+            return Err(wrong(exit::USAGE, "frames lead to a limit, or are those of a simulation", help));
+        }
+        let (design, words) = as_design(input, what, self.lattice, wanted.threads)?;
+        let design = Design { name: input.design.name.clone(), ..design };
+        // Rings that touch may overlap by a rounding.
+        let model = input.compile(&tolerant(&design), Cell::PRIMITIVE)?;
+        Ok(Source { design, model, locked: None, simulated: None, extreme: Some((extreme_word(what), words)) })
+    }
+
+    fn of_simulation(&self, at: Option<At>, folder: &Path) -> Result<Source> {
         let read = |name: &str| {
             let path = folder.join(name);
             let text = std::fs::read_to_string(&path).map_err(|e| {
@@ -119,7 +155,7 @@ impl SourceArgs {
         let states: Vec<State> =
             read_frames(&frames_file, &frames)?.into_iter().map(state).collect::<Result<_, _>>()?;
         let last = states.len().checked_sub(1).ok_or_else(|| unusable("it has no frames".into()))?;
-        let shown = match (self.at.unwrap_or_default().frame, self.at) {
+        let shown = match (at.unwrap_or_default().frame, at) {
             (Some(frame), _) if frame <= last => frame,
             (None, None) => last,
             _ => {
@@ -127,11 +163,10 @@ impl SourceArgs {
                 return Err(wrong(exit::USAGE, format!("{} has {} frames", folder.display(), last + 1), help));
             }
         };
-        Ok(Source { design: record.design, model, locked: None, simulated: Some((states, shown)) })
+        Ok(Source { design: record.design, model, locked: None, simulated: Some((states, shown)), extreme: None })
     }
 
-    fn of_record(&self, input: Option<&Input>, folder: &Path) -> Result<Source> {
-        let at = self.at.unwrap_or_default();
+    fn of_record(&self, at: At, input: Option<&Input>, folder: &Path) -> Result<Source> {
         if at.frame.is_some() {
             let help = "frames are those of `maille simulate`; a limit is named as --at direction=30,l2=-0.125";
             return Err(wrong(exit::USAGE, format!("{} is no simulation: it has no frames", folder.display()), help));
@@ -178,7 +213,13 @@ impl SourceArgs {
         let cell: Cell = row.map_or("1x1", |r| &r.cell).parse().map_err(|problem| unusable(vec![problem]))?;
         let model = Model::compile(&tolerant(design), cell).map_err(unusable)?;
         let locked = mesh::state_of(&model, state)?;
-        Ok(Source { design: design.clone(), locked: Some((state.clone(), locked)), model, simulated: None })
+        Ok(Source {
+            design: design.clone(),
+            locked: Some((state.clone(), locked)),
+            model,
+            simulated: None,
+            extreme: None,
+        })
     }
 
     /// The only state that fits.
@@ -274,11 +315,17 @@ impl Source {
         if let Some((_, shown)) = self.simulated {
             return format!("{name}-simulate_frame{shown}");
         }
+        if let Some((word, _)) = self.extreme {
+            return format!("{name}-{word}");
+        }
         self.locked.as_ref().map_or(name.clone(), |(s, _)| name + &place(Some(s.direction_deg), Some(s.l2)))
     }
 
-    /// What a reader should know about the state, if it is no limit.
+    /// What a reader should know about the state, if it is no limit: of an extreme, its figures.
     pub fn caution(&self) -> Option<String> {
+        if let Some((_, words)) = &self.extreme {
+            return Some(words.clone());
+        }
         let (record, _) = self.locked.as_ref()?;
         let limit = matches!(record.status, Status::Global | Status::Local | Status::ThresholdReached);
         (!limit).then(|| format!("the state is \"{}\": the last of its search, no limit", record.status.name()))
@@ -309,7 +356,8 @@ impl Source {
             return (0..count).map(frame).collect();
         }
         let Some((record, state)) = &self.locked else {
-            return vec![one(&self.model.start, 0.0, format!("{title}; starting state"))];
+            let place = self.extreme.as_ref().map_or("starting state", |(_, words)| words);
+            return vec![one(&self.model.start, 0.0, format!("{title}; {place}"))];
         };
         let place = format!("direction {}°, l2 {}, {}", record.direction_deg, record.l2, record.status.name());
         let Some(count) = count else {

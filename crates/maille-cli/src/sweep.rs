@@ -4,7 +4,7 @@ use crate::{
     exit::{self, wrong},
     input::{Input, file_name},
     interrupt,
-    map::{CellChoice, Map, OpenMap, pool, run_all, unanswered},
+    map::{CellChoice, Map, OpenMap, RunArgs, pool, run_all, unanswered},
     output::{self, say},
     progress::Progress,
     records,
@@ -52,15 +52,8 @@ pub struct Args {
     /// The study, a TOML file
     #[arg(required_unless_present = "example")]
     study: Option<PathBuf>,
-    /// Folder of all that is made [default: maille-out/STUDY]
-    #[arg(long)]
-    out: Option<PathBuf>,
-    /// Replace records of other inputs in that folder
-    #[arg(long)]
-    overwrite: bool,
-    /// Threads [default: all cores]; results do not depend on it
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
-    threads: Option<u16>,
+    #[command(flatten)]
+    run: RunArgs,
     /// Print a study to begin with
     #[arg(long, exclusive = true)]
     example: bool,
@@ -98,8 +91,8 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     };
     let study = read(path)?;
     let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
-    let out = args.out.clone().unwrap_or_else(|| Path::new("maille-out").join(file_name(&stem)));
-    let plan = plan(&study, path.parent().unwrap_or(Path::new("")), &out, args.overwrite)?;
+    let out = args.run.out.clone().unwrap_or_else(|| Path::new("maille-out").join(file_name(&stem)));
+    let plan = plan(&study, path.parent().unwrap_or(Path::new("")), &out, args.run.overwrite)?;
     let mut open: Vec<(&str, OpenMap<'_>)> = Vec::new();
     let mut unused = Vec::new();
     for planned in &plan {
@@ -115,7 +108,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     }
     let used: Vec<PathBuf> = open.iter().map(|(_, map)| map.folder().to_owned()).collect();
     let cancel = interrupt::flag()?;
-    let pool = pool(args.threads)?;
+    let pool = pool(args.run.threads)?;
     let progress = Progress::new(left as u64, args.quiet);
     let begun = Instant::now();
     let rows = run_all(open, &pool, &cancel, &progress);

@@ -45,3 +45,44 @@ fn every_kind_is_drawn_from_records() {
     assert!(wrong(&["plot", "a", "--where", "l2=7"]).contains("no row is left"));
     assert!(wrong(&["plot", "a", "--kind", "steps", "--quantity", "l1"]).contains("no --quantity"));
 }
+
+/// Stretches from the widest cell: a record that knows the wide limits of 1.1 measures from one of them, another from its start.
+#[test]
+fn a_reference_cell_is_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    for (out, l2) in [("a", "--l2=0,0.4"), ("b", "--l2=0")] {
+        done(folder, &["characterize", "1.1", "--directions", "0,45,90", l2, "--quiet", "--out", out]);
+    }
+    let text = |file: &str| std::fs::read_to_string(folder.join(file)).unwrap();
+    for (reference, word) in [("widest", "Widest cell"), ("tightest", "Tightest cell")] {
+        done(folder, &["plot", "a", "--reference", reference, "--where", "l2=0", "-o", "r.svg", "-o", "r.png"]);
+        assert!(text("r.svg").contains(word) && text("r.svg").contains('λ'), "{reference}");
+        assert!(std::fs::read(folder.join("r.png")).unwrap().starts_with(b"\x89PNG"));
+    }
+    let curve = |record: &str, reference: &str| {
+        done(folder, &["plot", record, "--reference", reference, "--where", "l2=0", "-o", "c.svg"]);
+        text("c.svg")
+    };
+    assert!(curve("a", "widest") != curve("b", "widest") && curve("a", "start") != curve("a", "widest"));
+    done(folder, &["plot", "a", "b", "--reference", "widest", "--where", "l2=0", "-o", "both.svg"]);
+    assert_eq!(text("both.svg").matches("Widest cell").count(), 2);
+}
+
+/// Largest and least stretch of a sheet in one figure: the range.
+#[test]
+fn a_range_is_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let directions = ["--directions", "0,45,90", "--lateral", "free", "--cell", "1x1", "--quiet"];
+    for out in ["most", "least"] {
+        let end: &[&str] = if out == "least" { &["--compression"] } else { &[] };
+        done(folder, &[&["characterize", "european-4-in-1", "--out", out], end, &directions[..]].concat());
+    }
+    let text = |file: &str| std::fs::read_to_string(folder.join(file)).unwrap();
+    assert!(text("least/polar.svg").contains("Least stretch") && text("most/polar.svg").contains("Largest stretch"));
+    done(folder, &["plot", "most", "least", "-o", "range.svg"]);
+    assert!(text("range.svg").contains("Largest and least stretch") && text("range.svg").contains(">least<"));
+    let replayed = done(folder, &["replay", "least", "--at", "direction=45"]);
+    assert!(replayed.contains("local") && !replayed.contains("DIFFERS"), "{replayed}");
+}

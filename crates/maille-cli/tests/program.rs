@@ -302,3 +302,66 @@ fn the_tightest_state_is_saved_as_a_design() {
     assert!((0.0..1e-6).contains(&gap), "{gap}");
     assert!(done(folder, "render tight.toml --tile 2x2 --size 64x48 --out -", b"").starts_with(b"\x89PNG"));
 }
+
+/// The mesh of `--at roomiest` has the smallest gap that `roomiest` prints, measured between the mesh's own vertices.
+#[test]
+fn the_roomiest_state_is_exported() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    for lattice in ["fixed", "free"] {
+        let told = json(folder, &format!("roomiest 1.1 --lattice {lattice} --json"))["gap"].as_f64().unwrap();
+        let line = format!(
+            "export 1.1 --at roomiest --lattice {lattice} --tile 2x2 --segments 64x24 --format obj --out - --quiet"
+        );
+        let obj = String::from_utf8(done(folder, &line, b"")).unwrap();
+        let gap = smallest_distance(&rings(&obj));
+        // Vertices next to the closest points are at most half a facet away: 0.055 around either ring, 0.013 across.
+        let (coarse, aside) = (2.0 * (1.1 * 1.2e-3 + 0.1 * 8.6e-3), 2.0 * 0.057);
+        let most = (told + coarse).hypot(aside);
+        assert!(gap >= told - coarse && gap <= most, "{lattice}: {gap} of {told}");
+        // Clearly wider than the start, so it is another state.
+        let start =
+            String::from_utf8(done(folder, &line.replace(&format!("--at roomiest --lattice {lattice} "), ""), b""));
+        assert!(smallest_distance(&rings(&start.unwrap())) < 0.9 * told);
+    }
+    // The same state, by the exporter's own check of gaps: 1 mm a unit.
+    let told = json(folder, "roomiest european-4-in-1 --json")["gap"].as_f64().unwrap();
+    let export = |clearance: f64| {
+        let line =
+            format!("export european-4-in-1 --at roomiest --tile 2x2 --out e.stl --min-clearance {clearance:.12}");
+        maille(folder, &line, b"").status.code()
+    };
+    assert_eq!((export(told - 1e-9), export(told + 1e-9)), (Some(0), Some(2)));
+    done(folder, "render 1.1 --at roomiest --tile 1x1 --size 64x48 --out r.png --quiet", b"");
+    assert!(folder.join("r.png").is_file());
+}
+
+/// Vertices of each ring of an OBJ file.
+fn rings(obj: &str) -> Vec<Vec<[f64; 3]>> {
+    let mut rings: Vec<Vec<[f64; 3]>> = Vec::new();
+    for line in obj.lines() {
+        match line.split_once(' ') {
+            Some(("o" | "g", _)) => rings.push(Vec::new()),
+            Some(("v", numbers)) => {
+                let mut numbers = numbers.split_whitespace().map(|x| x.parse().unwrap());
+                rings.last_mut().unwrap().push(std::array::from_fn(|_| numbers.next().unwrap()));
+            }
+            _ => {}
+        }
+    }
+    assert!(rings.len() > 2);
+    rings
+}
+
+fn smallest_distance(rings: &[Vec<[f64; 3]>]) -> f64 {
+    let sq = |a: &[f64; 3], b: &[f64; 3]| (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>();
+    let mut least = f64::INFINITY;
+    for (k, a) in rings.iter().enumerate() {
+        for b in &rings[k + 1..] {
+            for p in a {
+                least = b.iter().fold(least, |least, q| least.min(sq(p, q)));
+            }
+        }
+    }
+    least.sqrt()
+}

@@ -7,7 +7,7 @@ use maille::{
     record::Status,
 };
 use serde::{Deserialize, Serialize};
-use std::{collections::BTreeMap, fmt::Write};
+use std::fmt::Write;
 
 /// First line of a journal.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -26,20 +26,20 @@ pub fn journal_head(head: &BoundaryHead) -> String {
 }
 
 /// The line of a vertex.
-pub fn journal_line(number: usize, vertex: &BoundaryVertex) -> String {
-    serde_json::to_string(&(number, vertex)).unwrap_or_default() + "\n"
+pub fn journal_line(vertex: &BoundaryVertex) -> String {
+    serde_json::to_string(vertex).unwrap_or_default() + "\n"
 }
 
 /// What a journal holds; a line that was cut off is left out. `None` where the first line is no head.
-pub fn read_journal(text: &str) -> Option<(BoundaryHead, BTreeMap<usize, BoundaryVertex>)> {
+pub fn read_journal(text: &str) -> Option<(BoundaryHead, Vec<BoundaryVertex>)> {
     let mut lines = text.split_inclusive('\n').filter_map(|line| line.strip_suffix('\n'));
     let head = serde_json::from_str(lines.next()?).ok()?;
     Some((head, lines.map_while(|line| serde_json::from_str(line).ok()).collect()))
 }
 
-/// A vertex's point; the origin where nothing was found.
-pub(crate) fn point(vertex: &BoundaryVertex) -> [f64; 3] {
-    vertex.point(vertex.distance.unwrap_or_default())
+/// A vertex's point; none where nothing was found.
+pub(crate) fn point(vertex: &BoundaryVertex) -> Option<[f64; 3]> {
+    Some(vertex.point(vertex.distance?))
 }
 
 /// The table: a line a vertex.
@@ -59,41 +59,56 @@ pub fn boundary_csv(boundary: &Boundary) -> String {
     out
 }
 
-/// Triangles whose corners were all solved.
+/// Triangles whose corners all have a point.
 pub(crate) fn triangles(boundary: &Boundary) -> impl Iterator<Item = &[usize; 3]> {
-    boundary.triangles.iter().filter(|corners| corners.iter().all(|k| *k < boundary.vertices.len()))
+    let there = |k: &usize| boundary.vertices.get(*k).is_some_and(|vertex| vertex.distance.is_some());
+    boundary.triangles.iter().filter(move |corners| corners.iter().all(there))
+}
+
+/// The vertices of the mesh, and triangles that count among them: a ray that was not reached is a hole.
+fn mesh(boundary: &Boundary) -> (Vec<(&BoundaryVertex, [f64; 3])>, Vec<[usize; 3]>) {
+    let mut numbers = vec![0; boundary.vertices.len()];
+    let mut vertices = Vec::new();
+    for (number, vertex) in numbers.iter_mut().zip(&boundary.vertices) {
+        *number = vertices.len();
+        vertices.extend(point(vertex).map(|at| (vertex, at)));
+    }
+    let triangles = triangles(boundary).map(|corners| corners.map(|k| numbers[k])).collect();
+    (vertices, triangles)
 }
 
 /// Wavefront OBJ.
 pub fn boundary_obj(boundary: &Boundary, description: &str) -> String {
     let mut out = format!("# {}\n# coordinates exx eyy exy (Green strain, tensor shear)\n", one_line(description));
-    for vertex in &boundary.vertices {
-        let [x, y, z] = point(vertex);
+    let (vertices, triangles) = mesh(boundary);
+    for (_, [x, y, z]) in vertices {
         let _ = writeln!(out, "v {x} {y} {z}");
     }
-    for [a, b, c] in triangles(boundary) {
+    for [a, b, c] in triangles {
         let _ = writeln!(out, "f {} {} {}", a + 1, b + 1, c + 1);
     }
     out
 }
 
-/// PLY in text, with distance and bound of each vertex and a colour for its status.
+/// PLY in text, with the proven bound of each vertex's distance from the origin (−1 where none is known) and a colour for its
+/// status.
 pub fn boundary_ply(boundary: &Boundary, description: &str) -> String {
-    let count = triangles(boundary).count();
+    let (vertices, triangles) = mesh(boundary);
     let mut out = format!(
         "ply\nformat ascii 1.0\ncomment {}\ncomment coordinates exx eyy exy (Green strain, tensor shear)\n\
+         comment bound: proven bound of the distance from the origin along the ray; -1: none is known\n\
          element vertex {}\nproperty double x\nproperty double y\nproperty double z\nproperty double bound\n\
          property uchar red\nproperty uchar green\nproperty uchar blue\n\
-         element face {count}\nproperty list uchar int vertex_indices\nend_header\n",
+         element face {}\nproperty list uchar int vertex_indices\nend_header\n",
         one_line(description),
-        boundary.vertices.len(),
+        vertices.len(),
+        triangles.len(),
     );
-    for vertex in &boundary.vertices {
-        let [x, y, z] = point(vertex);
+    for (vertex, [x, y, z]) in vertices {
         let [r, g, b] = colour(vertex.status);
         let _ = writeln!(out, "{x} {y} {z} {} {r} {g} {b}", vertex.bound.unwrap_or(-1.0));
     }
-    for [a, b, c] in triangles(boundary) {
+    for [a, b, c] in triangles {
         let _ = writeln!(out, "3 {a} {b} {c}");
     }
     out
@@ -110,4 +125,33 @@ pub(crate) fn colour(status: Status) -> [u8; 3] {
 
 fn one_line(text: &str) -> String {
     text.replace(['\r', '\n'], " ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn vertex(direction: [f64; 3], distance: Option<f64>, bound: Option<f64>) -> BoundaryVertex {
+        let status = if distance.is_some() { Status::Local } else { Status::L2NotReached };
+        let (lattice, poses) = ([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], Vec::new());
+        BoundaryVertex { direction, status, distance, first: None, bound, n_distinct: 0, lattice, poses }
+    }
+
+    #[test]
+    fn an_unreached_ray_is_a_hole() {
+        let vertices = vec![
+            vertex([1.0, 0.0, 0.0], None, None),
+            vertex([0.0, 1.0, 0.0], Some(0.5), None),
+            vertex([0.0, 0.0, 1.0], Some(0.25), Some(0.75)),
+            vertex([-1.0, 0.0, 0.0], Some(0.125), None),
+        ];
+        let triangles = vec![[0, 1, 2], [1, 3, 2], [0, 2, 3], [0, 3, 1]];
+        let surface = Boundary { vertices, triangles, arch: 0.0, open: 0, jumps: 0, complete: true };
+        let obj = boundary_obj(&surface, "a");
+        assert_eq!(obj.lines().skip(2).collect::<Vec<_>>(), ["v 0 0.5 0", "v 0 0 0.25", "v -0.125 0 0", "f 1 3 2"]);
+        let ply = boundary_ply(&surface, "a");
+        assert!(ply.contains("element vertex 3\n") && ply.contains("element face 1\n"));
+        assert!(ply.contains("0 0.5 0 -1 ") && ply.contains("0 0 0.25 0.75 ") && ply.ends_with("3 0 2 1\n"));
+        assert!(boundary_csv(&surface).contains("\n0,1.0,0.0,0.0,l2-not-reached,,,,,,,0\n"));
+    }
 }

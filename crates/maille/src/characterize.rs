@@ -36,6 +36,11 @@ impl Method {
         }
     }
 
+    /// Whether l1 is made as small as can be.
+    pub fn compression(&self) -> bool {
+        matches!(self, Method::Exact(ExactOptions { compression: true, .. }))
+    }
+
     /// The name in tables.
     pub fn name(&self) -> &'static str {
         match self {
@@ -87,7 +92,9 @@ pub fn characterize(
 ) {
     let report = |task: Task, outcome: &LimitOutcome, begun: Instant| {
         let model = &models[outcome.exact.as_ref().map_or(0, |e| e.cell)];
-        let (row, state) = report(model, minor_radius, method, &task, outcome, begun.elapsed().as_secs_f64());
+        let trend = outcome.exact.iter().flat_map(|e| &e.trend);
+        let trend: Vec<String> = trend.map(|t| t.words(&models[t.cell].cell.to_string())).collect();
+        let (row, state) = report(model, minor_radius, method, &task, outcome, &trend, begun.elapsed().as_secs_f64());
         finished(Finished { row, state });
     };
     match method {
@@ -126,6 +133,7 @@ fn report(
     method: &Method,
     task: &Task,
     outcome: &LimitOutcome,
+    by_cell: &[String],
     wall_s: f64,
 ) -> (LimitRow, StateRecord) {
     let f = outcome.gradient;
@@ -189,6 +197,8 @@ fn report(
         a1_y: number(a1.y),
         a2_x: number(a2.x),
         a2_y: number(a2.y),
+        end: Some(if method.compression() { "least" } else { "largest" }.to_owned()),
+        by_cell: (!by_cell.is_empty()).then(|| by_cell.join("; ")),
     };
     let position = |v: Vec3| -> [f64; 3] { (v * model.unit).into() };
     let poses = pose_records(model, &outcome.state);

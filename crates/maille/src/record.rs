@@ -161,6 +161,12 @@ pub struct LimitRow {
     /// Its y.
     #[serde(default)]
     pub a2_y: Option<f64>,
+    /// `largest` or `least`: which end of l1 the limit is. Empty in records older than the column, whose limits are largest.
+    #[serde(default)]
+    pub end: Option<String>,
+    /// Of a least l1: what each cell reached, from how many starts, with how many distinct limits.
+    #[serde(default)]
+    pub by_cell: Option<String>,
 }
 
 /// Pose of one element: `position + rotation · (offset in the design)`.

@@ -12,10 +12,7 @@ use maille::{
     record::{LimitRow, Status},
 };
 use nalgebra::Matrix2;
-use std::{
-    collections::BTreeMap,
-    sync::{Mutex, atomic::AtomicBool},
-};
+use std::sync::{Mutex, atomic::AtomicBool};
 
 fn model(name: &str) -> Model {
     let design = maille_io::read_design(name, maille_io::builtin(name).unwrap()).unwrap();
@@ -119,16 +116,59 @@ fn european_4_in_1_reaches_the_published_strains() {
     }
 }
 
+/// Compression: the least l1 of a map, with width and shear free, is the least E_xx of a query, 1 + 2 E_xx = (1 + l1)²; each
+/// larger cell is at least as low as the smallest, whose answer it starts from; and nothing is called proved.
+#[test]
+fn the_least_l1_is_that_of_the_query_and_falls_with_the_cell() {
+    let name = "european-4-in-1";
+    let design = maille_io::read_design(name, maille_io::builtin(name).unwrap()).unwrap();
+    let models = ["1x1", "2x1", "1x2"].map(|cell| Model::compile(&design, cell.parse().unwrap()).unwrap());
+    let cancel = AtomicBool::new(false);
+    let free = vec![-unit(0, 0), unit(1, 1), unit(0, 1)];
+    let options = StrainOptions { starts: 6, compression: true, ..StrainOptions::default() };
+    let query = StrainMethod::new(&models, options).solve(&StrainQuery { held: Matrix2::zeros(), free }, &[], &cancel);
+    assert_eq!((query.status, query.cell, query.trend.len()), (Status::Local, 1, 3));
+    assert!(query.trend.iter().all(|t| t.n_starts >= 6 && t.n_distinct >= 1));
+    assert!(query.trend[1..].iter().all(|t| t.value.unwrap() >= query.trend[0].value.unwrap() - 1e-7));
+    let across = Across { lateral_free: true, shear_free: true };
+    let method = Method::Exact(ExactOptions { starts: 6, across, compression: true, ..ExactOptions::default() });
+    let found = Mutex::new(Vec::new());
+    characterize(&models, None, &method, &[0.0], &[0.0], &|_| true, &cancel, &|f| found.lock().unwrap().push(f));
+    let found = found.into_inner().unwrap().remove(0);
+    let (row, l1) = (&found.row, found.row.l1.unwrap());
+    let strain = l1 + 0.5 * l1 * l1;
+    assert!((strain + query.value.unwrap()).abs() < 1e-7, "{strain}, query {:?}", query.value);
+    assert_eq!((row.status, row.cell.as_str(), row.end.as_deref()), (Status::Local, "2x1", Some("least")));
+    assert_eq!(row.by_cell.as_ref().unwrap().matches("starts").count(), 3);
+    assert!(row.bound_l1.is_none() && row.links_ok == Some(true));
+    assert!(row.min_gap.unwrap() > -1e-12 * design.reference_radius);
+    // Where both ends are asked for the least is below.
+    let largest = rows(&models[0], &[0.0], &[0.0], across).remove(0);
+    assert!(l1 < largest.l1.unwrap() && largest.end.as_deref() == Some("largest"));
+}
+
+/// A bound that is attained proves a largest strain; the same strain as a compression is not called global.
+#[test]
+fn a_compression_is_never_global() {
+    let model = model("1.1");
+    let query = StrainQuery { held: Matrix2::zeros(), free: vec![Matrix2::from_element(0.5)] };
+    let status = |compression: bool| {
+        let options = StrainOptions { compression, ..StrainOptions::default() };
+        StrainMethod::new(std::slice::from_ref(&model), options).solve(&query, &[], &AtomicBool::new(false)).status
+    };
+    assert_eq!([status(false), status(true)], [Status::Global, Status::Local]);
+}
+
 /// Each ray ends within its bound, the axes where queries end, and a run that goes on from some vertices gives the same.
 #[test]
 fn the_surface_is_that_of_its_rays_and_goes_on() {
     let model = model("1.1");
     let options = BoundaryOptions { tolerance: 0.05, most: 200, starts: 1, seed: 1 };
     let (cancel, planned) = (AtomicBool::new(false), Mutex::new(0));
-    let run = |known: &BTreeMap<usize, BoundaryVertex>| {
-        boundary(&model, &options, known, &cancel, &mut |n| *planned.lock().unwrap() += n, &|_, _| {})
+    let run = |options: &BoundaryOptions, known: &[BoundaryVertex]| {
+        boundary(&model, options, known, &cancel, &mut |n| *planned.lock().unwrap() += n, &|_| {})
     };
-    let surface = run(&BTreeMap::new());
+    let surface = run(&options, &[]);
     assert!(surface.complete && surface.vertices.len() > 162 && surface.vertices.len() <= 200);
     assert_eq!(*planned.lock().unwrap(), surface.vertices.len());
     for vertex in &surface.vertices {
@@ -140,10 +180,23 @@ fn the_surface_is_that_of_its_rays_and_goes_on() {
     }
     let global = surface.vertices.iter().filter(|v| v.status == Status::Global).count();
     assert!(global > surface.vertices.len() / 4, "{global}");
-    let known = surface.vertices.iter().cloned().enumerate().step_by(2).collect();
+    let known: Vec<BoundaryVertex> = surface.vertices.iter().cloned().step_by(2).collect();
     *planned.lock().unwrap() = 0;
-    assert_eq!(run(&known).vertices, surface.vertices);
+    assert_eq!(run(&options, &known).vertices, surface.vertices);
     assert_eq!(*planned.lock().unwrap(), surface.vertices.len() / 2);
+    assert!(surface.open == 0 && (surface.jumps > 0 || surface.arch <= options.tolerance));
+    // A finer tolerance stops where there is no room, and with room it goes on, as if it had had that at once.
+    let stopped = run(&BoundaryOptions { tolerance: 0.02, ..options.clone() }, &surface.vertices);
+    assert!(stopped.open > 0 && stopped.arch > 0.02 && stopped.vertices.len() == 200);
+    let more = BoundaryOptions { tolerance: 0.02, most: 1000, ..options.clone() };
+    *planned.lock().unwrap() = 0;
+    let finer = run(&more, &surface.vertices);
+    assert!(finer.open == 0 && finer.vertices.len() < 1000, "{} {}", finer.open, finer.vertices.len());
+    assert!(*planned.lock().unwrap() < finer.vertices.len());
+    assert_eq!(finer.vertices, run(&more, &[]).vertices);
+    if finer.jumps == 0 {
+        assert!(finer.arch <= more.tolerance);
+    }
 }
 
 /// 1.1 along x locks with straight chains, l1 = 0.44: F = diag(1.44, 0.875) of the square of side 2.5, in any cell.

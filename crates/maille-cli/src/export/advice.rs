@@ -3,13 +3,14 @@
 use crate::{
     exit::{self, wrong},
     output,
+    source::Source,
 };
-use maille::design::Design;
 use maille_io::mesh::{self, Scene};
 use miette::Report;
 
 /// What would fuse, and what would help.
-pub fn fuse(close: &mesh::TooClose, clearance: f64, mm: f64, design: &Design, locked: bool) -> Report {
+pub fn fuse(close: &mesh::TooClose, clearance: f64, mm: f64, source: &Source) -> Report {
+    let design = &source.design;
     let [a, b] = &close.rings;
     let [x, y, z] = [close.place.x, close.place.y, close.place.z].map(|x| (x * 1e3).round() / 1e3 + 0.0);
     let how = match close.gap < 0.0 {
@@ -31,7 +32,11 @@ pub fn fuse(close: &mesh::TooClose, clearance: f64, mm: f64, design: &Design, lo
         Some(f) => format!("--scale {} would leave it (now {mm})", up(f * mm)),
         None => "rings touch, so no --scale would leave it".to_owned(),
     };
-    let state = if locked { "\nin a locked state rings touch: print the starting state" } else { "" };
+    let state = match (&source.locked, &source.extreme) {
+        (Some(_), _) => "\nin a locked state rings touch: print the starting state",
+        (None, None) => "\n--at roomiest is the state with the widest gaps",
+        (None, Some(_)) => "",
+    };
     let help = format!("{thinner}\n{larger}\n--warn writes all the same{state}");
     wrong(
         exit::USAGE,

@@ -22,7 +22,7 @@ use std::{
 
 /// Meshes of a sheet: to print, to show and to analyse
 ///
-/// Exports a tile of the starting state, of a locked state from a record, or frames from the one to the other. Lengths
+/// Exports a tile of the starting state, of a locked state from a record, of the roomiest state, or frames from the one to the other. Lengths
 /// come out in millimetres (GLB: metres); rings are closed meshes that face outward.
 #[derive(clap::Args)]
 #[command(after_help = "\
@@ -31,6 +31,8 @@ Examples:
   maille export 1.1 --tile 8x8 --format stl,glb --scale 5         R = 1 becomes 5 mm
   maille export my-weave.toml --out prints/ --min-clearance 0.3   refuses if rings would fuse
   maille export 1.1 --at direction=30,l2=-0.25 --out locked.glb   a limit of maille-out/1.1
+  maille export 1.1 --at roomiest --tile 8x8                      the widest gaps, to print in place
+  maille export 1.1 --at roomiest --lattice free                  with the spacing found, too
   maille export --from results/weave --at direction=0,l2=0 --format vtk --frames 20
   maille export --from maille-out/1.1-simulate --format vtk --frames 100    the states of a simulation
 
@@ -123,7 +125,7 @@ const MANY: usize = 5_000_000;
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
-    let source = args.source.read(Wanted { locked: args.frames.is_some(), overlaps: false })?;
+    let source = args.source.read(Wanted { locked: args.frames.is_some(), overlaps: false, threads: None })?;
     let Source { design, model, locked, .. } = &source;
     // A simulated sheet is one cell, the whole of it.
     let tile = if model.periodic { args.tile } else { Tile([1, 1]) };
@@ -169,7 +171,7 @@ pub fn run(args: &Args) -> Result<()> {
     if let Some(clearance) = args.min_clearance
         && let Some(close) = mesh::too_close(model, &frames[0].state, tile, clearance, mm)
     {
-        let problem = fuse(&close, clearance, mm, design, locked.is_some());
+        let problem = fuse(&close, clearance, mm, &source);
         match args.warn {
             false => return Err(problem),
             true => eprintln!("{:?}", problem.wrap_err("warning: written all the same (--warn)")),

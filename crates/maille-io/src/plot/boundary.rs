@@ -21,7 +21,7 @@ const BOUND: &str = "#8a8a8a";
 
 /// The figure, as SVG.
 pub fn boundary_svg(boundary: &Boundary, title: &str, caption: Vec<String>) -> String {
-    let solid: Vec<[f64; 3]> = boundary.vertices.iter().map(point).collect();
+    let solid: Vec<[f64; 3]> = boundary.vertices.iter().map(|v| point(v).unwrap_or_default()).collect();
     let bound: Vec<[f64; 3]> =
         boundary.vertices.iter().map(|v| v.point(v.bound.or(v.distance).unwrap_or_default())).collect();
     let sample = |rgb: [u8; 3], label: &str| Entry::Sample {

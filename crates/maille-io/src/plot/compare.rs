@@ -103,6 +103,7 @@ pub(super) fn differences(records: &[NamedRecord]) -> (String, Vec<String>) {
         column("design", &|named| named.record.run.design.name.clone()),
         column("r", &radius),
         column("method", &method),
+        column("limit", &|named| named.record.rows.iter().find_map(|row| row.end.clone()).unwrap_or("largest".into())),
     ];
     let mut parts: Vec<Part> = first.into_iter().filter(|(_, of)| of.windows(2).any(|w| w[0] != w[1])).collect();
     // The method says already that its parameters are others.

@@ -59,8 +59,8 @@ impl Quantity {
 
     fn subtitle(self) -> &'static str {
         match self {
-            Quantity::Stretch => "Largest stretch 1 + l₁ along each direction of pull",
-            Quantity::L1 => "Largest elongation l₁ along each direction of pull",
+            Quantity::Stretch => "stretch 1 + l₁ along each direction of pull",
+            Quantity::L1 => "elongation l₁ along each direction of pull",
             Quantity::Lambda1 => "Larger eigenvalue λ₁ of C = FᵀF, less 1, at the limit of each direction of pull",
         }
     }
@@ -73,6 +73,8 @@ pub struct PolarPlot {
     pub title: String,
     /// What the radius shows.
     pub quantity: Quantity,
+    /// Which ends of l1, as `Largest`.
+    pub ends: &'static str,
     /// Of several records: what tells them apart, and the label of each; otherwise empty.
     pub records: (String, Vec<String>),
     /// Curves, in the order of the legend.
@@ -158,6 +160,7 @@ impl PolarPlot {
             check: String::new(),
             caption,
             lateral_free: lateral_free(rows.iter()),
+            ends: ends(rows.iter()),
             reference: Reference::Start,
         }
     }
@@ -181,6 +184,7 @@ impl PolarPlot {
             check: String::new(),
             caption,
             lateral_free: lateral_free(records.iter().flat_map(|named| &named.record.rows)),
+            ends: ends(records.iter().flat_map(|named| &named.record.rows)),
             reference: Reference::Start,
         }
     }
@@ -219,12 +223,13 @@ impl PolarPlot {
 
     fn subtitle(&self) -> String {
         let area = match self.reference {
-            Reference::Start => return self.quantity.subtitle().to_owned(),
+            Reference::Start if self.quantity == Quantity::Lambda1 => return self.quantity.subtitle().to_owned(),
+            Reference::Start => return format!("{} {}", self.ends, self.quantity.subtitle()),
             Reference::Widest => "greatest",
             Reference::Tightest => "least",
         };
         let quantity = if self.quantity == Quantity::Stretch { "stretch λ" } else { "elongation λ − 1" };
-        format!("Largest {quantity} along each direction of pull, from the cell of {area} area")
+        format!("{} {quantity} along each direction of pull, from the cell of {area} area", self.ends)
     }
 
     fn symbol(&self) -> &'static str {
@@ -283,6 +288,16 @@ fn limits(record: usize, rows: &[LimitRow], l2: f64, quantity: Quantity) -> Curv
 /// Whether the width was left to the sheet in all of them.
 fn lateral_free<'a>(mut rows: impl Iterator<Item = &'a LimitRow>) -> bool {
     rows.all(|row| row.lateral.as_deref() == Some("free"))
+}
+
+/// Which ends of l1 are shown.
+fn ends<'a>(rows: impl Iterator<Item = &'a LimitRow>) -> &'static str {
+    let is_least = |row: &LimitRow| row.end.as_deref() == Some("least");
+    match rows.fold([false; 2], |[largest, least], row| [largest || !is_least(row), least || is_least(row)]) {
+        [true, true] => "Largest and least",
+        [_, true] => "Least",
+        _ => "Largest",
+    }
 }
 
 /// Why the plot goes all the way round.

@@ -106,11 +106,11 @@ use Unit::{Degree, Length, None as Word, One, Radius, Second};
 use Values::{Count, Flag, Number, Text};
 
 /// Lengths of earlier tables: one that ends after so many columns is read too, the others being empty.
-pub(super) const EARLIER_COLUMNS: [usize; 2] = [30, 36];
+pub(super) const EARLIER_COLUMNS: [usize; 3] = [30, 36, 40];
 
 /// The columns, in order. A later version may add columns at the end; it renames and moves none.
 #[rustfmt::skip] // a table
-pub const LIMIT_COLUMNS: [Column; 40] = [
+pub const LIMIT_COLUMNS: [Column; 42] = [
     column("design", Word, Text(|r| Some(&r.design)), "name of the design; text, also where it looks like a number"),
     column("minor_radius", Length, Number(|r| r.minor_radius), "common minor radius of the rings; empty where each ring gives its own"),
     column("direction_deg", Degree, Number(|r| Some(r.direction_deg)), "direction of the pull, counter-clockwise from x"),
@@ -118,7 +118,7 @@ pub const LIMIT_COLUMNS: [Column; 40] = [
     column("method", Word, Text(|r| Some(&r.method)), "exact or energy"),
     column("cell", Word, Text(|r| Some(&r.cell)), "the cell that was solved, as 2x1 or 1,0;-1,2"),
     column("status", Word, Text(|r| Some(r.status.name())), "outcome of the search"),
-    column("l1", One, Number(|r| r.l1), "the limit: largest stretch along the pull, less 1"),
+    column("l1", One, Number(|r| r.l1), "the limit: largest (or least, see end) stretch along the pull, less 1"),
     column("lambda1", One, Number(|r| r.lambda1), "larger eigenvalue of C = FᵀF at the limit"),
     column("lambda2", One, Number(|r| r.lambda2), "smaller eigenvalue of C = FᵀF at the limit"),
     column("stretch1", One, Number(|r| r.stretch1), "square root of lambda1"),
@@ -151,4 +151,6 @@ pub const LIMIT_COLUMNS: [Column; 40] = [
     column("a1_y", Radius, Number(|r| r.a1_y), "its y"),
     column("a2_x", Radius, Number(|r| r.a2_x), "second lattice vector of the design's own cell at the limit"),
     column("a2_y", Radius, Number(|r| r.a2_y), "its y"),
+    column("end", Word, Text(|r| r.end.as_deref()), "largest or least: which end of l1 the limit is"),
+    column("by_cell", Word, Text(|r| r.by_cell.as_deref()), "of a least l1: what each cell reached, its starts and its distinct certified limits"),
 ];

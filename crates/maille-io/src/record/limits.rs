@@ -118,6 +118,8 @@ fn row(record: &StringRecord) -> Result<LimitRow, String> {
         a1_y: optional(next())?,
         a2_x: optional(next())?,
         a2_y: optional(next())?,
+        end: some(next(), "a word")?,
+        by_cell: some(next(), "a text")?,
     })
 }
 

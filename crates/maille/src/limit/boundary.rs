@@ -6,7 +6,7 @@
 //! vertex. Where the two differ the ray has left and entered the set again, or the straight way is blocked.
 
 use super::{
-    sphere::Sphere,
+    sphere::{Bent, Sphere},
     strain::{StrainMethod, StrainOptions, StrainQuery},
 };
 use crate::{
@@ -38,7 +38,7 @@ pub struct BoundaryOptions {
 
 impl Default for BoundaryOptions {
     fn default() -> Self {
-        BoundaryOptions { tolerance: 1e-3, most: 1500, starts: 2, seed: 1 }
+        BoundaryOptions { tolerance: 1e-3, most: 5000, starts: 2, seed: 1 }
     }
 }
 
@@ -88,6 +88,10 @@ pub struct Boundary {
     pub triangles: Vec<[usize; 3]>,
     /// Largest expected distance between the surface and its triangles.
     pub arch: f64,
+    /// Edges beyond the tolerance that were long enough to be divided, had there been room for more vertices.
+    pub open: usize,
+    /// Edges beyond the tolerance that are too short to be divided: there the distance jumps.
+    pub jumps: usize,
     /// Whether all rays were solved.
     pub complete: bool,
 }
@@ -96,47 +100,53 @@ pub struct Boundary {
 const FIRST: usize = 2;
 
 /// Finds the surface on the current thread pool; the result does not depend on the number of threads. `known` are vertices of
-/// an earlier run by their number. `found` gets each new one, `planned` the number of rays of a pass before it begins.
+/// an earlier run, perhaps of another tolerance: a ray depends on its direction alone, and on the rays between which it was
+/// put. `found` gets each new one, `planned` the number of rays of a pass before it begins.
 pub fn boundary(
     model: &Model,
     options: &BoundaryOptions,
-    known: &BTreeMap<usize, BoundaryVertex>,
+    known: &[BoundaryVertex],
     cancel: &AtomicBool,
     planned: &mut dyn FnMut(usize),
-    found: &(dyn Fn(usize, &BoundaryVertex) + Sync),
+    found: &(dyn Fn(&BoundaryVertex) + Sync),
 ) -> Boundary {
     let method = StrainMethod::new(
         std::slice::from_ref(model),
         StrainOptions { starts: options.starts, seed: options.seed, ..StrainOptions::default() },
     );
+    let bits = |direction: [f64; 3]| direction.map(f64::to_bits);
+    let known: BTreeMap<[u64; 3], &BoundaryVertex> = known.iter().map(|v| (bits(v.direction), v)).collect();
     let mut sphere = Sphere::new(FIRST);
     let mut vertices: Vec<BoundaryVertex> = Vec::new();
     loop {
         let open = vertices.len()..sphere.directions.len();
-        planned(open.clone().filter(|k| !known.contains_key(k)).count());
+        let known = |k: usize| known.get(&bits(sphere.directions[k].into())).copied();
+        planned(open.clone().filter(|k| known(*k).is_none()).count());
         let solve = |k: usize| -> Option<BoundaryVertex> {
-            if let Some(vertex) = known.get(&k) {
+            if let Some(vertex) = known(k) {
                 return Some(vertex.clone());
             }
             let parents = sphere.parents[k].into_iter().filter_map(|parent| vertices.get(parent));
             let from: Vec<State> = parents.filter(|p| p.distance.is_some()).map(BoundaryVertex::state).collect();
             let vertex = ray(&method, sphere.directions[k], &from, cancel)?;
-            found(k, &vertex);
+            found(&vertex);
             Some(vertex)
         };
         let solved: Vec<Option<BoundaryVertex>> = open.into_par_iter().with_max_len(1).map(solve).collect();
         let count = solved.len();
         vertices.extend(solved.into_iter().map_while(|vertex| vertex));
         let complete = vertices.len() == sphere.directions.len();
-        let points: Vec<Vec3> = vertices.iter().map(|v| Vec3::from(v.point(v.distance.unwrap_or_default()))).collect();
-        let bent = if complete { sphere.bent(&points, options.tolerance) } else { Vec::new() };
+        let points: Vec<Option<Vec3>> = vertices.iter().map(|v| Some(v.point(v.distance?).into())).collect();
+        let bent = if complete { sphere.bent(&points, 0.0) } else { Vec::new() };
+        let arch = bent.first().map_or(if complete { 0.0 } else { f64::NAN }, |worst| worst.arch);
+        let (wide, narrow): (Vec<Bent>, Vec<Bent>) =
+            bent.into_iter().filter(|bent| bent.arch > options.tolerance).partition(|bent| bent.wide);
         let room = options.most.saturating_sub(vertices.len());
-        if !complete || bent.is_empty() || room == 0 || count == 0 {
-            let arch =
-                if complete { sphere.bent(&points, 0.0).first().map_or(0.0, |(_, arch)| *arch) } else { f64::NAN };
-            return Boundary { vertices, triangles: sphere.triangles, arch, complete };
+        if !complete || wide.is_empty() || room == 0 || count == 0 {
+            let (open, jumps) = (wide.len(), narrow.len());
+            return Boundary { vertices, triangles: sphere.triangles, arch, open, jumps, complete };
         }
-        let marked: Vec<[usize; 2]> = bent.into_iter().take(room).map(|(edge, _)| edge).collect();
+        let marked: Vec<[usize; 2]> = wide.into_iter().take(room).map(|bent| bent.edge).collect();
         sphere.divide(&marked);
     }
 }

@@ -43,6 +43,9 @@ pub struct ExactOptions {
     /// Whether width and shear are held or left to the sheet.
     #[serde(default)]
     pub across: Across,
+    /// Whether l1 is made as small as can be, not as large.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub compression: bool,
 }
 
 /// The options with everything that is fixed: what a record needs to repeat a run.
@@ -99,12 +102,12 @@ impl ExactOptions {
 
 impl Default for ExactOptions {
     fn default() -> Self {
-        ExactOptions { starts: 4, seed: 1, across: Across::HELD }
+        ExactOptions { starts: 4, seed: 1, across: Across::HELD, compression: false }
     }
 }
 
 /// Limits that differ by less are the same.
-const SAME_LIMIT: f64 = 1e-7;
+pub(super) const SAME_LIMIT: f64 = 1e-7;
 /// A bound is attained within this.
 const ATTAINED: f64 = 1e-9;
 /// Amplitudes of the shaken starts, in reference radii and radians.
@@ -139,10 +142,10 @@ const BEST_RUNGS: usize = 3;
 
 /// Finds limits of one sheet by the exact method.
 pub struct ExactMethod<'a> {
-    models: &'a [Model],
-    options: ExactOptions,
-    chain: ChainBound,
-    link: LinkBound,
+    pub(super) models: &'a [Model],
+    pub(super) options: ExactOptions,
+    pub(super) chain: ChainBound,
+    pub(super) link: LinkBound,
     /// Found where a limit is not reached.
     image: OnceLock<ImageBound>,
 }
@@ -160,7 +163,7 @@ impl<'a> ExactMethod<'a> {
 
     /// The limits along one direction, in the order of `l2`. Solved outwards from l2 = 0, each from its neighbour's state.
     ///
-    /// Where an element presses on its own image, or a compression is not reached, the larger cells are solved too, from the
+    /// With compression the least l1, see [`super::least`]. Where an element presses on its own image, or a compression is not reached, the larger cells are solved too, from the
     /// smaller cell's state; the largest limit counts, and the outcome says which cell gave it.
     /// `finished` gets each limit with its index in `l2`; after `cancel` the rest comes back as interrupted.
     pub fn limits(
@@ -172,6 +175,9 @@ impl<'a> ExactMethod<'a> {
     ) {
         let mut order: Vec<usize> = (0..l2.len()).collect();
         order.sort_by(|&a, &b| l2[a].abs().total_cmp(&l2[b].abs()).then(l2[a].total_cmp(&l2[b])));
+        if self.options.compression {
+            return self.least_limits(direction_deg, l2, &order, cancel, finished);
+        }
         let (mut above, mut below): (Option<Strained>, Option<Strained>) = (None, None);
         if !l2.contains(&0.0) {
             let at_zero = self.limit(direction_deg, 0.0, None, cancel).1;
@@ -233,7 +239,7 @@ impl<'a> ExactMethod<'a> {
             let again = self.search(0, direction_deg, l2, more, (most, across), cancel);
             first = Tally { runs: first.runs + again.runs, iterations: first.iterations + again.iterations, ..again };
         }
-        let reached = first.best.as_ref().map(|b| Strained::at(b, l2, across));
+        let reached = first.best.as_ref().map(|b| Strained::at(b, 1.0, l2, across));
         let mut tally = first;
         let mut trend = vec![(0, tally.l1())];
         let mut cell = 0;
@@ -262,10 +268,7 @@ impl<'a> ExactMethod<'a> {
             let starts = shaken.chain(self.fresh(larger, 0..own)).collect();
             let found = self.search(larger, direction_deg, l2, starts, (most, across), cancel);
             trend.push((larger, found.l1()));
-            let better = match (&found.best, &tally.best) {
-                (Some(new), Some(old)) => (new.certified, new.x.p[0]) > (old.certified, old.x.p[0] + SAME_LIMIT),
-                (new, _) => new.is_some(),
-            };
+            let better = found.goes_further(Some(&tally));
             let (runs, iterations) = (tally.runs + found.runs, tally.iterations + found.iterations);
             if better {
                 (cell, tally) = (larger, found);
@@ -306,7 +309,7 @@ impl<'a> ExactMethod<'a> {
         self.image.get_or_init(|| ImageBound::new(model)).too_near(model, &state)
     }
 
-    fn nothing(&self, status: Status, figures: ExactFigures) -> LimitOutcome {
+    pub(super) fn nothing(&self, status: Status, figures: ExactFigures) -> LimitOutcome {
         LimitOutcome {
             status,
             state: self.models[0].start.clone(),
@@ -336,7 +339,7 @@ impl<'a> ExactMethod<'a> {
                 let found = self.search(0, direction_deg, l2, from, (most, Across::HELD), cancel);
                 (runs, iterations) = (runs + found.runs, iterations + found.iterations);
                 let Some(best) = &found.best else { break };
-                let rung = Strained::at(best, l2, Across::HELD);
+                let rung = Strained::at(best, 1.0, l2, Across::HELD);
                 from = vec![rung.clone()];
                 rungs.push(rung);
             }
@@ -346,8 +349,18 @@ impl<'a> ExactMethod<'a> {
         (rungs, runs, iterations)
     }
 
+    /// 1 where l1 is made as large as can be, −1 where as small.
+    pub(super) fn sign(&self) -> f64 {
+        if self.options.compression { -1.0 } else { 1.0 }
+    }
+
+    fn family(&self, model: &Model, direction_deg: f64, across: Across) -> Family {
+        let family = Family::new(model, direction_deg, across);
+        if self.options.compression { family.least() } else { family }
+    }
+
     /// Solves `starts` in one cell until the bound is attained; keeps the best.
-    fn search(
+    pub(super) fn search(
         &self,
         cell: usize,
         direction_deg: f64,
@@ -357,7 +370,7 @@ impl<'a> ExactMethod<'a> {
         cancel: &AtomicBool,
     ) -> Tally {
         let model = &self.models[cell];
-        let family = Family::new(model, direction_deg, across);
+        let family = self.family(model, direction_deg, across);
         let mut search = Search { model, seed: self.options.seed, family, l2, cancel, iterations: 0, runs: 0 };
         let mut tally = Tally::default();
         for start in starts {
@@ -394,7 +407,7 @@ impl<'a> ExactMethod<'a> {
     }
 
     /// Status and figures of the best solve.
-    fn judge(
+    pub(super) fn judge(
         &self,
         cell: usize,
         direction_deg: f64,
@@ -418,11 +431,11 @@ impl<'a> ExactMethod<'a> {
                 ..self.nothing(Status::L2NotReached, ExactFigures { cell: 0, ..figures })
             };
         };
-        let l1 = best.x.p[0];
+        let l1 = self.sign() * best.x.p[0];
         figures.own_image_force = Some(own_image_force(&self.models[cell], &best.contacts));
         let model = &self.models[cell];
         let across = self.options.across;
-        let family = Family::new(model, direction_deg, across);
+        let family = self.family(model, direction_deg, across);
         let gradient = family.gradient(&best.x.p, l2);
         if across.any() && best.certified {
             let (free, more) = family.ranges(model, &best, l2, cancel);
@@ -447,7 +460,7 @@ impl<'a> ExactMethod<'a> {
     }
 
     /// Starts of a cell: the design's state, every element moved and turned at random, but no circle across another.
-    fn fresh(&self, cell: usize, starts: Range<usize>) -> impl Iterator<Item = Strained> {
+    pub(super) fn fresh(&self, cell: usize, starts: Range<usize>) -> impl Iterator<Item = Strained> {
         let model = &self.models[cell];
         starts.map(move |k| {
             let seed = self.options.seed.wrapping_mul(0x9e37_79b9).wrapping_add(k as u64);
@@ -460,16 +473,24 @@ impl<'a> ExactMethod<'a> {
 
 /// What the solves of one cell found.
 #[derive(Default)]
-struct Tally {
-    best: Option<Solve>,
-    distinct: Vec<f64>,
-    iterations: u64,
-    runs: u64,
+pub(super) struct Tally {
+    pub(super) best: Option<Solve>,
+    pub(super) distinct: Vec<f64>,
+    pub(super) iterations: u64,
+    pub(super) runs: u64,
 }
 
 impl Tally {
     fn l1(&self) -> Option<f64> {
         self.best.as_ref().map(|b| b.x.p[0])
+    }
+
+    /// Whether it has a better limit than `other`: certified first, and more than the same.
+    pub(super) fn goes_further(&self, other: Option<&Tally>) -> bool {
+        match (&self.best, other.and_then(|tally| tally.best.as_ref())) {
+            (Some(new), Some(old)) => (new.certified, new.x.p[0]) > (old.certified, old.x.p[0] + SAME_LIMIT),
+            (new, _) => new.is_some(),
+        }
     }
 
     fn attains(&self, most: f64) -> bool {

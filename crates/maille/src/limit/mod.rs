@@ -5,6 +5,7 @@ mod climb;
 pub mod energy;
 pub mod exact;
 pub mod extreme;
+mod least;
 mod pull;
 pub mod sphere;
 pub mod strain;
@@ -17,6 +18,19 @@ use crate::{
     state::State,
 };
 use nalgebra::Matrix2;
+
+/// What the search of one cell found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CellTrend {
+    /// Which of the cells.
+    pub cell: usize,
+    /// Its best certified value.
+    pub value: Option<f64>,
+    /// Starts that were solved.
+    pub n_starts: u64,
+    /// Distinct certified values among them.
+    pub n_distinct: u64,
+}
 
 /// What the search for one limit found.
 #[derive(Clone, Debug)]
@@ -62,6 +76,8 @@ pub struct ExactFigures {
     pub l1_uncertified: Option<f64>,
     /// Loaded contacts.
     pub contacts: Vec<Contact>,
+    /// Of a least l1: what each cell's search found.
+    pub trend: Vec<CellTrend>,
     /// Where something was free: the ranges in which it can be at the limit.
     pub free: Option<FreeRanges>,
 }

@@ -37,11 +37,11 @@ impl Strained {
         Strained { state, l1: 0.0, l2: 0.0, shear: 0.0 }
     }
 
-    /// The state of a solve; `l2` is what was held.
-    pub fn at(solve: &Solve, l2: f64, across: Across) -> Self {
+    /// The state of a solve that made `sign` · l1 as large as can be; `l2` is what was held.
+    pub fn at(solve: &Solve, sign: f64, l2: f64, across: Across) -> Self {
         let mut free = solve.x.p[1..].iter().copied();
         let l2 = if across.lateral_free { free.next().unwrap_or(l2) } else { l2 };
-        Strained { state: solve.x.state.clone(), l1: solve.x.p[0], l2, shear: free.next().unwrap_or(0.0) }
+        Strained { state: solve.x.state.clone(), l1: sign * solve.x.p[0], l2, shear: free.next().unwrap_or(0.0) }
     }
 }
 
@@ -50,12 +50,19 @@ pub(super) struct Family {
     reference: [Vec3; 2],
     along: Vec3,
     pub across: Across,
+    /// 1 where l1 is maximised, −1 where it is minimised: the first parameter is this times l1.
+    sign: f64,
 }
 
 impl Family {
     pub fn new(model: &Model, direction_deg: f64, across: Across) -> Self {
         let d = direction(direction_deg);
-        Family { reference: [model.start.a1, model.start.a2], along: Vec3::new(d.x, d.y, 0.0), across }
+        Family { reference: [model.start.a1, model.start.a2], along: Vec3::new(d.x, d.y, 0.0), across, sign: 1.0 }
+    }
+
+    /// The same lattices, l1 to be made as small as can be.
+    pub fn least(self) -> Self {
+        Family { sign: -1.0, ..self }
     }
 
     fn side(&self) -> Vec3 {
@@ -79,7 +86,7 @@ impl Family {
     /// F at the parameters `p` of [`Self::pull`].
     pub fn gradient(&self, p: &[f64], l2: f64) -> Matrix2<f64> {
         let [l2, shear] = self.free_of(p, l2);
-        self.strained(p[0], l2, shear)
+        self.strained(self.sign * p[0], l2, shear)
     }
 
     /// l2 and γ at the parameters `p`.
@@ -95,11 +102,11 @@ impl Family {
         [(d, d), (side, side), (d, side)].map(|(to, of)| self.reference.map(|a| to * of.dot(&a)))
     }
 
-    /// l1 maximised; l2 held at its value or free, from −1 on, γ held at 0 or free.
+    /// l1 maximised, or −l1; l2 held at its value or free, from −1 on, γ held at 0 or free.
     pub fn pull(&self, l2: f64) -> Pull {
         let [along, lateral, shear] = self.rates();
         let parameter = |rate, weight| Parameter { rate, weight, ..Parameter::default() };
-        let mut parameters = vec![parameter(along, 1.0)];
+        let mut parameters = vec![parameter(along.map(|v| v * self.sign), 1.0)];
         parameters.extend(self.across.lateral_free.then(|| parameter(lateral, 0.0)));
         parameters.extend(self.across.shear_free.then(|| parameter(shear, 0.0)));
         let l2 = if self.across.lateral_free { 0.0 } else { l2 };
@@ -110,7 +117,7 @@ impl Family {
     pub fn parameters(&self, at: &Strained) -> Vec<f64> {
         let lateral = self.across.lateral_free.then_some(at.l2);
         let shear = self.across.shear_free.then_some(at.shear);
-        [Some(at.l1), lateral, shear].into_iter().flatten().collect()
+        [Some(self.sign * at.l1), lateral, shear].into_iter().flatten().collect()
     }
 
     /// From the l2 of a state towards `to`, l1 free, γ as it is there.
@@ -126,7 +133,8 @@ impl Family {
     /// Least and largest l2 and γ that are found from the state of a limit, with l1 held there less a slack of
     /// [`FREE_SLACK`] (1 + l1); with the quadratic programs that it took.
     pub fn ranges(&self, model: &Model, limit: &Solve, l2: f64, cancel: &AtomicBool) -> (FreeRanges, u64) {
-        let l1 = limit.x.p[0] - FREE_SLACK * (1.0 + limit.x.p[0]);
+        let l1 = self.sign * limit.x.p[0];
+        let l1 = l1 - self.sign * FREE_SLACK * (1.0 + l1);
         let [l2, shear] = self.free_of(&limit.x.p, l2);
         let [_, lateral_rate, shear_rate] = self.rates();
         let wanted = [(self.across.lateral_free, lateral_rate), (self.across.shear_free, shear_rate)];

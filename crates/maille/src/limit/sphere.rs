@@ -14,8 +14,19 @@ pub struct Sphere {
     pub triangles: Vec<[usize; 3]>,
 }
 
-/// Edges with an angle below this are not divided.
-const LEAST_ANGLE: f64 = 0.02;
+/// Edges with an angle below this are not divided: across a jump of the distance there would be no end of it.
+const LEAST_ANGLE: f64 = 0.004;
+
+/// An edge whose middle is far from the surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bent {
+    /// Its corners.
+    pub edge: [usize; 2],
+    /// Expected distance of its middle from the surface.
+    pub arch: f64,
+    /// Whether it is long enough to be divided.
+    pub wide: bool,
+}
 
 impl Sphere {
     /// An icosahedron, each edge divided `times` times.
@@ -106,24 +117,28 @@ impl Sphere {
         self.triangles = triangles;
     }
 
-    /// Edges whose middle is expected further than `tolerance` from the surface through `points`, the worst first, each with
-    /// that distance: an edge of length L between triangles that meet at the angle θ has an arch of about L θ/8.
-    pub fn bent(&self, points: &[Vec3], tolerance: f64) -> Vec<([usize; 2], f64)> {
-        let normal = |a: usize, b: usize, c: usize| (points[b] - points[a]).cross(&(points[c] - points[a]));
+    /// Edges whose middle is expected further than `tolerance` from the surface through `points`, the worst first: an edge of
+    /// length L between triangles that meet at the angle θ has an arch of about L θ/8. Of edges beside a direction without a
+    /// point nothing is known.
+    pub fn bent(&self, points: &[Option<Vec3>], tolerance: f64) -> Vec<Bent> {
         let mut out = Vec::new();
         for ([a, b], opposite) in self.edges() {
             let [c, d] = opposite[..] else { continue };
-            let (n1, n2) = (normal(a, b, c), normal(b, a, d));
+            let [Some(p), Some(q), Some(left), Some(right)] = [a, b, c, d].map(|k| points[k]) else { continue };
+            let (n1, n2) = ((q - p).cross(&(left - p)), (p - q).cross(&(right - q)));
             // One of the two has the edge the other way round.
-            let (n1, n2) = (n1 * n1.dot(&points[a]).signum(), n2 * n2.dot(&points[a]).signum());
+            let (n1, n2) = (n1 * n1.dot(&p).signum(), n2 * n2.dot(&p).signum());
             let theta = n1.cross(&n2).norm().atan2(n1.dot(&n2));
-            let arch = (points[b] - points[a]).norm() * theta / 8.0;
-            let wide = self.directions[a].angle(&self.directions[b]) > LEAST_ANGLE;
-            if wide && arch > tolerance {
-                out.push(([a, b], arch));
+            let arch = (q - p).norm() * theta / 8.0;
+            if arch > tolerance {
+                out.push(Bent {
+                    edge: [a, b],
+                    arch,
+                    wide: self.directions[a].angle(&self.directions[b]) > LEAST_ANGLE,
+                });
             }
         }
-        out.sort_by(|x, y| y.1.total_cmp(&x.1));
+        out.sort_by(|x, y| y.arch.total_cmp(&x.arch));
         out
     }
 }
@@ -154,11 +169,16 @@ mod tests {
     #[test]
     fn arches_of_a_sphere() {
         let sphere = Sphere::new(3);
-        let points = sphere.directions.clone();
-        let (edge, arch) = sphere.bent(&points, 0.0)[0];
-        let half = 0.5 * points[edge[0]].angle(&points[edge[1]]);
+        let points: Vec<Option<Vec3>> = sphere.directions.iter().copied().map(Some).collect();
+        let Bent { edge, arch, .. } = sphere.bent(&points, 0.0)[0];
+        let half = 0.5 * sphere.directions[edge[0]].angle(&sphere.directions[edge[1]]);
         let true_arch = 1.0 - half.cos();
         assert!(arch > 0.3 * true_arch && arch < 2.0 * true_arch, "{arch} {true_arch}");
         assert!(sphere.bent(&points, 2.0 * true_arch).is_empty());
+        // A direction without a point bends nothing.
+        let mut without = points.clone();
+        without[0] = None;
+        let all = sphere.bent(&without, 0.0);
+        assert!(all.len() < sphere.bent(&points, 0.0).len() && all.iter().all(|bent| !bent.edge.contains(&0)));
     }
 }

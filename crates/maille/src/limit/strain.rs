@@ -6,7 +6,10 @@
 //! curvature enters the second derivatives: the certificate is that of a limit. The bound is convex in C
 //! ([`crate::bound::metric_bound`]); where it is attained the extreme is proved for every cell.
 
-use super::climb::{Solve, climb, own_image_force, shaken_from, tiled};
+use super::{
+    CellTrend,
+    climb::{Solve, climb, own_image_force, shaken_from, tiled},
+};
 use crate::{
     bound::{ChainBound, MetricBound, metric_bound},
     constraint::{Contact, Parameter, Pull, SheetProgram},
@@ -39,13 +42,14 @@ pub struct StrainOptions {
     pub starts: usize,
     /// Seed of the shaking.
     pub seed: u64,
-    /// Whether all cells are solved, as compression needs: a fold can be larger than a cell that shows no sign of it.
-    pub all_cells: bool,
+    /// Whether p₀ is a compression. All cells are solved then, as a fold can be larger than a cell that shows no sign of it,
+    /// and no answer is `global`: a still larger cell can fold further.
+    pub compression: bool,
 }
 
 impl Default for StrainOptions {
     fn default() -> Self {
-        StrainOptions { starts: 8, seed: 1, all_cells: false }
+        StrainOptions { starts: 8, seed: 1, compression: false }
     }
 }
 
@@ -79,8 +83,8 @@ pub struct StrainOutcome {
     pub n_starts: u64,
     /// Distinct certified values among them, apart by more than 1e-7.
     pub n_distinct: u64,
-    /// Largest certified p₀ of each cell that was solved.
-    pub trend: Vec<(usize, Option<f64>)>,
+    /// What each cell that was solved reached.
+    pub trend: Vec<CellTrend>,
     /// Quadratic programs.
     pub iterations: u64,
 }
@@ -93,8 +97,6 @@ const ATTAINED: f64 = 1e-9;
 const SHAKES: [f64; 6] = [0.003, 0.1, 0.3, 0.03, 0.2, 0.05];
 /// Kicks of a solve whose certificate stays incomplete.
 const KICKS: usize = 4;
-/// Starts of its own of each larger cell, where all cells are solved.
-const LARGER_STARTS: usize = 5;
 /// A force between an element and its own image above this calls for a larger cell.
 const OWN_IMAGE_FORCE: f64 = 1e-6;
 
@@ -145,11 +147,12 @@ impl<'a> StrainMethod<'a> {
         let mut distinct: Vec<f64> = Vec::new();
         let mut smallest = self.models[0].start.clone();
         for cell in 0..self.models.len() {
-            let asks = self.options.all_cells || out.own_image_force > OWN_IMAGE_FORCE;
+            let asks = self.options.compression || out.own_image_force > OWN_IMAGE_FORCE;
             if cell > 0 && (out.status == Status::Global || !asks) {
                 break;
             }
             let mut reached: Option<f64> = None;
+            let (starts_before, mut own): (u64, Vec<f64>) = (out.n_starts, Vec::new());
             for start in self.starts(cell, &smallest, from) {
                 if cancel.load(Ordering::Relaxed) {
                     return StrainOutcome { status: Status::Interrupted, ..out };
@@ -161,6 +164,9 @@ impl<'a> StrainMethod<'a> {
                 let value = solve.x.p[0];
                 if solve.certified {
                     reached = Some(reached.map_or(value, |reached| reached.max(value)));
+                    if !own.iter().any(|other| (other - value).abs() < SAME) {
+                        own.push(value);
+                    }
                 }
                 if out.n_starts == 1 {
                     out.first = Some(value);
@@ -179,7 +185,12 @@ impl<'a> StrainMethod<'a> {
             if cell == 0 {
                 smallest = out.state.clone();
             }
-            out.trend.push((cell, reached));
+            out.trend.push(CellTrend {
+                cell,
+                value: reached,
+                n_starts: out.n_starts - starts_before,
+                n_distinct: own.len() as u64,
+            });
         }
         out.n_distinct = distinct.len() as u64;
         if out.value.is_none() {
@@ -190,7 +201,7 @@ impl<'a> StrainMethod<'a> {
 
     fn take(&self, out: &mut StrainOutcome, cell: usize, query: &StrainQuery, solve: Solve) {
         let value = solve.x.p[0];
-        let attained = out.bound.is_some_and(|bound| (bound - value).abs() <= ATTAINED);
+        let attained = !self.options.compression && out.bound.is_some_and(|bound| (bound - value).abs() <= ATTAINED);
         let above = out.bound.is_some_and(|bound| value > bound + ATTAINED);
         out.status = match (solve.certified && !above, attained) {
             (true, true) => Status::Global,
@@ -218,7 +229,7 @@ impl<'a> StrainMethod<'a> {
         let shaken = |k: usize| shaken_from(model, &model.start, SHAKES[k % SHAKES.len()], &mut rng(k));
         if cell > 0 {
             let tiled = tiled(model, smallest);
-            let own = if self.options.all_cells { LARGER_STARTS.min(self.options.starts) } else { 0 };
+            let own = if self.options.compression { self.options.starts } else { 0 };
             let fresh = (1..=own).map(shaken);
             return std::iter::once(shaken_from(model, &tiled, SHAKES[1], &mut rng(0))).chain(fresh).collect();
         }
