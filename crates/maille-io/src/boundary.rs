@@ -65,8 +65,13 @@ pub(crate) fn triangles(boundary: &Boundary) -> impl Iterator<Item = &[usize; 3]
     boundary.triangles.iter().filter(move |corners| corners.iter().all(there))
 }
 
-/// The vertices of the mesh, and triangles that count among them: a ray that was not reached is a hole.
-fn mesh(boundary: &Boundary) -> (Vec<(&BoundaryVertex, [f64; 3])>, Vec<[usize; 3]>) {
+/// The vertices that have a point, with it, and the triangles that count among them: a ray that was not reached is a hole.
+struct Mesh<'a> {
+    vertices: Vec<(&'a BoundaryVertex, [f64; 3])>,
+    triangles: Vec<[usize; 3]>,
+}
+
+fn mesh(boundary: &Boundary) -> Mesh<'_> {
     let mut numbers = vec![0; boundary.vertices.len()];
     let mut vertices = Vec::new();
     for (number, vertex) in numbers.iter_mut().zip(&boundary.vertices) {
@@ -74,13 +79,13 @@ fn mesh(boundary: &Boundary) -> (Vec<(&BoundaryVertex, [f64; 3])>, Vec<[usize; 3
         vertices.extend(point(vertex).map(|at| (vertex, at)));
     }
     let triangles = triangles(boundary).map(|corners| corners.map(|k| numbers[k])).collect();
-    (vertices, triangles)
+    Mesh { vertices, triangles }
 }
 
 /// Wavefront OBJ.
 pub fn boundary_obj(boundary: &Boundary, description: &str) -> String {
     let mut out = format!("# {}\n# coordinates exx eyy exy (Green strain, tensor shear)\n", one_line(description));
-    let (vertices, triangles) = mesh(boundary);
+    let Mesh { vertices, triangles } = mesh(boundary);
     for (_, [x, y, z]) in vertices {
         let _ = writeln!(out, "v {x} {y} {z}");
     }
@@ -93,7 +98,7 @@ pub fn boundary_obj(boundary: &Boundary, description: &str) -> String {
 /// PLY in text, with the proven bound of each vertex's distance from the origin (−1 where none is known) and a colour for its
 /// status.
 pub fn boundary_ply(boundary: &Boundary, description: &str) -> String {
-    let (vertices, triangles) = mesh(boundary);
+    let Mesh { vertices, triangles } = mesh(boundary);
     let mut out = format!(
         "ply\nformat ascii 1.0\ncomment {}\ncomment coordinates exx eyy exy (Green strain, tensor shear)\n\
          comment bound: proven bound of the distance from the origin along the ray; -1: none is known\n\

@@ -384,7 +384,7 @@ impl<'a> ExactMethod<'a> {
                     break;
                 }
                 let mut rng = ChaCha8Rng::seed_from_u64(self.options.seed.wrapping_add(round));
-                let from = Strained::at(&solve, l2, across);
+                let from = Strained::at(&solve, self.sign(), l2, across);
                 let state = shaken_from(model, &from.state, NEARLY_SHAKE, &mut rng);
                 match search.solve(Strained { state, ..from }) {
                     Some(again) if (again.certified, again.x.p[0]) > (true, solve.x.p[0]) => solve = again,
