@@ -4,6 +4,9 @@
 //! Each ray is a query of [`super::strain`] with one parameter. Its first start goes straight from the design's state: where
 //! it is stopped is the first exit. The farthest certified state of all starts, its neighbours' states among them, is the
 //! vertex. Where the two differ the ray has left and entered the set again, or the straight way is blocked.
+//!
+//! A ray starts from the states of the two rays that it was put between, and may end in a worse fold than a neighbour found. So
+//! when no edge is left to divide, states are handed on along the edges at which the surface bends more than it should, until no ray gains by it.
 
 use super::{
     sphere::{Bent, Sphere},
@@ -19,7 +22,7 @@ use nalgebra::{Matrix2, Quaternion, UnitQuaternion};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, BTreeSet},
     sync::atomic::{AtomicBool, Ordering},
 };
 
@@ -136,18 +139,71 @@ pub fn boundary(
         let count = solved.len();
         vertices.extend(solved.into_iter().map_while(|vertex| vertex));
         let complete = vertices.len() == sphere.directions.len();
-        let points: Vec<Option<Vec3>> = vertices.iter().map(|v| Some(v.point(v.distance?).into())).collect();
-        let bent = if complete { sphere.bent(&points, 0.0) } else { Vec::new() };
-        let arch = bent.first().map_or(if complete { 0.0 } else { f64::NAN }, |worst| worst.arch);
-        let (wide, narrow): (Vec<Bent>, Vec<Bent>) =
-            bent.into_iter().filter(|bent| bent.arch > options.tolerance).partition(|bent| bent.wide);
+        let wide = |vertices: &[BoundaryVertex]| -> Vec<Bent> {
+            let bends = if complete { sphere.bent(&points(vertices), options.tolerance) } else { Vec::new() };
+            bends.into_iter().filter(|bent| bent.wide).collect()
+        };
         let room = options.most.saturating_sub(vertices.len());
-        if !complete || wide.is_empty() || room == 0 || count == 0 {
-            let (open, jumps) = (wide.len(), narrow.len());
+        let mut divided = wide(&vertices);
+        if complete && (divided.is_empty() || room == 0) {
+            hand_on(&method, &sphere, options.tolerance, &mut vertices, cancel);
+            divided = wide(&vertices);
+        }
+        if !complete || divided.is_empty() || room == 0 || count == 0 {
+            let bent = if complete { sphere.bent(&points(&vertices), 0.0) } else { Vec::new() };
+            let arch = bent.first().map_or(if complete { 0.0 } else { f64::NAN }, |worst| worst.arch);
+            let beyond = |wide: bool| bent.iter().filter(|b| b.arch > options.tolerance && b.wide == wide).count();
+            let (open, jumps) = (beyond(true), beyond(false));
             return Boundary { vertices, triangles: sphere.triangles, arch, open, jumps, complete };
         }
-        let marked: Vec<[usize; 2]> = wide.into_iter().take(room).map(|bent| bent.edge).collect();
+        let marked: Vec<[usize; 2]> = divided.into_iter().take(room).map(|bent| bent.edge).collect();
         sphere.divide(&marked);
+    }
+}
+
+fn points(vertices: &[BoundaryVertex]) -> Vec<Option<Vec3>> {
+    vertices.iter().map(|v| Some(v.point(v.distance?).into())).collect()
+}
+
+/// Rounds in which states are handed on, at most.
+const ROUNDS: usize = 40;
+/// A ray has gained if it goes further by more than this.
+const GAIN: f64 = 1e-7;
+
+/// Rays at bent edges, solved once more from the state at the other end.
+fn hand_on(
+    method: &StrainMethod<'_>,
+    sphere: &Sphere,
+    tolerance: f64,
+    vertices: &mut [BoundaryVertex],
+    cancel: &AtomicBool,
+) {
+    // A state is tried once on a ray.
+    let mut tried: BTreeSet<(usize, usize, u64)> = BTreeSet::new();
+    for _ in 0..ROUNDS {
+        let mut tasks: BTreeMap<usize, Vec<State>> = BTreeMap::new();
+        for Bent { edge: [a, b], .. } in sphere.bent(&points(vertices), tolerance) {
+            for (k, other) in [(a, b), (b, a)] {
+                let Some(distance) = vertices[other].distance else { continue };
+                if tried.insert((k, other, distance.to_bits())) {
+                    tasks.entry(k).or_default().push(vertices[other].state());
+                }
+            }
+        }
+        let again = |(&k, from): (&usize, &Vec<State>)| -> Option<(usize, BoundaryVertex)> {
+            let (old, new) = (&vertices[k], ray(method, sphere.directions[k], from, cancel)?);
+            let certified = matches!(new.status, Status::Global | Status::Local);
+            let gains = certified && new.distance? > old.distance? + GAIN;
+            let n_distinct = new.n_distinct.max(old.n_distinct);
+            gains.then_some((k, BoundaryVertex { first: old.first, n_distinct, ..new }))
+        };
+        let better: Vec<(usize, BoundaryVertex)> = tasks.par_iter().filter_map(again).collect();
+        if better.is_empty() {
+            return;
+        }
+        for (k, vertex) in better {
+            vertices[k] = vertex;
+        }
     }
 }
 
