@@ -163,7 +163,7 @@ impl<'a> ExactMethod<'a> {
 
     /// The limits along one direction, in the order of `l2`. Solved outwards from l2 = 0, each from its neighbour's state.
     ///
-    /// With compression the least l1, see [`super::least`]. Where an element presses on its own image, or a compression is not reached, the larger cells are solved too, from the
+    /// With compression the least l1, see the `least` module. Where an element presses on its own image, or a compression is not reached, the larger cells are solved too, from the
     /// smaller cell's state; the largest limit counts, and the outcome says which cell gave it.
     /// `finished` gets each limit with its index in `l2`; after `cancel` the rest comes back as interrupted.
     pub fn limits(
