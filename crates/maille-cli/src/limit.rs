@@ -5,23 +5,21 @@ use crate::{
     exit::{self, wrong},
     input::Input,
     interrupt,
-    map::CellChoice,
     numbers::{parse_cell, positive},
     output::{self, say},
 };
 use maille::{
-    characterize::Method,
-    constraint::metric::factor,
+    characterize::{CellChoice, Method},
     lattice::Cell,
     limit::{
         exact::ExactOptions,
-        strain::{StrainMethod, StrainOptions, StrainOutcome, StrainQuery},
+        strain::{Strain, StrainMethod, StrainOptions, StrainOutcome, StrainQuery},
     },
     model::Model,
     record::{Status, pose_records},
 };
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use miette::Result;
-use nalgebra::Matrix2;
 use serde_json::json;
 use std::{process::ExitCode, str::FromStr, time::Instant};
 
@@ -44,16 +42,16 @@ pub struct Args {
     /// A built-in design (see `maille designs`), a TOML file, or - for standard input
     design: String,
     /// The strain to make as large as can be
-    #[arg(long, value_name = "STRAIN", value_enum, conflicts_with = "minimize")]
+    #[arg(long, value_name = "STRAIN", value_parser = strain(), conflicts_with = "minimize")]
     maximize: Option<Strain>,
     /// The strain to make as small as can be
-    #[arg(long, value_name = "STRAIN", value_enum)]
+    #[arg(long, value_name = "STRAIN", value_parser = strain())]
     minimize: Option<Strain>,
     /// Strains that are held, as eyy=0.05,exy=0
     #[arg(long, value_name = "STRAIN=VALUE", value_delimiter = ',', allow_hyphen_values = true)]
     fix: Vec<Held>,
     /// Strains that are left to the sheet, as eyy,exy
-    #[arg(long, value_name = "STRAIN", value_enum, value_delimiter = ',')]
+    #[arg(long, value_name = "STRAIN", value_parser = strain(), value_delimiter = ',')]
     free: Vec<Strain>,
     /// Minor radius of every ring that gives none, in the file's unit
     #[arg(long, value_parser = positive)]
@@ -71,35 +69,6 @@ pub struct Args {
     /// Print one JSON document; docs/json.md has its keys
     #[arg(long)]
     json: bool,
-}
-
-/// A component of E.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-enum Strain {
-    Exx,
-    Eyy,
-    Exy,
-}
-
-impl Strain {
-    const ALL: [Strain; 3] = [Strain::Exx, Strain::Eyy, Strain::Exy];
-
-    fn name(self) -> &'static str {
-        ["exx", "eyy", "exy"][self as usize]
-    }
-
-    /// E where this component is 1 and the others are 0.
-    fn unit(self) -> Matrix2<f64> {
-        match self {
-            Strain::Exx => Matrix2::new(1.0, 0.0, 0.0, 0.0),
-            Strain::Eyy => Matrix2::new(0.0, 0.0, 0.0, 1.0),
-            Strain::Exy => Matrix2::new(0.0, 1.0, 1.0, 0.0),
-        }
-    }
-
-    fn of(self, e: &Matrix2<f64>) -> f64 {
-        [e[(0, 0)], e[(1, 1)], e[(0, 1)]][self as usize]
-    }
 }
 
 /// A strain with the value at which it is held.
@@ -121,6 +90,12 @@ impl FromStr for Held {
     }
 }
 
+/// One of the names of strains.
+fn strain() -> impl clap::builder::TypedValueParser<Value = Strain> {
+    let known = |name: String| Strain::ALL.into_iter().find(|strain| strain.name() == name).ok_or("no strain");
+    PossibleValuesParser::new(Strain::ALL.map(Strain::name)).try_map(known)
+}
+
 fn cell_choice(text: &str) -> Result<CellChoice, String> {
     if text == "auto" { Ok(CellChoice::Auto) } else { parse_cell(text).map(CellChoice::One) }
 }
@@ -130,26 +105,9 @@ fn query(args: &Args) -> Result<(StrainQuery, Strain, f64)> {
     let Some((goal, sign)) = args.maximize.map(|s| (s, 1.0)).or(args.minimize.map(|s| (s, -1.0))) else {
         return Err(wrong(exit::USAGE, "no strain is named", "give --maximize exx, or --minimize exx"));
     };
-    let mut named = vec![goal];
-    let fixed = args.fix.iter().map(|held| held.strain);
-    for strain in fixed.chain(args.free.iter().copied()) {
-        if named.contains(&strain) {
-            let problem = format!("{} is named twice", strain.name());
-            return Err(wrong(
-                exit::USAGE,
-                problem,
-                "a strain is sought, held with --fix, or left to the sheet with --free",
-            ));
-        }
-        named.push(strain);
-    }
-    let held = args.fix.iter().map(|held| held.strain.unit() * held.value).sum::<Matrix2<f64>>();
-    if factor(&(Matrix2::identity() + held * 2.0)).is_none() {
-        let help = "a strain of -0.5 is a length of 0; take larger values, or a smaller exy";
-        return Err(wrong(exit::USAGE, "no lattice has the strains of --fix", help));
-    }
-    let free = std::iter::once(goal.unit() * sign).chain(args.free.iter().map(|strain| strain.unit())).collect();
-    Ok((StrainQuery { held, free }, goal, sign))
+    let fix: Vec<(Strain, f64)> = args.fix.iter().map(|held| (held.strain, held.value)).collect();
+    let query = StrainQuery::of(goal, sign, &fix, &args.free).map_err(|e| wrong(exit::USAGE, e.problem, e.help))?;
+    Ok((query, goal, sign))
 }
 
 /// Runs the command.

@@ -9,7 +9,8 @@
 use super::climb::{Solve, climb, own_image_force, shaken_from, tiled};
 use crate::{
     bound::{ChainBound, MetricBound, metric_bound},
-    constraint::{Contact, Parameter, Pull, SheetProgram},
+    constraint::{Contact, Parameter, Pull, SheetProgram, metric::factor},
+    error::InvalidInput,
     model::Model,
     record::Status,
     solve::{
@@ -30,6 +31,64 @@ pub struct StrainQuery {
     pub held: Matrix2<f64>,
     /// Rates of E with the parameters, orthogonal to each other; the first parameter is maximised.
     pub free: Vec<Matrix2<f64>>,
+}
+
+/// A component of E.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Strain {
+    /// Along x.
+    Exx,
+    /// Along y.
+    Eyy,
+    /// The tensor shear.
+    Exy,
+}
+
+impl Strain {
+    /// All of them.
+    pub const ALL: [Strain; 3] = [Strain::Exx, Strain::Eyy, Strain::Exy];
+
+    /// `exx`, `eyy` or `exy`.
+    pub fn name(self) -> &'static str {
+        ["exx", "eyy", "exy"][self as usize]
+    }
+
+    /// E where this component is 1 and the others are 0.
+    pub fn unit(self) -> Matrix2<f64> {
+        match self {
+            Strain::Exx => Matrix2::new(1.0, 0.0, 0.0, 0.0),
+            Strain::Eyy => Matrix2::new(0.0, 0.0, 0.0, 1.0),
+            Strain::Exy => Matrix2::new(0.0, 1.0, 1.0, 0.0),
+        }
+    }
+
+    /// This component of E.
+    pub fn of(self, e: &Matrix2<f64>) -> f64 {
+        [e[(0, 0)], e[(1, 1)], e[(0, 1)]][self as usize]
+    }
+}
+
+impl StrainQuery {
+    /// The largest (`sign` 1) or least (−1) value of `goal`, with the strains of `fix` held, those of `free` left to the sheet,
+    /// and the others held at 0. Refused where a strain is named twice or no lattice has what is held.
+    pub fn of(goal: Strain, sign: f64, fix: &[(Strain, f64)], free: &[Strain]) -> Result<Self, InvalidInput> {
+        let mut named = vec![goal];
+        for strain in fix.iter().map(|(strain, _)| *strain).chain(free.iter().copied()) {
+            if named.contains(&strain) {
+                let problem = format!("{} is named twice", strain.name());
+                let help = "a strain is sought, held, or left to the sheet: name it once";
+                return Err(InvalidInput::new("fix", problem, help));
+            }
+            named.push(strain);
+        }
+        let held = fix.iter().map(|(strain, value)| strain.unit() * *value).sum::<Matrix2<f64>>();
+        if factor(&(Matrix2::identity() + held * 2.0)).is_none() {
+            let help = "a strain of -0.5 is a length of 0; take larger values, or a smaller exy";
+            return Err(InvalidInput::new("fix", "no lattice has the strains that are held", help));
+        }
+        let free = std::iter::once(goal.unit() * sign).chain(free.iter().map(|strain| strain.unit())).collect();
+        Ok(StrainQuery { held, free })
+    }
 }
 
 /// How the search goes.
