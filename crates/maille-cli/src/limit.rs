@@ -8,6 +8,7 @@ use crate::{
     numbers::{parse_cell, positive},
     output::{self, say},
 };
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use maille::{
     characterize::{CellChoice, Method},
     lattice::Cell,
@@ -18,7 +19,6 @@ use maille::{
     model::Model,
     record::{Status, pose_records},
 };
-use clap::builder::{PossibleValuesParser, TypedValueParser};
 use miette::Result;
 use serde_json::json;
 use std::{process::ExitCode, str::FromStr, time::Instant};

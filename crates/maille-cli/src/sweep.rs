@@ -10,7 +10,8 @@ use crate::{
     records,
 };
 use maille::{
-    characterize::{CellChoice, Method}, limit::exact::ExactOptions,
+    characterize::{CellChoice, Method},
+    limit::exact::ExactOptions,
 };
 use maille_io::{
     builtin,

@@ -57,7 +57,8 @@ impl Design {
     #[staticmethod]
     fn from_json(text: &str) -> PyResult<Self> {
         let design = serde_json::from_str(text);
-        let design = design.map_err(|e| error::argument("design", e.to_string(), "give the fields of a design file"))?;
+        let design =
+            design.map_err(|e| error::argument("design", e.to_string(), "give the fields of a design file"))?;
         Self::changed(design)
     }
 

@@ -99,11 +99,11 @@ pub fn design_file(file: &str, error: &DesignError) -> PyErr {
 
 /// What is wrong with a design that is no file.
 pub fn design(problems: &[InvalidInput]) -> PyErr {
-    let one = |p| -> Problem<'_> {
-        let InvalidInput { field, problem, help } = p;
-        Problem { field, problem: problem.clone(), remedy: help, place: None }
-    };
-    design_error(None, &problems.iter().map(one).collect::<Vec<_>>())
+    let mut list = Vec::new();
+    for InvalidInput { field, problem, help } in problems {
+        list.push(Problem { field, problem: problem.clone(), remedy: help, place: None });
+    }
+    design_error(None, &list)
 }
 
 /// What is wrong with a record.

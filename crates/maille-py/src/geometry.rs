@@ -85,13 +85,20 @@ impl Pairs<'_> {
     }
 
     /// Does blocks of pairs with Python free to run, and raises the first pair that is none.
-    fn each_block(&self, py: Python<'_>, count: usize, mut work: impl FnMut(usize, usize, &Wrong) + Send) -> PyResult<()> {
+    fn each_block(
+        &self,
+        py: Python<'_>,
+        count: usize,
+        mut work: impl FnMut(usize, usize, &Wrong) + Send,
+    ) -> PyResult<()> {
         let wrong = Wrong(AtomicUsize::new(usize::MAX));
         for first in (0..count).step_by(BLOCK) {
             py.detach(|| work(first, (first + BLOCK).min(count), &wrong));
             if let Some(k) = wrong.first() {
                 let error = self.a.wrong(k).or_else(|| self.b.wrong(k));
-                return Err(error.unwrap_or_else(|| error::other("a pair was refused that is right; please report this")));
+                return Err(
+                    error.unwrap_or_else(|| error::other("a pair was refused that is right; please report this"))
+                );
             }
             py.check_signals()?;
         }
@@ -127,7 +134,13 @@ impl Chunk {
     }
 
     /// The minima of the pairs from `first` on; none after one that is wrong.
-    fn solve(&mut self, all: &Pairs<'_>, first: usize, count: usize, wrong: &Wrong) -> Option<(&[(Circle, Circle)], &[Approaches])> {
+    fn solve(
+        &mut self,
+        all: &Pairs<'_>,
+        first: usize,
+        count: usize,
+        wrong: &Wrong,
+    ) -> Option<(&[(Circle, Circle)], &[Approaches])> {
         self.pairs.clear();
         for k in first..first + count {
             let Some(pair) = all.get(k) else {
@@ -242,9 +255,11 @@ pub fn linking_number<'py>(
     let pairs = pairs!(center_a, normal_a, radius_a, center_b, normal_b, radius_b);
     let linking = linking.as_slice_mut()?;
     pairs.each_block(py, linking.len(), |first, last, wrong| {
-        linking[first..last].par_iter_mut().with_min_len(CHUNK).enumerate().for_each(|(k, out)| match pairs.get(first + k) {
-            Some((a, b)) => *out = i64::from(maille_geometry::linking_number(&a, &b)),
-            None => wrong.at(first + k),
+        linking[first..last].par_iter_mut().with_min_len(CHUNK).enumerate().for_each(|(k, out)| {
+            match pairs.get(first + k) {
+                Some((a, b)) => *out = i64::from(maille_geometry::linking_number(&a, &b)),
+                None => wrong.at(first + k),
+            }
         });
     })
 }

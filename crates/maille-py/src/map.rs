@@ -94,7 +94,9 @@ fn energy_options(named: &str, seed: u64) -> PyResult<EnergyOptions> {
         ("sample_spacing_rad", options.sample_spacing_rad.unwrap_or(1.0)),
     ];
     match positive.into_iter().find(|(_, x)| !(x.is_finite() && *x > 0.0)) {
-        Some((name, x)) => Err(error::argument("energy", format!("{name} = {x} is not positive"), "give a positive number")),
+        Some((name, x)) => {
+            Err(error::argument("energy", format!("{name} = {x} is not positive"), "give a positive number"))
+        }
         None => Ok(options),
     }
 }

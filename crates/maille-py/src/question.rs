@@ -1,11 +1,6 @@
 //! Single questions: one strain as large or small as can be, the thickest wire, the widest gap.
 
-use crate::{
-    design::Design,
-    error,
-    map::cell_choice,
-    wait::wait,
-};
+use crate::{design::Design, error, map::cell_choice, wait::wait};
 use maille::{
     characterize::Method,
     lattice::Cell,
@@ -108,8 +103,7 @@ pub fn extreme(
     }
     let what = if thickest { Extreme::ThickestWire } else { Extreme::WidestGap };
     let options = ExtremeOptions { lattice_free, starts: starts.max(1), seed };
-    let found =
-        wait(py, threads, None, |cancel, _| maille::limit::extreme::extreme(&model, what, &options, cancel))?;
+    let found = wait(py, threads, None, |cancel, _| maille::limit::extreme::extreme(&model, what, &options, cancel))?;
     let some = found.value.is_some();
     let sizes = found.sizes(&model).into_iter().filter(|_| some);
     let sizes = sizes.map(|size| json!([size.major_radius, size.minor_radius, size.aspect_ratio()]));
