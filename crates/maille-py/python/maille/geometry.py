@@ -6,11 +6,11 @@ caller's unit. Arrays of `float64` in C order are read in place; others are copi
 meanwhile, and all cores are used; results do not depend on how many there are.
 
 >>> import numpy as np
->>> minima = circle_distance_minima([0, 0, 0], [0, 0, 1], 1.0, [[1, 0, 0], [0, 0, 2]], [[0, 1, 0], [0, 0, 1]], 1.0)
+>>> minima = circle_distance_minima([0, 0, 0], [0, 0, 1], 1.0, [[1, 0, 0.5], [0, 0, 2]], [[0, 1, 0], [0, 0, 1]], 1.0)
 >>> minima.kind.tolist()
 ['generic', 'coaxial']
 >>> linking_number([0, 0, 0], [0, 0, 1], 1.0, [1, 0, 0], [0, 1, 0], 1.0).tolist()
-[-1]
+[1]
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ def circle_distance_minima(
     `ArgumentError` for the first value that makes no circle.
 
     >>> one = circle_distance_minima([0, 0, 0], [0, 0, 1], 1.0, [3, 0, 0], [0, 0, 1], 1.0)
-    >>> one.distance[0].tolist()
+    >>> one.distance[0].round(12).tolist()
     [1.0, nan, nan, nan]
     >>> one.point_a[0, 0].round(12).tolist(), one.point_b[0, 0].round(12).tolist()
     ([1.0, 0.0, 0.0], [2.0, 0.0, 0.0])
@@ -105,7 +105,7 @@ def linking_number(
     as in `circle_distance_minima`. Turning one normal round changes the sign.
 
     >>> linking_number([0, 0, 0], [0, 0, 1], 1.0, [[1, 0, 0], [3, 0, 0]], [0, 1, 0], 1.0).tolist()
-    [-1, 0]
+    [1, 0]
     """
     arrays, n = _pairs(
         center_a=center_a, normal_a=normal_a, radius_a=radius_a, center_b=center_b, normal_b=normal_b, radius_b=radius_b
