@@ -45,21 +45,21 @@ class Boundary:
         """
         strains, single = _strains(strain)
         inside = self._share(strains) <= 1.0 + 1e-12
-        return inside[0] if single else inside
+        return np.asarray(inside[0]) if single else inside
 
     def margin(self, strain: ArrayLike) -> NDArray[np.float64]:
         """(N,), or a scalar: distance of a strain from the surface in the space of (exx, eyy, exy); negative outside."""
         strains, single = _strains(strain)
         distance = np.linalg.norm(strains - self._nearest(strains), axis=1)
         signed = np.where(self._share(strains) <= 1.0, distance, -distance)
-        return signed[0] if single else signed
+        return np.asarray(signed[0]) if single else signed
 
     def project(self, strain: ArrayLike) -> NDArray[np.float64]:
         """(N, 3), or (3,): the strain itself where it is in the surface, else the nearest point of the surface."""
         strains, single = _strains(strain)
         inside = self._share(strains) <= 1.0
         out = np.where(inside[:, None], strains, self._nearest(strains))
-        return out[0] if single else out
+        return np.asarray(out[0]) if single else out
 
     def _share(self, strains: NDArray[np.float64]) -> NDArray[np.float64]:
         """How far along its ray to the surface each strain is: 1 on it. The surface is met by each ray once."""
@@ -109,7 +109,7 @@ def boundary(
     """
     with _Bar(progress) as told:
         found, triangles, arch = _native.boundary(
-            _chosen(design, minor_radius)._native,
+            _chosen(design, minor_radius)._inner,
             tolerance=tolerance,
             vertices=_whole("vertices", vertices, 162),
             starts=_whole("starts", starts, 1),
@@ -147,7 +147,7 @@ def _on_triangles(
     v = np.einsum("...k,...k", np.cross(p - a, ac), normal) / area_sq
     w = np.einsum("...k,...k", np.cross(ab, p - a), normal) / area_sq
     inside = (v >= 0) & (w >= 0) & (v + w <= 1)
-    best = a + v[..., None] * ab + w[..., None] * ac
+    best: NDArray[np.float64] = a + v[..., None] * ab + w[..., None] * ac
     distance = np.where(inside, np.linalg.norm(best - p, axis=-1), np.inf)
     for start, end in ((a, b), (b, c), (c, a)):
         side = end - start

@@ -62,7 +62,7 @@ class Design:
     '1.1'
     """
 
-    _native: _native.Design
+    _inner: _native.Design
 
     def __init__(
         self,
@@ -89,12 +89,12 @@ class Design:
             fields["unit"] = unit
         if minor_radius is not None:
             fields["minor_radius"] = float(minor_radius)
-        self._native = _native.Design.from_json(_json(fields))
+        self._inner = _native.Design.from_json(_json(fields))
 
     @classmethod
     def _of(cls, native: _native.Design) -> Design:
         out = cls.__new__(cls)
-        out._native = native
+        out._inner = native
         return out
 
     @classmethod
@@ -142,23 +142,23 @@ class Design:
 
     def to_toml(self) -> str:
         """The text of the design's file."""
-        return self._native.to_toml()
+        return self._inner.to_toml()
 
     def with_minor_radius(self, minor_radius: float) -> Design:
         """The same design with another wire; rings with a minor radius of their own keep it."""
-        return Design._of(self._native.with_minor_radius(minor_radius))
+        return Design._of(self._inner.with_minor_radius(minor_radius))
 
     def spaced(self, factor: float) -> Design:
         """The same rings `factor` times as far apart."""
-        return Design._of(self._native.spaced(factor))
+        return Design._of(self._inner.spaced(factor))
 
     def scaled(self, factor: float) -> Design:
         """The same design with every length multiplied by `factor`."""
-        return Design._of(self._native.scaled(factor))
+        return Design._of(self._inner.scaled(factor))
 
     def check(self) -> None:
         """Raises `DesignError` if rings overlap in the starting state, or if it cannot be solved for another reason."""
-        self._native.check()
+        self._inner.check()
 
     @property
     def name(self) -> str:
@@ -205,17 +205,17 @@ class Design:
 
     @property
     def _fields(self) -> dict[str, Any]:
-        fields: dict[str, Any] = json.loads(self._native.to_json())
+        fields: dict[str, Any] = json.loads(self._inner.to_json())
         return fields
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Design) and self._native.to_json() == other._native.to_json()
+        return isinstance(other, Design) and self._inner.to_json() == other._inner.to_json()
 
     def __hash__(self) -> int:
-        return hash(self._native.to_json())
+        return hash(self._inner.to_json())
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return (_from_json, (self._native.to_json(),))
+        return (_from_json, (self._inner.to_json(),))
 
     def __repr__(self) -> str:
         count = len(self._fields["elements"])

@@ -89,7 +89,8 @@ def circle_distance_minima(
         point_b=np.empty((n, MAX_MINIMA, 3)),
         kind_code=np.empty(n, np.uint8),
     )
-    _native.circle_distance_minima(*arrays, out.count, out.distance, out.point_a, out.point_b, out.kind_code)
+    ca, na, ra, cb, nb, rb = arrays
+    _native.circle_distance_minima(ca, na, ra, cb, nb, rb, out.count, out.distance, out.point_a, out.point_b, out.kind_code)
     return out
 
 
@@ -111,7 +112,8 @@ def linking_number(
         center_a=center_a, normal_a=normal_a, radius_a=radius_a, center_b=center_b, normal_b=normal_b, radius_b=radius_b
     )
     out = np.empty(n, np.int64)
-    _native.linking_number(*arrays, out)
+    ca, na, ra, cb, nb, rb = arrays
+    _native.linking_number(ca, na, ra, cb, nb, rb, out)
     return out
 
 
@@ -142,7 +144,8 @@ def torus_gap(
         minor_radius_b=minor_radius_b,
     )
     out = np.empty(n)
-    _native.torus_gap(*arrays, out)
+    ca, na, ra, ma, cb, nb, rb, mb = arrays
+    _native.torus_gap(ca, na, ra, ma, cb, nb, rb, mb, out)
     return out
 
 

@@ -90,7 +90,7 @@ def limit(
         if not np.isfinite(value):
             raise ArgumentError("fix", f"{name} = {value} is not finite", "give a strain, as 0.05")
     text = _native.limit(
-        _chosen(design, minor_radius)._native,
+        _chosen(design, minor_radius)._inner,
         str(goal),
         sign,
         fix=held,
@@ -152,7 +152,7 @@ def _extreme(
     if lattice not in ("free", "fixed"):
         raise ArgumentError("lattice", f"{lattice!r} is neither free nor fixed", 'give "free" or "fixed"')
     text, state = _native.extreme(
-        _chosen(design, minor_radius)._native,
+        _chosen(design, minor_radius)._inner,
         thickest=thickest,
         lattice_free=lattice == "free",
         starts=_whole("starts", starts, 1),

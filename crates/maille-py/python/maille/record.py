@@ -17,9 +17,9 @@ from .design import Design, DesignLike
 from .errors import ArgumentError
 
 if TYPE_CHECKING:
-    import pandas
+    import pandas  # type: ignore[import-untyped, unused-ignore]
     import polars
-    import pyarrow
+    import pyarrow  # type: ignore[import-untyped, unused-ignore]
     from matplotlib.projections.polar import PolarAxes
 
 __all__ = ["Progress", "Record", "State", "characterize", "read_record"]
@@ -75,13 +75,13 @@ class Record:
     `docs/record.md` says what the columns are.
     """
 
-    _native: _native.Record
+    _inner: _native.Record
 
     def __init__(self, native: _native.Record) -> None:
-        self._native = native
+        self._inner = native
 
     def __len__(self) -> int:
-        return len(self._native)
+        return len(self._inner)
 
     def __repr__(self) -> str:
         return f"<maille.Record of {self.design.name!r}, {len(self)} limits>"
@@ -89,18 +89,18 @@ class Record:
     @property
     def design(self) -> Design:
         """The design that was computed."""
-        return Design._of(self._native.design())
+        return Design._of(self._inner.design())
 
     @property
     def run(self) -> dict[str, Any]:
         """`run.json`: design, parameters, hash of both, counters."""
-        out: dict[str, Any] = json.loads(self._native.run())
+        out: dict[str, Any] = json.loads(self._inner.run())
         return out
 
     @property
     def states(self) -> list[State]:
         """The states, in the order of the rows."""
-        return [State._of(json.loads(state)) for state in self._native.states()]
+        return [State._of(json.loads(state)) for state in self._inner.states()]
 
     def to_numpy(self) -> dict[str, NDArray[Any]]:
         """The columns, each an array of one value a row.
@@ -109,7 +109,7 @@ class Record:
         an array of strings, empty where there is none.
         """
         out: dict[str, NDArray[Any]] = {}
-        for column in self._native.columns():
+        for column in self._inner.columns():
             values = column["values"]
             missing = [value is None for value in values]
             if column["type"] == "number":
@@ -123,9 +123,9 @@ class Record:
 
     def to_arrow(self) -> pyarrow.Table:
         """A `pyarrow.Table`: what `maille table -o FILE.parquet` holds, with units, meanings and the run's inputs as metadata."""
-        from pyarrow import parquet
+        from pyarrow import parquet  # type: ignore[import-untyped, unused-ignore]
 
-        return parquet.read_table(io.BytesIO(self._native.parquet()))
+        return parquet.read_table(io.BytesIO(self._inner.parquet()))
 
     def to_pandas(self) -> pandas.DataFrame:
         """A `pandas.DataFrame`."""
@@ -147,8 +147,11 @@ class Record:
         """
         if ax is None:
             from matplotlib import pyplot
+            from matplotlib.projections import polar
 
-            ax = pyplot.subplots(subplot_kw={"projection": "polar"})[1]
+            made = pyplot.figure().add_subplot(projection="polar")
+            assert isinstance(made, polar.PolarAxes)
+            ax = made
         table = self.to_numpy()
         label = {"stretch": "1 + l1", "l1": "l1", "lambda1": "lambda1 - 1"}.get(quantity)
         if label is None:
@@ -170,7 +173,7 @@ class Record:
 
     def save(self, folder: str | os.PathLike[str], *, quantity: Quantity = "stretch", overwrite: bool = False) -> None:
         """Writes the folder that `maille characterize` writes, with its plot of `quantity`."""
-        self._native.save(os.fspath(folder), quantity, overwrite)
+        self._inner.save(os.fspath(folder), quantity, overwrite)
 
 
 def read_record(folder: str | os.PathLike[str]) -> Record:
@@ -222,7 +225,7 @@ def characterize(
         raise ArgumentError("energy", "is for the energy method", 'leave it out, or give method="energy"')
     with _Bar(progress) as told:
         native = _native.characterize(
-            chosen._native,
+            chosen._inner,
             _numbers("directions", usual_directions if directions is None else directions),
             _numbers("l2", usual_l2 if l2 is None else l2),
             lateral_free=lateral_free,
@@ -274,7 +277,7 @@ class _Bar:
 
     def __enter__(self) -> Callable[[int, int], object] | None:
         if self._progress is True:
-            from tqdm.auto import tqdm
+            from tqdm.auto import tqdm  # type: ignore[import-untyped, unused-ignore]
 
             self._bar = tqdm(unit="limit")
             return self._tell
