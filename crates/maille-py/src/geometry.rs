@@ -119,6 +119,9 @@ impl Wrong {
     }
 }
 
+/// Pairs and their minima.
+type Solved<'a> = (&'a [(Circle, Circle)], &'a [Approaches]);
+
 /// What a thread needs for a chunk.
 struct Chunk {
     pairs: Vec<(Circle, Circle)>,
@@ -134,13 +137,7 @@ impl Chunk {
     }
 
     /// The minima of the pairs from `first` on; none after one that is wrong.
-    fn solve(
-        &mut self,
-        all: &Pairs<'_>,
-        first: usize,
-        count: usize,
-        wrong: &Wrong,
-    ) -> Option<(&[(Circle, Circle)], &[Approaches])> {
+    fn solve(&mut self, all: &Pairs<'_>, first: usize, count: usize, wrong: &Wrong) -> Option<Solved<'_>> {
         self.pairs.clear();
         for k in first..first + count {
             let Some(pair) = all.get(k) else {

@@ -337,6 +337,7 @@ fn remove_temporary(folder: &Path) -> Result<(), RecordError> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::run::input_hash;
     use super::*;
     use serde_json::json;
 
