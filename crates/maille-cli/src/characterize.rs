@@ -4,7 +4,7 @@ use crate::{
     exit::{self, wrong},
     input::{Input, file_name},
     interrupt,
-    map::{CellChoice, Map, RunArgs, pool, unanswered},
+    map::{self, RunArgs, pool, unanswered},
     numbers::{Numbers, parse, parse_cell, parse_l2, positive},
     output,
     plot::Shown,
@@ -13,7 +13,7 @@ use crate::{
     watch::watch,
 };
 use maille::{
-    characterize::Method,
+    characterize::{CellChoice, Method},
     energy::{HessianMethod, MinimaMethod, barrier::ContactLaw, target::Protocol},
     lattice::Across,
     limit::{
@@ -22,7 +22,11 @@ use maille::{
     },
     record::{LimitRow, Status},
 };
-use miette::Result;
+use maille_io::{
+    numbers::{USUAL_DIRECTIONS, USUAL_L2},
+    record::Map,
+};
+use miette::{Result, miette};
 use std::{path::PathBuf, process::ExitCode, time::Instant};
 
 /// How far a sheet stretches in each direction before it locks
@@ -49,7 +53,7 @@ pub struct Args {
     /// A built-in design (see `maille designs`), a TOML file, or - for standard input
     design: String,
     /// Directions of the pull, degrees counter-clockwise from x: a list, or first:last:step
-    #[arg(long, default_value = "0:180:5", value_parser = parse, allow_hyphen_values = true)]
+    #[arg(long, default_value = USUAL_DIRECTIONS, value_parser = parse, allow_hyphen_values = true)]
     directions: Numbers,
     /// Stretch - 1 held across the pull: a list, or first:last:step [default: -0.25:0.25:0.125; none with --lateral free]
     #[arg(long, value_parser = parse_l2, allow_hyphen_values = true)]
@@ -175,9 +179,6 @@ enum Held {
     Free,
 }
 
-/// Lateral strains that are held where the user names none.
-const USUAL_L2: [f64; 5] = [-0.25, -0.125, 0.0, 0.125, 0.25];
-
 /// What is left to the sheet, and the lateral strains that are held.
 fn held(args: &Args) -> Result<(Across, Vec<f64>)> {
     let across = Across { lateral_free: args.lateral == Held::Free, shear_free: args.shear == Held::Free };
@@ -197,7 +198,7 @@ fn held(args: &Args) -> Result<(Across, Vec<f64>)> {
         )),
         (None, true) => Ok((across, vec![0.0])),
         (Some(l2), false) => Ok((across, l2.0.clone())),
-        (None, false) => Ok((across, USUAL_L2.into())),
+        (None, false) => Ok((across, parse_l2(USUAL_L2).map_err(|e| miette!(e))?.0)),
     }
 }
 
@@ -276,6 +277,7 @@ fn once(args: &Args) -> Result<ExitCode> {
     let (across, l2) = held(args)?;
     let input = Input::read(&args.design, args.minor_radius)?;
     let folder = file_name(&input.design.name) + if args.compression { "-compression" } else { "" };
+    let out = args.run.out.clone().unwrap_or_else(|| PathBuf::from("maille-out").join(folder));
     let map = Map {
         method: match args.method {
             MethodArg::Exact => Method::Exact(ExactOptions {
@@ -290,17 +292,17 @@ fn once(args: &Args) -> Result<ExitCode> {
         directions_deg: args.directions.0.clone(),
         l2,
         quantity: args.quantity.into(),
-        out: args.run.out.clone().unwrap_or_else(|| PathBuf::from("maille-out").join(folder)),
+        out: Some(out.clone()),
         overwrite: args.run.overwrite || args.watch,
     };
     let begun = Instant::now();
-    let open = map.open(&input)?;
+    let open = map::open(&map, &input)?;
     if !args.quiet {
         if open.is_unbounded() {
             eprintln!("warning: no chain of links joins the cells of this design; every limit is unbounded");
         }
         if open.left() < open.total() {
-            eprintln!("{} of {} limits are in {} already", open.total() - open.left(), open.total(), map.out.display());
+            eprintln!("{} of {} limits are in {} already", open.total() - open.left(), open.total(), out.display());
         }
     }
     let cancel = interrupt::flag()?;
@@ -311,13 +313,13 @@ fn once(args: &Args) -> Result<ExitCode> {
         let width = if across.lateral_free { "width free".into() } else { format!("l2 = {}", row.l2) };
         progress.step(format!("{}°, {width}", row.direction_deg));
     };
-    let rows = pool.install(|| open.run(&cancel, &found));
+    let rows = pool.install(|| map::run(open, &cancel, &found));
     progress.finish();
     let rows = rows?;
 
     let interrupted = cancel.load(std::sync::atomic::Ordering::Relaxed);
     let solved = rows.iter().filter(|r| r.status != Status::Interrupted).count() - (total - left);
-    let summary = Summary::new(&input.design.name, &rows, solved, begun.elapsed(), interrupted, &map.out);
+    let summary = Summary::new(&input.design.name, &rows, solved, begun.elapsed(), interrupted, &out);
     if args.json {
         output::print_json(&summary)?;
     } else if !args.quiet {

@@ -13,7 +13,7 @@ use crate::{
 use maille::{
     design::Design,
     lattice::Cell,
-    limit::extreme::{Extreme, ExtremeOptions, ExtremeOutcome, extreme},
+    limit::extreme::{Extreme, ExtremeOptions, ExtremeOutcome, Size, extreme},
     model::Model,
     record::{Status, pose_records},
 };
@@ -91,9 +91,6 @@ pub enum Lattice {
     Fixed,
 }
 
-/// A saved design is thinner by this share: what its rounding could make overlap.
-const SPARED: f64 = 1e-9;
-
 /// Runs `tightest`.
 pub fn tightest(args: &TightestArgs) -> Result<ExitCode> {
     run(&args.common, Extreme::ThickestWire)
@@ -118,7 +115,7 @@ fn run(args: &Common, what: Extreme) -> Result<ExitCode> {
         answer.print(begun.elapsed().as_secs_f64());
     }
     if let (Some(file), Some(_)) = (&args.save, found.value) {
-        output::write(file, write_design(&answer.design()).as_bytes())?;
+        output::write(file, write_design(&found.design(&input.design, &answer.model)).as_bytes())?;
         eprintln!("{}", file.display());
     }
     Ok(ExitCode::from(match found.status {
@@ -164,11 +161,14 @@ pub fn as_design(
         }
         (status, Some(_)) => {
             let unit = input.design.unit.as_deref().map(|unit| format!(" {unit}")).unwrap_or_default();
-            let size = match answer.gap() {
+            let size = match answer.found.gap(&answer.model) {
                 Some(gap) => format!("smallest gap {gap:.9}{unit}"),
-                None => format!("minor radius {:.9}{unit}", answer.sizes()[0].minor_radius),
+                None => format!("minor radius {:.9}{unit}", answer.found.sizes(&answer.model)[0].minor_radius),
             };
-            Ok((answer.design(), format!("{}, {}: {size}", answer.title(), status.name())))
+            Ok((
+                answer.found.design(&input.design, &answer.model),
+                format!("{}, {}: {size}", answer.title(), status.name()),
+            ))
         }
     }
 }
@@ -190,52 +190,7 @@ struct Answer<'a> {
     found: ExtremeOutcome,
 }
 
-/// A ring's size in the design's unit.
-struct Size {
-    major_radius: f64,
-    minor_radius: f64,
-}
-
-impl Size {
-    /// Makers' aspect ratio: inner diameter / wire diameter.
-    fn aspect_ratio(&self) -> f64 {
-        (self.major_radius - self.minor_radius) / self.minor_radius
-    }
-}
-
 impl Answer<'_> {
-    /// Different sizes of rings with the wire that was found.
-    fn sizes(&self) -> Vec<Size> {
-        let factor = if self.what == Extreme::ThickestWire { self.found.value.unwrap_or(f64::NAN) } else { 1.0 };
-        let mut out: Vec<Size> = Vec::new();
-        for ring in &self.model.rings {
-            let [major_radius, minor_radius] =
-                [ring.major_radius, ring.minor_radius * factor].map(|x| x * self.model.unit);
-            if !out.iter().any(|s| (s.major_radius, s.minor_radius) == (major_radius, minor_radius)) {
-                out.push(Size { major_radius, minor_radius });
-            }
-        }
-        out
-    }
-
-    /// The state as a design.
-    fn design(&self) -> Design {
-        let mut out = self.found.state.design(&self.input.design, &self.model);
-        let factor = match self.what {
-            Extreme::ThickestWire => self.found.value.unwrap_or(1.0) * (1.0 - SPARED),
-            Extreme::WidestGap => 1.0,
-        };
-        out.name = format!("{} {}", out.name, word(self.what));
-        out.minor_radius = out.minor_radius.map(|r| r * factor);
-        let rings = out.elements.iter_mut().flat_map(|element| &mut element.rings);
-        rings.for_each(|ring| ring.minor_radius = ring.minor_radius.map(|r| r * factor));
-        out
-    }
-
-    fn gap(&self) -> Option<f64> {
-        self.found.value.filter(|_| self.what == Extreme::WidestGap).map(|gap| gap * self.model.unit)
-    }
-
     fn title(&self) -> String {
         let lattice = if self.lattice_free { "free" } else { "fixed" };
         let words = if self.what == Extreme::ThickestWire { "thickest wire" } else { "widest gaps" };
@@ -250,10 +205,10 @@ impl Answer<'_> {
             say!("  no start led to a state without overlap; try more --starts, or --lattice free");
             return;
         }
-        if let Some(gap) = self.gap() {
+        if let Some(gap) = self.found.gap(&self.model) {
             say!("  smallest gap    {gap:.9}{unit}");
         }
-        for size in self.sizes() {
+        for size in self.found.sizes(&self.model) {
             let Size { major_radius, minor_radius } = size;
             say!("  minor radius    {minor_radius:.9}{unit} at major radius {major_radius}{unit}");
             say!("  aspect ratio    {:.6} = inner diameter / wire diameter", size.aspect_ratio());
@@ -271,7 +226,7 @@ impl Answer<'_> {
     fn json(&self, wall_s: f64) -> serde_json::Value {
         let found = &self.found;
         let finite = |x: f64| x.is_finite().then_some(x);
-        let sizes = self.sizes().into_iter().map(|size| {
+        let sizes = self.found.sizes(&self.model).into_iter().map(|size| {
             json!({
                 "major_radius": size.major_radius,
                 "minor_radius": finite(size.minor_radius),
@@ -284,7 +239,7 @@ impl Answer<'_> {
             "design": self.input.design.name,
             "status": found.status.name(),
             "lattice": if self.lattice_free { "free" } else { "fixed" },
-            "gap": self.gap(),
+            "gap": self.found.gap(&self.model),
             "sizes": sizes.collect::<Vec<_>>(),
             "a1": vector(found.state.a1),
             "a2": vector(found.state.a2),

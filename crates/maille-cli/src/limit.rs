@@ -5,24 +5,22 @@ use crate::{
     exit::{self, wrong},
     input::Input,
     interrupt,
-    map::CellChoice,
     numbers::{finite, parse_cell, positive},
     output::{self, say},
 };
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use maille::{
-    characterize::Method,
-    constraint::metric::factor,
-    lattice::{Cell, direction},
+    characterize::{CellChoice, Method},
+    lattice::Cell,
     limit::{
         CellTrend,
         exact::ExactOptions,
-        strain::{StrainMethod, StrainOptions, StrainOutcome, StrainQuery},
+        strain::{Strain, StrainMethod, StrainOptions, StrainOutcome, StrainQuery},
     },
     model::Model,
     record::{Status, pose_records},
 };
 use miette::Result;
-use nalgebra::{Matrix2, Vector2};
 use serde_json::json;
 use std::{process::ExitCode, str::FromStr, time::Instant};
 
@@ -47,16 +45,16 @@ pub struct Args {
     /// A built-in design (see `maille designs`), a TOML file, or - for standard input
     design: String,
     /// The strain to make as large as can be
-    #[arg(long, value_name = "STRAIN", value_enum, conflicts_with = "minimize")]
+    #[arg(long, value_name = "STRAIN", value_parser = strain(), conflicts_with = "minimize")]
     maximize: Option<Strain>,
     /// The strain to make as small as can be
-    #[arg(long, value_name = "STRAIN", value_enum)]
+    #[arg(long, value_name = "STRAIN", value_parser = strain())]
     minimize: Option<Strain>,
     /// Strains that are held, as eyy=0.05,exy=0
     #[arg(long, value_name = "STRAIN=VALUE", value_delimiter = ',', allow_hyphen_values = true)]
     fix: Vec<Held>,
     /// Strains that are left to the sheet, as eyy,exy
-    #[arg(long, value_name = "STRAIN", value_enum, value_delimiter = ',')]
+    #[arg(long, value_name = "STRAIN", value_parser = strain(), value_delimiter = ',')]
     free: Vec<Strain>,
     /// Direction of the strains' x axis, degrees counter-clockwise from that of the design
     #[arg(long, default_value_t = 0.0, value_parser = finite, allow_hyphen_values = true)]
@@ -79,44 +77,6 @@ pub struct Args {
     json: bool,
 }
 
-/// A component of E.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-enum Strain {
-    Exx,
-    Eyy,
-    Exy,
-}
-
-impl Strain {
-    const ALL: [Strain; 3] = [Strain::Exx, Strain::Eyy, Strain::Exy];
-
-    fn name(self) -> &'static str {
-        ["exx", "eyy", "exy"][self as usize]
-    }
-
-    /// E where this component is 1 and the others are 0, with x along `direction_deg`.
-    fn unit(self, direction_deg: f64) -> Matrix2<f64> {
-        let (x, y) = axes(direction_deg);
-        match self {
-            Strain::Exx => x * x.transpose(),
-            Strain::Eyy => y * y.transpose(),
-            Strain::Exy => x * y.transpose() + y * x.transpose(),
-        }
-    }
-
-    fn of(self, e: &Matrix2<f64>, direction_deg: f64) -> f64 {
-        let (x, y) = axes(direction_deg);
-        let (a, b) = [(x, x), (y, y), (x, y)][self as usize];
-        a.dot(&(e * b))
-    }
-}
-
-/// The axes of the strains.
-fn axes(direction_deg: f64) -> (Vector2<f64>, Vector2<f64>) {
-    let x = direction(direction_deg);
-    (x, Vector2::new(-x.y, x.x))
-}
-
 /// A strain with the value at which it is held.
 #[derive(Clone, Copy, Debug)]
 struct Held {
@@ -136,6 +96,12 @@ impl FromStr for Held {
     }
 }
 
+/// One of the names of strains.
+fn strain() -> impl clap::builder::TypedValueParser<Value = Strain> {
+    let known = |name: String| Strain::ALL.into_iter().find(|strain| strain.name() == name).ok_or("no strain");
+    PossibleValuesParser::new(Strain::ALL.map(Strain::name)).try_map(known)
+}
+
 fn cell_choice(text: &str) -> Result<CellChoice, String> {
     if text == "auto" { Ok(CellChoice::Auto) } else { parse_cell(text).map(CellChoice::One) }
 }
@@ -145,28 +111,10 @@ fn query(args: &Args) -> Result<(StrainQuery, Strain, f64)> {
     let Some((goal, sign)) = args.maximize.map(|s| (s, 1.0)).or(args.minimize.map(|s| (s, -1.0))) else {
         return Err(wrong(exit::USAGE, "no strain is named", "give --maximize exx, or --minimize exx"));
     };
-    let mut named = vec![goal];
-    let fixed = args.fix.iter().map(|held| held.strain);
-    for strain in fixed.chain(args.free.iter().copied()) {
-        if named.contains(&strain) {
-            let problem = format!("{} is named twice", strain.name());
-            return Err(wrong(
-                exit::USAGE,
-                problem,
-                "a strain is sought, held with --fix, or left to the sheet with --free",
-            ));
-        }
-        named.push(strain);
-    }
-    let held = args.fix.iter().map(|held| held.strain.unit(args.direction) * held.value).sum::<Matrix2<f64>>();
-    if factor(&(Matrix2::identity() + held * 2.0)).is_none() {
-        let help = "a strain of -0.5 is a length of 0; take larger values, or a smaller exy";
-        return Err(wrong(exit::USAGE, "no lattice has the strains of --fix", help));
-    }
-    let free = std::iter::once(goal.unit(args.direction) * sign)
-        .chain(args.free.iter().map(|strain| strain.unit(args.direction)))
-        .collect();
-    Ok((StrainQuery { held, free }, goal, sign))
+    let fix: Vec<(Strain, f64)> = args.fix.iter().map(|held| (held.strain, held.value)).collect();
+    let query = StrainQuery::of(goal, sign, &fix, &args.free, args.direction)
+        .map_err(|e| wrong(exit::USAGE, e.problem, e.help))?;
+    Ok((query, goal, sign))
 }
 
 /// Runs the command.

@@ -4,13 +4,13 @@ use crate::{
     exit::{self, wrong},
     input::Input,
     interrupt,
-    map::{CellChoice, Map, pool, run_all, unanswered},
+    map::{self, pool, run_all, unanswered},
     output::{self, say},
     progress::Progress,
     records,
 };
 use maille::{
-    characterize::Method,
+    characterize::{CellChoice, Method},
     design::{Design, Source},
     energy::target::Protocol,
     lattice::Cell,
@@ -20,7 +20,7 @@ use maille::{
 use maille_io::{
     DesignSource, builtin,
     plot::Quantity,
-    record::NamedRecord,
+    record::{Map, NamedRecord},
     report::{self, SCALED, Sheet, Verdict, figures, page, sheet_png, statements},
 };
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
@@ -106,7 +106,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         return Err(wrong(exit::USAGE, format!("{} is a file; a folder is written", out.display()), help));
     }
     let plan = plan(&chosen, args.quick, &out)?;
-    let open = plan.iter().map(|p| Ok((p.name.as_str(), p.map.open(&p.input)?))).collect::<Result<Vec<_>>>()?;
+    let open = plan.iter().map(|p| Ok((p.name.as_str(), map::open(&p.map, &p.input)?))).collect::<Result<Vec<_>>>()?;
     let (left, total) = open.iter().fold((0, 0), |(l, t), (_, map)| (l + map.left(), t + map.total()));
     if !args.quiet && left < total {
         eprintln!("{} of {total} limits are in {} already", total - left, out.display());
@@ -123,7 +123,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         }
         return Ok(ExitCode::from(exit::INTERRUPTED));
     }
-    let records = records::read(&plan.iter().map(|p| p.map.out.clone()).collect::<Vec<_>>())?;
+    let records = records::read(&plan.iter().filter_map(|p| p.map.out.clone()).collect::<Vec<_>>())?;
     let findings = pool.install(|| write(&out, &chosen, args.quick, &records))?;
     if !args.quiet {
         for finding in &findings {
@@ -171,7 +171,7 @@ fn plan(chosen: &[&'static str], quick: bool, out: &Path) -> Result<Vec<Planned>
                 directions_deg,
                 l2: l2.to_vec(),
                 quantity: Quantity::Lambda1,
-                out: records.join(&name),
+                out: Some(records.join(&name)),
                 overwrite: false,
             };
             plan.push(Planned { name, input, map });

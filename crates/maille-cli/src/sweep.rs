@@ -4,15 +4,19 @@ use crate::{
     exit::{self, wrong},
     input::{Input, file_name},
     interrupt,
-    map::{CellChoice, Map, OpenMap, RunArgs, pool, run_all, unanswered},
+    map::{self, RunArgs, pool, run_all, unanswered},
     output::{self, say},
     progress::Progress,
     records,
 };
-use maille::{characterize::Method, limit::exact::ExactOptions};
+use maille::{
+    characterize::{CellChoice, Method},
+    limit::exact::ExactOptions,
+};
 use maille_io::{
     builtin,
     plot::Quantity,
+    record::{Map, OpenMap},
     study::{Study, StudyDesign},
     table::{Field, Table},
 };
@@ -96,7 +100,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let mut open: Vec<(&str, OpenMap<'_>)> = Vec::new();
     let mut unused = Vec::new();
     for planned in &plan {
-        match planned.map.open(&planned.input) {
+        match map::open(&planned.map, &planned.input) {
             Ok(map) => open.push((&planned.name, map)),
             Err(report) if exit::code(&report) == exit::DESIGN => unused.push((&planned.name, report)),
             Err(report) => return Err(report),
@@ -106,7 +110,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if !args.quiet && left < total {
         eprintln!("{} of {total} limits are in {} already", total - left, out.display());
     }
-    let used: Vec<PathBuf> = open.iter().map(|(_, map)| map.folder().to_owned()).collect();
+    let used: Vec<PathBuf> = open.iter().filter_map(|(_, map)| map.folder().map(Path::to_owned)).collect();
     let cancel = interrupt::flag()?;
     let pool = pool(args.run.threads)?;
     let progress = Progress::new(left as u64, args.quiet);
@@ -186,7 +190,7 @@ fn plan(study: &Study, folder: &Path, out: &Path, overwrite: bool) -> Result<Vec
                     directions_deg: study.directions_deg.clone(),
                     l2: study.l2.clone(),
                     quantity: Quantity::Stretch,
-                    out: out.join("records").join(&name),
+                    out: Some(out.join("records").join(&name)),
                     overwrite,
                 };
                 plan.push(Planned { name, input: input.varied(r, s), map });

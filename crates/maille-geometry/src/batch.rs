@@ -12,7 +12,7 @@ use crate::placed::{Block, WIDTH};
 use crate::quick;
 use crate::relative::Relative;
 use crate::solve::{Rows, Solve};
-use crate::{Circle, MAX_MINIMA, Vec3, circle_distance_minima};
+use crate::{Circle, MAX_MINIMA, PairKind, Vec3, circle_distance_minima};
 use pulp::{Scalar, Simd, WithSimd};
 
 /// A minimum of the distance of two circles, as the batch gives it.
@@ -29,6 +29,7 @@ pub struct Approach {
 pub struct Approaches {
     pub(crate) found: [Approach; MAX_MINIMA],
     pub(crate) count: usize,
+    pub(crate) continuum: bool,
 }
 
 impl Approaches {
@@ -36,6 +37,7 @@ impl Approaches {
     pub const NONE: Self = Self {
         found: [Approach { distance: f64::INFINITY, direction_b: Vec3::new(0.0, 0.0, 0.0) }; MAX_MINIMA],
         count: 0,
+        continuum: false,
     };
 
     /// The minima.
@@ -43,9 +45,31 @@ impl Approaches {
         &self.found[..self.count]
     }
 
+    /// The distance is constant along a whole circle, as in [`Minima`](crate::Minima): one representative is given.
+    pub fn continuum(&self) -> bool {
+        self.continuum
+    }
+
+    /// The special position of the pair that these are the minima of, as [`circle_distance_minima`] reports it.
+    pub fn kind(&self, a: &Circle, b: &Circle) -> PairKind {
+        // Nearly every pair is told at once by planes and centres that are apart.
+        let offset_sq = (b.center - a.center).norm_squared();
+        let scale_sq = offset_sq.max(a.radius * a.radius).max(b.radius * b.radius);
+        let tilt_sq = a.normal.cross(&b.normal).norm_squared();
+        if tilt_sq > 1e-24 && offset_sq > 1e-24 * scale_sq && !self.continuum {
+            return PairKind::Generic;
+        }
+        let pair = if a.radius < b.radius { Relative::new(b, a) } else { Relative::new(a, b) };
+        match pair.kind() {
+            PairKind::Coaxial => PairKind::Coaxial,
+            _ if self.continuum => PairKind::Equidistant,
+            kind => kind,
+        }
+    }
+
     /// By the complete enumeration of one pair.
     pub(crate) fn of_pair(a: &Circle, b: &Circle) -> Self {
-        let mut out = Self::NONE;
+        let (mut out, mut continuum) = (Self::NONE, false);
         let mut add = |distance: f64, direction_b: Vec3| {
             out.found[out.count] = Approach { distance, direction_b };
             out.count += 1;
@@ -60,11 +84,14 @@ impl Approaches {
                 }
             }
             None => {
-                for minimum in circle_distance_minima(a, b).as_slice() {
+                let minima = circle_distance_minima(a, b);
+                continuum = minima.continuum;
+                for minimum in minima.as_slice() {
                     add(minimum.distance, (minimum.point_b - b.center) / b.radius);
                 }
             }
         }
+        out.continuum = continuum;
         let count = out.count;
         out.found[..count].sort_unstable_by(|p, q| p.distance.total_cmp(&q.distance));
         out

@@ -121,6 +121,7 @@ impl Rows {
     #[inline(always)]
     fn put(&self, lane: usize, place: &mut Approaches) {
         place.count = self.counts[lane] as usize;
+        place.continuum = false;
         let swapped = usize::from(self.distance[1][lane] < self.distance[0][lane]);
         place.found[swapped] = self.approach(0, lane);
         place.found[1 - swapped] = self.approach(1, lane);

@@ -78,6 +78,24 @@ fn the_batch_has_the_minima_of_each_pair() {
     }
 }
 
+/// The special position is that of the single kernel, on every set: exact ones, random ones, and those that are nearly special.
+#[test]
+fn the_batch_tells_the_kind_of_each_pair() {
+    let mut seen = Vec::new();
+    for (name, pairs) in pairs() {
+        for set in Instructions::available() {
+            for (k, ((a, b), found)) in pairs.iter().zip(batch(set, &pairs)).enumerate() {
+                let kind = found.kind(a, b);
+                assert_eq!(kind, circle_distance_minima(a, b).kind, "{name} {set:?} {k}: {a:?} {b:?}");
+                if !seen.contains(&kind) {
+                    seen.push(kind);
+                }
+            }
+        }
+    }
+    assert_eq!(seen.len(), 5, "{seen:?}");
+}
+
 #[test]
 fn what_is_out_of_reach_has_no_minima_and_nothing_else_is_lost() {
     let mut left_out = 0;

@@ -4,6 +4,11 @@
 #[derive(Clone, Debug, PartialEq)]
 pub struct Numbers(pub Vec<f64>);
 
+/// Directions of a map where none are named, degrees.
+pub const USUAL_DIRECTIONS: &str = "0:180:5";
+/// Lateral strains that are held where none are named.
+pub const USUAL_L2: &str = "-0.25:0.25:0.125";
+
 /// Most numbers in one list.
 const MOST: usize = 100_000;
 
@@ -31,13 +36,18 @@ pub fn parse(text: &str) -> Result<Numbers, String> {
         [_] => text.split(',').map(number).collect::<Result<Vec<f64>, String>>()?,
         _ => return Err("give a list as 0,15,30 or a range as first:last:step".into()),
     };
-    let mut out: Vec<f64> = Vec::with_capacity(values.len());
+    Ok(distinct(values))
+}
+
+/// Each number once, −0 as 0.
+pub fn distinct(values: impl IntoIterator<Item = f64>) -> Numbers {
+    let mut out: Vec<f64> = Vec::new();
     for value in values {
         if !out.contains(&value) {
-            out.push(value);
+            out.push(value + 0.0);
         }
     }
-    Ok(Numbers(out))
+    Numbers(out)
 }
 
 /// As [`parse`], for l2: a stretch of 0 or less is no sheet.

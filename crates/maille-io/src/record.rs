@@ -16,6 +16,7 @@ mod columns;
 mod error;
 mod folder;
 mod limits;
+mod map;
 mod reference;
 mod run;
 mod simulation;
@@ -26,6 +27,7 @@ pub use error::RecordError;
 pub use folder::{NamedRecord, Record, RecordFolder};
 pub(crate) use limits::csv_cell;
 pub use limits::{read_limits, write_limits};
+pub use map::{Map, MapError, OpenMap};
 pub use reference::{Reference, ReferenceCell};
 pub use run::{Counters, RunRecord, input_hash, read_run, write_run};
 pub use simulation::{

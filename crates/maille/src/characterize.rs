@@ -1,7 +1,7 @@
 //! Characterisation: limits over directions and lateral strains, as rows and states of a record.
 
 use crate::{
-    lattice::{Across, direction},
+    lattice::{Across, Cell, direction},
     limit::{
         FreeRanges, LimitOutcome,
         energy::{EnergyMethod, EnergyOptions},
@@ -46,6 +46,35 @@ impl Method {
         match self {
             Method::Energy(_) => "energy",
             Method::Exact(_) => "exact",
+        }
+    }
+}
+
+/// Which cells are solved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CellChoice {
+    /// The design's own, and larger ones where the exact method asks for them.
+    Auto,
+    /// This one.
+    One(Cell),
+}
+
+/// Cells that `auto` may go on to, in this order.
+const LARGER: [&str; 4] = ["2x1", "1x2", "2x2", "3x3"];
+/// Elements in a cell that `auto` goes on to, at most.
+const MOST_ELEMENTS: usize = 40;
+
+impl CellChoice {
+    /// The cells to compile: for the energy method `auto` is the design's own.
+    pub fn cells(self, method: &Method, elements: usize) -> Vec<Cell> {
+        match (self, method) {
+            (CellChoice::One(cell), _) => vec![cell],
+            (CellChoice::Auto, Method::Energy(_)) => vec![Cell::PRIMITIVE],
+            (CellChoice::Auto, Method::Exact(_)) => {
+                let larger = LARGER.iter().filter_map(|text| text.parse::<Cell>().ok());
+                let larger = larger.filter(|cell| cell.copies() * elements <= MOST_ELEMENTS);
+                std::iter::once(Cell::PRIMITIVE).chain(larger).collect()
+            }
         }
     }
 }

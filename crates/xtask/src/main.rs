@@ -9,6 +9,7 @@ mod paths;
 mod steps;
 mod tokens;
 mod uses;
+mod wheel;
 
 use std::{
     fmt,
@@ -19,7 +20,8 @@ use std::{
 const HELP: &str = "\
 cargo xtask COMMAND
 
-  test     every test there is, documentation examples included
+  test     every test there is, documentation examples and those of the Python package included
+  wheel    build the Python package, install it into a new environment below target, run its examples
   ci       format, clippy, layers, paths, rustdoc, then test
   layers   no `use` points backward in the order of crates and modules
   paths    every path named in the documents exists
@@ -42,6 +44,7 @@ fn main() -> ExitCode {
     };
     let done = match words[..] {
         ["test"] => steps::test(&root),
+        ["wheel"] => steps::wheel(&root),
         ["ci"] => steps::ci(&root),
         ["layers"] => steps::layers(&root),
         ["paths"] => steps::paths(&root),

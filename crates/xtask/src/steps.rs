@@ -1,6 +1,6 @@
 //! The steps of `ci`, each announced and timed.
 
-use crate::{Finding, bench, gallery, layers, paths};
+use crate::{Finding, bench, gallery, layers, paths, wheel::Environment};
 use std::{
     path::Path,
     process::{Command, Stdio},
@@ -23,6 +23,15 @@ pub fn ci(root: &Path) -> Result<(), Failed> {
 
 /// Every test there is. The runner's own summary is the last thing printed, so nothing is timed after it.
 pub fn test(root: &Path) -> Result<(), Failed> {
+    let python = timed("Python package", || failed(Environment::new(root, false).and_then(|python| python.test())));
+    let tests = rust_tests(root);
+    if python.is_err() {
+        eprintln!("\nxtask: the tests of the Python package failed, see above");
+    }
+    python.and(tests)
+}
+
+fn rust_tests(root: &Path) -> Result<(), Failed> {
     if !has_nextest(root) {
         announce("tests");
         return cargo(root, &["test", "--workspace", "--no-fail-fast"], &[]);
@@ -36,6 +45,18 @@ pub fn test(root: &Path) -> Result<(), Failed> {
         eprintln!("\nxtask: documentation examples failed, see above");
     }
     examples.and(tests)
+}
+
+/// The Python package from its wheel, in a new environment.
+pub fn wheel(root: &Path) -> Result<(), Failed> {
+    timed("wheel and examples", || failed(Environment::new(root, true).and_then(|python| python.examples())))
+}
+
+fn failed(done: Result<(), String>) -> Result<(), Failed> {
+    done.map_err(|problem| {
+        eprintln!("xtask: {problem}");
+        Failed
+    })
 }
 
 /// The layer check; prints the order that it holds the code to.

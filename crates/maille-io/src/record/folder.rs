@@ -14,10 +14,10 @@
 
 use super::error::RecordError;
 use super::limits::{read_limits, write_limits};
-use super::run::{Counters, RunRecord, input_hash, read_run, write_run};
+use super::run::{Counters, RunRecord, read_run, write_run};
 use super::states::{read_states, write_states};
 use maille::design::Design;
-use maille::record::{LimitRow, RECORD_SCHEMA, StateRecord, Status};
+use maille::record::{LimitRow, StateRecord, Status};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
@@ -112,14 +112,7 @@ impl RecordFolder {
         program_version: &str,
         overwrite: bool,
     ) -> Result<(Self, Vec<LimitRow>, Vec<StateRecord>), RecordError> {
-        let run = RunRecord {
-            schema: RECORD_SCHEMA,
-            program_version: program_version.to_owned(),
-            input_hash: input_hash(design, parameters),
-            design: design.clone(),
-            parameters: parameters.clone(),
-            counters: Counters::default(),
-        };
+        let run = RunRecord::new(design, parameters, program_version);
         fs::create_dir_all(path).map_err(RecordError::io("create", path))?;
         let mut found = names(path)?;
         found.retain(|name| !is_temporary(name));
@@ -344,6 +337,7 @@ fn remove_temporary(folder: &Path) -> Result<(), RecordError> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::run::input_hash;
     use super::*;
     use serde_json::json;
 

@@ -26,6 +26,20 @@ pub struct RunRecord {
     pub counters: Counters,
 }
 
+impl RunRecord {
+    /// A run with these inputs that has done nothing yet.
+    pub fn new(design: &Design, parameters: &Value, program_version: &str) -> Self {
+        RunRecord {
+            schema: RECORD_SCHEMA,
+            program_version: program_version.to_owned(),
+            input_hash: input_hash(design, parameters),
+            design: design.clone(),
+            parameters: parameters.clone(),
+            counters: Counters::default(),
+        }
+    }
+}
+
 /// Sums over the rows of a record.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -12,6 +12,7 @@
 use super::climb::{Climbed, Solve, climb, shaken_from};
 use crate::{
     constraint::{Contact, Parameter, Pull, SheetProgram},
+    design::Design,
     model::Model,
     record::Status,
     solve::certificate::Certificate,
@@ -53,6 +54,8 @@ impl Default for ExtremeOptions {
 /// What was found.
 #[derive(Clone, Debug)]
 pub struct ExtremeOutcome {
+    /// What was sought.
+    pub what: Extreme,
     /// `local` with a complete certificate, else `uncertified`; `not-converged` where no start led to a feasible state.
     pub status: Status,
     /// Thickest wire: factor of the minor radii. Widest gap: the gap, in reference radii. `None` without a feasible state.
@@ -71,6 +74,59 @@ pub struct ExtremeOutcome {
     pub n_distinct: u64,
     /// Quadratic programs.
     pub iterations: u64,
+}
+
+/// A ring's size in the design's unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Size {
+    /// R.
+    pub major_radius: f64,
+    /// r.
+    pub minor_radius: f64,
+}
+
+impl Size {
+    /// Makers' aspect ratio: inner diameter / wire diameter.
+    pub fn aspect_ratio(&self) -> f64 {
+        (self.major_radius - self.minor_radius) / self.minor_radius
+    }
+}
+
+/// A saved design is thinner by this share: what its rounding could make overlap.
+const SPARED: f64 = 1e-9;
+
+impl ExtremeOutcome {
+    /// Different sizes of rings with the wire that was found; NaN where none was.
+    pub fn sizes(&self, model: &Model) -> Vec<Size> {
+        let factor = if self.what == Extreme::ThickestWire { self.value.unwrap_or(f64::NAN) } else { 1.0 };
+        let mut out: Vec<Size> = Vec::new();
+        for ring in &model.rings {
+            let [major_radius, minor_radius] = [ring.major_radius, ring.minor_radius * factor].map(|x| x * model.unit);
+            if !out.iter().any(|s| (s.major_radius, s.minor_radius) == (major_radius, minor_radius)) {
+                out.push(Size { major_radius, minor_radius });
+            }
+        }
+        out
+    }
+
+    /// The widest gap, in the design's unit; `None` where the wire was sought.
+    pub fn gap(&self, model: &Model) -> Option<f64> {
+        self.value.filter(|_| self.what == Extreme::WidestGap).map(|gap| gap * model.unit)
+    }
+
+    /// The state as a design.
+    pub fn design(&self, design: &Design, model: &Model) -> Design {
+        let mut out = self.state.design(design, model);
+        let (words, factor) = match self.what {
+            Extreme::ThickestWire => ("tightest", self.value.unwrap_or(1.0) * (1.0 - SPARED)),
+            Extreme::WidestGap => ("roomiest", 1.0),
+        };
+        out.name = format!("{} {words}", out.name);
+        out.minor_radius = out.minor_radius.map(|r| r * factor);
+        let rings = out.elements.iter_mut().flat_map(|element| &mut element.rings);
+        rings.for_each(|ring| ring.minor_radius = ring.minor_radius.map(|r| r * factor));
+        out
+    }
 }
 
 /// What one start led to.
@@ -143,6 +199,7 @@ pub fn extreme(model: &Model, what: Extreme, options: &ExtremeOptions, cancel: &
         }
     }
     let nothing = ExtremeOutcome {
+        what,
         status: if cancel.load(Ordering::Relaxed) { Status::Interrupted } else { Status::NotConverged },
         value: None,
         state: model.start.clone(),

@@ -12,7 +12,9 @@ use super::{
 };
 use crate::{
     bound::{ChainBound, MetricBound, metric_bound},
-    constraint::{Contact, Parameter, Pull, SheetProgram},
+    constraint::{Contact, Parameter, Pull, SheetProgram, metric::factor},
+    error::InvalidInput,
+    lattice::direction,
     model::Model,
     record::Status,
     solve::{
@@ -21,7 +23,7 @@ use crate::{
     },
     state::State,
 };
-use nalgebra::Matrix2;
+use nalgebra::{Matrix2, Vector2};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -33,6 +35,79 @@ pub struct StrainQuery {
     pub held: Matrix2<f64>,
     /// Rates of E with the parameters, orthogonal to each other; the first parameter is maximised.
     pub free: Vec<Matrix2<f64>>,
+}
+
+/// A component of E.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Strain {
+    /// Along x.
+    Exx,
+    /// Along y.
+    Eyy,
+    /// The tensor shear.
+    Exy,
+}
+
+impl Strain {
+    /// All of them.
+    pub const ALL: [Strain; 3] = [Strain::Exx, Strain::Eyy, Strain::Exy];
+
+    /// `exx`, `eyy` or `exy`.
+    pub fn name(self) -> &'static str {
+        ["exx", "eyy", "exy"][self as usize]
+    }
+
+    /// E where this component is 1 and the others are 0, with x along `direction_deg`.
+    pub fn unit(self, direction_deg: f64) -> Matrix2<f64> {
+        let (x, y) = axes(direction_deg);
+        match self {
+            Strain::Exx => x * x.transpose(),
+            Strain::Eyy => y * y.transpose(),
+            Strain::Exy => x * y.transpose() + y * x.transpose(),
+        }
+    }
+
+    /// This component of E, with x along `direction_deg`.
+    pub fn of(self, e: &Matrix2<f64>, direction_deg: f64) -> f64 {
+        let (x, y) = axes(direction_deg);
+        let (a, b) = [(x, x), (y, y), (x, y)][self as usize];
+        a.dot(&(e * b))
+    }
+}
+
+/// The axes of the strains.
+fn axes(direction_deg: f64) -> (Vector2<f64>, Vector2<f64>) {
+    let x = direction(direction_deg);
+    (x, Vector2::new(-x.y, x.x))
+}
+
+impl StrainQuery {
+    /// The largest (`sign` 1) or least (−1) value of `goal`, with the strains of `fix` held, those of `free` left to the sheet,
+    /// and the others held at 0, x along `direction_deg`. Refused where a strain is named twice or no lattice has what is held.
+    pub fn of(
+        goal: Strain,
+        sign: f64,
+        fix: &[(Strain, f64)],
+        free: &[Strain],
+        direction_deg: f64,
+    ) -> Result<Self, InvalidInput> {
+        let mut named = vec![goal];
+        for strain in fix.iter().map(|(strain, _)| *strain).chain(free.iter().copied()) {
+            if named.contains(&strain) {
+                let problem = format!("{} is named twice", strain.name());
+                let help = "a strain is sought, held, or left to the sheet: name it once";
+                return Err(InvalidInput::new("fix", problem, help));
+            }
+            named.push(strain);
+        }
+        let held = fix.iter().map(|(strain, value)| strain.unit(direction_deg) * *value).sum::<Matrix2<f64>>();
+        if factor(&(Matrix2::identity() + held * 2.0)).is_none() {
+            let help = "a strain of -0.5 is a length of 0; take larger values, or a smaller exy";
+            return Err(InvalidInput::new("fix", "no lattice has the strains that are held", help));
+        }
+        let rest = free.iter().map(|strain| strain.unit(direction_deg));
+        Ok(StrainQuery { held, free: std::iter::once(goal.unit(direction_deg) * sign).chain(rest).collect() })
+    }
 }
 
 /// How the search goes.

@@ -1,0 +1,214 @@
+//! Maps, from a design to its record: what is there is read, what is left is asked for, each limit is kept as it comes.
+
+use super::error::RecordError;
+use super::folder::{Record, RecordFolder};
+use super::run::{Counters, RunRecord};
+use crate::plot::{Layout, PlotError, PolarPlot, Quantity, parameter_words, polar_svg, svg_to_png};
+use maille::characterize::{CellChoice, Finished, Method, Task, characterize, tasks};
+use maille::design::Design;
+use maille::lattice::Cell;
+use maille::model::Model;
+use maille::record::{LimitRow, StateRecord};
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+use thiserror::Error;
+
+/// A map that could not be kept.
+#[derive(Debug, Error)]
+pub enum MapError {
+    /// The record could not be written; the run has stopped.
+    #[error("the record could not be written; the run has stopped")]
+    Record(#[from] RecordError),
+    /// Its plot could not be drawn.
+    #[error("cannot draw the plot")]
+    Plot(#[from] PlotError),
+}
+
+/// A map of one design, and where its record is.
+#[derive(Clone, Debug)]
+pub struct Map {
+    /// How limits are found.
+    pub method: Method,
+    /// Cells that are solved.
+    pub cell: CellChoice,
+    /// Directions of the pull.
+    pub directions_deg: Vec<f64>,
+    /// Stretch − 1 held across it.
+    pub l2: Vec<f64>,
+    /// What the record's plot shows.
+    pub quantity: Quantity,
+    /// Folder of the record; without one it stays in memory.
+    pub out: Option<PathBuf>,
+    /// Replace a record of other inputs.
+    pub overwrite: bool,
+}
+
+impl Map {
+    /// The cells to compile a design for, in the order of the models of [`Self::open`].
+    pub fn cells(&self, design: &Design) -> Vec<Cell> {
+        self.cell.cells(&self.method, design.elements.len())
+    }
+
+    /// Opens the record, with what an earlier run has left there. `models` are the design compiled for
+    /// [`Self::cells`].
+    pub fn open<'a>(&'a self, design: &'a Design, models: Vec<Model>) -> Result<OpenMap<'a>, RecordError> {
+        let parameters = json!({
+            "method": self.method.name(),
+            "cells": models.iter().map(|model| model.cell.to_string()).collect::<Vec<_>>(),
+            "directions_deg": self.directions_deg,
+            "l2": self.l2,
+            "options": match &self.method {
+                Method::Exact(options) => json!(options.parameters()),
+                Method::Energy(options) => json!(options.parameters(&models[0])),
+            },
+        });
+        let all = tasks(&self.directions_deg, &self.l2);
+        let mut rows: Vec<Option<(LimitRow, StateRecord)>> = vec![None; all.len()];
+        let mut folder = None;
+        if let Some(path) = &self.out {
+            let version = env!("CARGO_PKG_VERSION");
+            let (opened, old_rows, old_states) =
+                RecordFolder::open(path, design, &parameters, version, self.overwrite)?;
+            folder = Some(opened);
+            for (row, state) in old_rows.into_iter().zip(old_states) {
+                if let Some(k) = place(&all, &row) {
+                    rows[k] = Some((row, state));
+                }
+            }
+        }
+        let open = all.iter().zip(&rows).filter(|(_, row)| row.is_none()).map(|(task, _)| *task).collect();
+        Ok(OpenMap { map: self, design, models, parameters, folder, all, rows, open })
+    }
+}
+
+/// A map whose record is open.
+pub struct OpenMap<'a> {
+    map: &'a Map,
+    design: &'a Design,
+    models: Vec<Model>,
+    parameters: Value,
+    folder: Option<RecordFolder>,
+    all: Vec<Task>,
+    rows: Vec<Option<(LimitRow, StateRecord)>>,
+    open: Vec<Task>,
+}
+
+impl OpenMap<'_> {
+    /// Limits of the map.
+    pub fn total(&self) -> usize {
+        self.all.len()
+    }
+
+    /// Limits that are not in the record yet.
+    pub fn left(&self) -> usize {
+        self.open.len()
+    }
+
+    /// Whether no chain of links joins the cells of the design.
+    pub fn is_unbounded(&self) -> bool {
+        maille::topology::binding_vectors(&self.models[0]).is_empty()
+    }
+
+    /// The folder of the record.
+    pub fn folder(&self) -> Option<&Path> {
+        self.map.out.as_deref()
+    }
+
+    /// Asks for the limits that are left, on the current thread pool, writes the record, and gives it. `found` hears of
+    /// each limit; after `cancel` what is finished is written.
+    pub fn run(self, cancel: &AtomicBool, found: &(dyn Fn(&LimitRow) + Sync)) -> Result<Record, MapError> {
+        let OpenMap { map, design, models, parameters, folder, all, rows, open } = self;
+        let collected = Mutex::new(Collected { folder, rows, written: Instant::now(), failure: None });
+        let receive = |finished: Finished| {
+            found(&finished.row);
+            let mut collected = collected.lock().unwrap_or_else(|e| e.into_inner());
+            let Some(k) = place(&all, &finished.row) else { return };
+            if let Err(error) = collected.keep(k, finished) {
+                collected.failure = Some(error);
+                cancel.store(true, Ordering::Relaxed);
+            }
+        };
+        let wanted = |task: Task| open.contains(&task);
+        let (directions, l2) = (&map.directions_deg, &map.l2);
+        characterize(&models, design.minor_radius, &map.method, directions, l2, &wanted, cancel, &receive);
+        let mut collected = collected.into_inner().unwrap_or_else(|e| e.into_inner());
+        if let Some(error) = collected.failure {
+            return Err(error.into());
+        }
+        collected.write()?;
+        let (rows, states) = collected.finished();
+        let run = match &collected.folder {
+            Some(folder) => folder.run().clone(),
+            None => {
+                let counters = Counters::of(&rows);
+                RunRecord { counters, ..RunRecord::new(design, &parameters, env!("CARGO_PKG_VERSION")) }
+            }
+        };
+        let record = Record { run, rows, states };
+        if let Some(folder) = &collected.folder {
+            record.write_polar(folder, map.quantity)?;
+        }
+        Ok(record)
+    }
+}
+
+impl Record {
+    /// Writes the record to a folder of its own, with its plot: as a run that had found it there.
+    pub fn save(&self, folder: &Path, quantity: Quantity, overwrite: bool) -> Result<(), MapError> {
+        let RunRecord { design, parameters, program_version, .. } = &self.run;
+        let (mut folder, ..) = RecordFolder::open(folder, design, parameters, program_version, overwrite)?;
+        folder.write(&self.rows, &self.states)?;
+        self.write_polar(&folder, quantity)
+    }
+
+    fn write_polar(&self, folder: &RecordFolder, quantity: Quantity) -> Result<(), MapError> {
+        let words = parameter_words(&self.run.parameters);
+        let svg = polar_svg(&PolarPlot::from_rows(&self.run.design, &self.rows, quantity, &words), Layout::Beside);
+        let png = svg_to_png(&svg, 2.0)?;
+        Ok(folder.write_polar(&svg, &png)?)
+    }
+}
+
+/// Where a row belongs among the tasks.
+fn place(all: &[Task], row: &LimitRow) -> Option<usize> {
+    all.iter().position(|t| (t.direction_deg, t.l2) == (row.direction_deg, row.l2))
+}
+
+/// The rows found so far, in the order of the tasks, and when they were last written.
+struct Collected {
+    folder: Option<RecordFolder>,
+    rows: Vec<Option<(LimitRow, StateRecord)>>,
+    written: Instant,
+    failure: Option<RecordError>,
+}
+
+/// A record's files are written at most this often while limits come in; between, limits go to its journal.
+const WRITE_INTERVAL: Duration = Duration::from_secs(1);
+
+impl Collected {
+    fn finished(&self) -> (Vec<LimitRow>, Vec<StateRecord>) {
+        self.rows.iter().flatten().cloned().unzip()
+    }
+
+    /// Takes a limit: with a folder, it is on the disk when this returns.
+    fn keep(&mut self, place: usize, Finished { row, state }: Finished) -> Result<(), RecordError> {
+        let due = self.written.elapsed() >= WRITE_INTERVAL;
+        if let Some(folder) = self.folder.as_mut().filter(|_| !due) {
+            folder.append(&row, &state)?;
+        }
+        self.rows[place] = Some((row, state));
+        if due { self.write() } else { Ok(()) }
+    }
+
+    fn write(&mut self) -> Result<(), RecordError> {
+        let (rows, states) = self.finished();
+        if let Some(folder) = &mut self.folder {
+            folder.write(&rows, &states)?;
+        }
+        self.written = Instant::now();
+        Ok(())
+    }
+}

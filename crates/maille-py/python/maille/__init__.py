@@ -1,0 +1,53 @@
+"""How far a chainmail-like weave deforms before it locks.
+
+>>> import maille
+>>> record = maille.characterize("1.1", directions=[0, 90], l2=[0])
+>>> record.to_numpy()["l1"].round(9).tolist()
+[0.44, 0.44]
+
+`maille.characterize("1.1").plot()` draws the limits of all directions. The guide is docs/guide/python.md of the repository.
+"""
+
+from __future__ import annotations
+
+from . import errors, geometry
+from ._native import __VERSION__ as __version__
+from .boundary import Boundary, boundary
+from .design import Design, Element, Ring, designs
+from .errors import (
+    ArgumentError,
+    DesignError,
+    MailleError,
+    RecordError,
+    ShapeError,
+    UnknownDesignError,
+)
+from .question import Extreme, StrainLimit, limit, roomiest, tightest
+from .record import Record, State, characterize, read_record
+
+__all__ = [
+    "ArgumentError",
+    "Boundary",
+    "Design",
+    "DesignError",
+    "Element",
+    "Extreme",
+    "MailleError",
+    "Record",
+    "RecordError",
+    "Ring",
+    "ShapeError",
+    "State",
+    "StrainLimit",
+    "UnknownDesignError",
+    "__version__",
+    "boundary",
+    "characterize",
+    "designs",
+    "errors",
+    "geometry",
+    "limit",
+    "read_record",
+    "roomiest",
+    "tightest",
+]

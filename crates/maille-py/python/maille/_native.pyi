@@ -1,0 +1,126 @@
+"""The native part. What users need is in the Python modules beside it."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+__VERSION__: str
+
+_Floats = NDArray[np.float64]
+_Progress = Callable[[int, int], object]
+
+class Design:
+    @staticmethod
+    def from_toml(text: str, name: str) -> Design: ...
+    @staticmethod
+    def builtin(name: str) -> Design | None: ...
+    @staticmethod
+    def from_json(text: str) -> Design: ...
+    def to_toml(self) -> str: ...
+    def to_json(self) -> str: ...
+    def with_minor_radius(self, minor_radius: float) -> Design: ...
+    def spaced(self, factor: float) -> Design: ...
+    def scaled(self, factor: float) -> Design: ...
+    def check(self) -> None: ...
+
+class Record:
+    def columns(self) -> list[dict[str, Any]]: ...
+    def parquet(self) -> bytes: ...
+    def states(self) -> list[str]: ...
+    def run(self) -> str: ...
+    def design(self) -> Design: ...
+    def save(self, folder: str, quantity_name: str, overwrite: bool) -> None: ...
+    def __len__(self) -> int: ...
+
+def builtin_names() -> list[str]: ...
+def nearest_builtin_name(name: str) -> str | None: ...
+def usual() -> tuple[str, str]: ...
+def numbers(name: str, text: str | None = None, values: list[float] | None = None) -> list[float]: ...
+def read_record(folder: str) -> Record: ...
+def characterize(
+    design: Design,
+    directions: list[float],
+    l2: list[float],
+    *,
+    lateral_free: bool,
+    shear_free: bool,
+    method: str,
+    cell: str,
+    starts: int,
+    seed: int,
+    energy: str,
+    quantity_name: str,
+    out: str | None,
+    overwrite: bool,
+    progress: _Progress | None,
+    threads: int | None,
+) -> Record: ...
+def limit(
+    design: Design,
+    goal: str,
+    sign: float,
+    *,
+    fix: list[tuple[str, float]],
+    free: list[str],
+    cell: str,
+    starts: int,
+    seed: int,
+) -> str: ...
+def extreme(
+    design: Design,
+    *,
+    thickest: bool,
+    lattice_free: bool,
+    starts: int,
+    seed: int,
+    threads: int | None,
+) -> tuple[str, Design | None]: ...
+def boundary(
+    design: Design,
+    *,
+    tolerance: float,
+    vertices: int,
+    starts: int,
+    cell: str,
+    seed: int,
+    progress: _Progress | None,
+    threads: int | None,
+) -> tuple[list[str], list[tuple[int, int, int]], float]: ...
+def circle_distance_minima(
+    center_a: _Floats,
+    normal_a: _Floats,
+    radius_a: _Floats,
+    center_b: _Floats,
+    normal_b: _Floats,
+    radius_b: _Floats,
+    count: NDArray[np.int64],
+    distance: _Floats,
+    point_a: _Floats,
+    point_b: _Floats,
+    kind: NDArray[np.uint8],
+    /,
+) -> None: ...
+def linking_number(
+    center_a: _Floats,
+    normal_a: _Floats,
+    radius_a: _Floats,
+    center_b: _Floats,
+    normal_b: _Floats,
+    radius_b: _Floats,
+    linking: NDArray[np.int64],
+    /,
+) -> None: ...
+def torus_gap(
+    center_a: _Floats,
+    normal_a: _Floats,
+    radius_a: _Floats,
+    minor_radius_a: _Floats,
+    center_b: _Floats,
+    normal_b: _Floats,
+    radius_b: _Floats,
+    minor_radius_b: _Floats,
+    gap: _Floats,
+    /,
+) -> None: ...

@@ -1,0 +1,296 @@
+"""Maps of limits, and their records."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _native
+from .design import Design, DesignLike
+from .errors import ArgumentError
+
+if TYPE_CHECKING:
+    import pandas  # type: ignore[import-untyped, unused-ignore]
+    import polars
+    import pyarrow  # type: ignore[import-untyped, unused-ignore]
+    from matplotlib.projections.polar import PolarAxes
+
+__all__ = ["Progress", "Record", "State", "characterize", "read_record"]
+
+#: Called with what is done and what there is to do; or True for a bar of tqdm.
+Progress = Union[None, bool, Callable[[int, int], object]]
+Quantity = Literal["stretch", "l1", "lambda1"]
+Held = Literal["fixed", "free"]
+
+
+@dataclass(frozen=True)
+class State:
+    """Poses of the solved cell at a limit. Lengths in the design's unit."""
+
+    #: Direction of the pull, degrees counter-clockwise from x.
+    direction_deg: float
+    #: Stretch - 1 held across it.
+    l2: float
+    #: Outcome of the search, as in the column `status`.
+    status: str
+    #: (2, 3): the lattice vectors.
+    lattice: NDArray[np.float64]
+    #: (2, 2): in-plane deformation gradient F.
+    deformation_gradient: NDArray[np.float64]
+    #: Names of the M elements, as `flat` or `flat@1,0`.
+    elements: tuple[str, ...]
+    #: (M, 3): positions of their reference points.
+    position: NDArray[np.float64]
+    #: (M, 4): unit quaternions (w, x, y, z) that turn them from the design's pose.
+    rotation: NDArray[np.float64]
+    #: The line of `states.jsonl`: contacts with forces, the chain of the bound, residual, note.
+    document: dict[str, Any]
+
+    @classmethod
+    def _of(cls, document: dict[str, Any]) -> State:
+        poses = document["poses"]
+        return cls(
+            direction_deg=document["direction_deg"],
+            l2=document["l2"],
+            status=document["status"],
+            lattice=np.array([document["a1"], document["a2"]], dtype=np.float64),
+            deformation_gradient=np.array(document["deformation_gradient"], dtype=np.float64),
+            elements=tuple(pose["element"] for pose in poses),
+            position=np.array([pose["position"] for pose in poses], dtype=np.float64).reshape(-1, 3),
+            rotation=np.array([pose["rotation"] for pose in poses], dtype=np.float64).reshape(-1, 4),
+            document=document,
+        )
+
+
+class Record:
+    """Limits of a map: one row a direction and l2, and the state at each. What `maille characterize` leaves in a folder.
+
+    `docs/record.md` says what the columns are.
+    """
+
+    _inner: _native.Record
+
+    def __init__(self, native: _native.Record) -> None:
+        self._inner = native
+
+    def __len__(self) -> int:
+        return len(self._inner)
+
+    def __repr__(self) -> str:
+        return f"<maille.Record of {self.design.name!r}, {len(self)} limits>"
+
+    @property
+    def design(self) -> Design:
+        """The design that was computed."""
+        return Design._of(self._inner.design())
+
+    @property
+    def run(self) -> dict[str, Any]:
+        """`run.json`: design, parameters, hash of both, counters."""
+        out: dict[str, Any] = json.loads(self._inner.run())
+        return out
+
+    @property
+    def states(self) -> list[State]:
+        """The states, in the order of the rows."""
+        return [State._of(json.loads(state)) for state in self._inner.states()]
+
+    def to_numpy(self) -> dict[str, NDArray[Any]]:
+        """The columns, each an array of one value a row.
+
+        Numbers are float64, NaN where nothing was earned; counts and flags are masked arrays of int64 and bool; text is
+        an array of strings, empty where there is none.
+        """
+        out: dict[str, NDArray[Any]] = {}
+        for column in self._inner.columns():
+            values = column["values"]
+            missing = [value is None for value in values]
+            if column["type"] == "number":
+                out[column["name"]] = np.array([np.nan if v is None else v for v in values], dtype=np.float64)
+            elif column["type"] == "text":
+                out[column["name"]] = np.array(["" if v is None else v for v in values], dtype=np.str_)
+            else:
+                kind = np.int64 if column["type"] == "count" else np.bool_
+                out[column["name"]] = np.ma.MaskedArray([0 if v is None else v for v in values], missing, dtype=kind)
+        return out
+
+    def to_arrow(self) -> pyarrow.Table:
+        """A `pyarrow.Table`: what `maille table -o FILE.parquet` holds, with units, meanings and the run's inputs as metadata."""
+        from pyarrow import parquet  # type: ignore[import-untyped, unused-ignore]
+
+        return parquet.read_table(io.BytesIO(self._inner.parquet()))
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """A `pandas.DataFrame`."""
+        return self.to_arrow().to_pandas()
+
+    def to_polars(self) -> polars.DataFrame:
+        """A `polars.DataFrame`."""
+        import polars
+
+        frame = polars.from_arrow(self.to_arrow())
+        assert isinstance(frame, polars.DataFrame)
+        return frame
+
+    def plot(self, quantity: Quantity = "stretch", *, ax: PolarAxes | None = None, **line: Any) -> PolarAxes:
+        """Draws the limits against the direction of pull, a curve for each l2, and gives the axes.
+
+        `quantity`: stretch (1 + l1), l1, or lambda1 (the larger eigenvalue of C, less 1). Directions without a limit are gaps.
+        A map to 180 degrees is drawn all round: a pull is the same in the opposite direction.
+        """
+        if ax is None:
+            from matplotlib import pyplot
+            from matplotlib.projections import polar
+
+            made = pyplot.figure().add_subplot(projection="polar")
+            assert isinstance(made, polar.PolarAxes)
+            ax = made
+        table = self.to_numpy()
+        label = {"stretch": "1 + l1", "l1": "l1", "lambda1": "lambda1 - 1"}.get(quantity)
+        if label is None:
+            raise ArgumentError("quantity", f"{quantity!r} is none", "give stretch, l1 or lambda1")
+        values = table["lambda1"] - 1 if quantity == "lambda1" else table["l1"] + (quantity == "stretch")
+        for l2 in dict.fromkeys(table["l2"].tolist()):
+            chosen = table["l2"] == l2
+            direction, value = table["direction_deg"][chosen], values[chosen]
+            order = np.argsort(direction, kind="stable")
+            direction, value = direction[order], value[order]
+            if direction.size > 1 and direction[0] == 0 and direction[-1] == 180:
+                direction = np.concatenate([direction, direction[1:] + 180])
+                value = np.concatenate([value, value[1:]])
+            free = bool(np.all(table["lateral"][chosen] == "free"))
+            ax.plot(np.deg2rad(direction), value, **{"label": "width free" if free else f"l2 = {l2:g}", **line})
+        ax.set_title(f"{self.design.name}: {label}")
+        ax.legend(loc="upper left", bbox_to_anchor=(1.05, 1.0))
+        return ax
+
+    def save(self, folder: str | os.PathLike[str], *, quantity: Quantity = "stretch", overwrite: bool = False) -> None:
+        """Writes the folder that `maille characterize` writes, with its plot of `quantity`."""
+        self._inner.save(os.fspath(folder), quantity, overwrite)
+
+
+def read_record(folder: str | os.PathLike[str]) -> Record:
+    """Reads a record that `maille characterize`, `maille sweep` or `Record.save` has written."""
+    return Record(_native.read_record(os.fspath(folder)))
+
+
+def characterize(
+    design: DesignLike,
+    directions: str | ArrayLike | None = None,
+    l2: str | ArrayLike | None = None,
+    *,
+    lateral: Held = "fixed",
+    shear: Held = "fixed",
+    method: Literal["exact", "energy"] = "exact",
+    cell: str = "auto",
+    minor_radius: float | None = None,
+    starts: int = 4,
+    seed: int = 1,
+    energy: dict[str, Any] | None = None,
+    quantity: Quantity = "stretch",
+    out: str | os.PathLike[str] | None = None,
+    overwrite: bool = False,
+    progress: Progress = None,
+    threads: int | None = None,
+) -> Record:
+    """How far a sheet stretches in each direction before it locks: what `maille characterize` does, with its defaults.
+
+    `directions` (degrees counter-clockwise from x) and `l2` (stretch - 1 held across) are numbers or ranges as
+    `"0:180:5"`. `lateral="free"` and `shear="free"` leave width and shear to the sheet. `energy` has options of the energy
+    method, as `{"tau": 0.01}`. With `out` the record is kept in that folder while limits come in, and the same call goes on
+    where an earlier one stopped; without, it stays in memory. `progress` is True for a bar of tqdm, or is called with
+    (done, total). Results do not depend on `threads`. Ctrl-C stops it; what was found is in `out`.
+
+    >>> record = characterize("1.1", directions=[0], l2=[0])
+    >>> record.to_numpy()["l1"].round(9).tolist(), record.to_numpy()["status"].tolist()
+    ([0.44], ['global'])
+    """
+    chosen = Design.of(design)
+    if minor_radius is not None:
+        chosen = chosen.with_minor_radius(minor_radius)
+    lateral_free, shear_free = _free("lateral", lateral), _free("shear", shear)
+    usual_directions, usual_l2 = _native.usual()
+    if lateral_free:
+        if l2 is not None:
+            raise ArgumentError("l2", 'holds the width that lateral="free" leaves to the sheet', "leave one of them out")
+        l2 = [0.0]
+    if energy is not None and method != "energy":
+        raise ArgumentError("energy", "is for the energy method", 'leave it out, or give method="energy"')
+    with _Bar(progress) as told:
+        native = _native.characterize(
+            chosen._inner,
+            _numbers("directions", usual_directions if directions is None else directions),
+            _numbers("l2", usual_l2 if l2 is None else l2),
+            lateral_free=lateral_free,
+            shear_free=shear_free,
+            method=method,
+            cell=cell,
+            starts=_whole("starts", starts, 1),
+            seed=_whole("seed", seed, 0),
+            energy=json.dumps(energy or {}),
+            quantity_name=quantity,
+            out=None if out is None else os.fspath(out),
+            overwrite=overwrite,
+            progress=told,
+            threads=None if threads is None else _whole("threads", threads, 1),
+        )
+    return Record(native)
+
+
+def _whole(name: str, value: int, least: int) -> int:
+    if not isinstance(value, (int, np.integer)) or isinstance(value, bool) or value < least:
+        raise ArgumentError(name, f"{value!r} is no whole number from {least} on", f"give {max(least, 1)} or more")
+    return int(value)
+
+
+def _free(name: str, held: str) -> bool:
+    if held not in ("fixed", "free"):
+        raise ArgumentError(name, f"{held!r} is neither fixed nor free", 'give "fixed" or "free"')
+    return held == "free"
+
+
+def _numbers(name: str, values: str | ArrayLike) -> list[float]:
+    if isinstance(values, str):
+        return _native.numbers(name, text=values)
+    try:
+        array = np.atleast_1d(np.asarray(values, dtype=np.float64))
+    except (TypeError, ValueError):
+        array = np.empty((0, 0))
+    if array.ndim != 1:
+        raise ArgumentError(name, f"{values!r} is no list of numbers", 'give numbers, or a range as "0:180:15"')
+    return _native.numbers(name, values=array.tolist())
+
+
+class _Bar:
+    """A callback from what the user gave as progress."""
+
+    def __init__(self, progress: Progress) -> None:
+        self._progress = progress
+        self._bar: Any = None
+
+    def __enter__(self) -> Callable[[int, int], object] | None:
+        if self._progress is True:
+            from tqdm.auto import tqdm  # type: ignore[import-untyped, unused-ignore]
+
+            self._bar = tqdm(unit="limit")
+            return self._tell
+        return self._progress if callable(self._progress) else None
+
+    def _tell(self, done: int, total: int) -> None:
+        self._bar.total = total
+        self._bar.update(done - self._bar.n)
+
+    def __exit__(self, *_: object) -> None:
+        if self._bar is not None:
+            self._bar.close()
+
+
+def _sequence(values: Sequence[str] | str) -> list[str]:
+    return [values] if isinstance(values, str) else list(values)

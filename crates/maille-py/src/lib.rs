@@ -1,0 +1,32 @@
+//! The native part of the Python package `maille`: a door like the program, with no mechanics of its own.
+//!
+//! What is here turns Python's arguments into those of the crates, lets other Python threads run meanwhile, listens for
+//! Ctrl-C, and turns errors into the classes of `maille.errors`. What needs no native code is Python, in `python/maille`.
+
+mod design;
+mod error;
+mod geometry;
+mod map;
+mod question;
+mod surface;
+mod wait;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+mod _native {
+    #[pymodule_export]
+    use crate::design::{Design, builtin_names, nearest_builtin_name};
+    #[pymodule_export]
+    use crate::geometry::{circle_distance_minima, linking_number, torus_gap};
+    #[pymodule_export]
+    use crate::map::{Record, characterize, numbers, read_record, usual};
+    #[pymodule_export]
+    use crate::question::{extreme, limit};
+    #[pymodule_export]
+    use crate::surface::boundary;
+
+    /// Version of the package, that of the program.
+    #[pymodule_export]
+    const __VERSION__: &str = env!("CARGO_PKG_VERSION");
+}

@@ -1,0 +1,177 @@
+"""Maps from Python are the program's, bit for bit, and each reads the other's records."""
+
+import csv
+import json
+import os
+import pickle
+import signal
+import subprocess
+import threading
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import maille
+
+MAP = dict(directions="0:90:15", l2=[-0.25, 0.0, 0.125])
+ARGUMENTS = ["--directions", "0:90:15", "--l2=-0.25,0,0.125"]
+
+
+@pytest.fixture(scope="module")
+def by_program(program, tmp_path_factory) -> Path:
+    out = tmp_path_factory.mktemp("program") / "3.1"
+    # Exit code 5: some limits are not there at this l2.
+    done = subprocess.run([program, "characterize", "3.1", *ARGUMENTS, "--quiet", "--out", out], check=False)
+    assert done.returncode in (0, 5)
+    return out
+
+
+def table(folder: Path) -> list[dict[str, str]]:
+    with open(folder / "limits.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    for row in rows:
+        del row["wall_s"]  # the time that a row took
+    return rows
+
+
+def test_limits_and_states_are_those_of_the_program_bit_for_bit(by_program, tmp_path):
+    out = tmp_path / "python"
+    record = maille.characterize("3.1", **MAP, out=out)
+    saved = tmp_path / "saved"
+    maille.characterize("3.1", **MAP, threads=1).save(saved)
+    for folder in (out, saved):
+        assert table(folder) == table(by_program)
+        for name in ("states.jsonl", "run.json", "polar.svg", "polar.png"):
+            assert (folder / name).read_bytes() == (by_program / name).read_bytes(), name
+    assert len(record) == len(table(out)) == 21
+
+
+def test_the_package_reads_records_of_the_program(by_program):
+    record = maille.read_record(by_program)
+    rows = table(by_program)
+    columns = record.to_numpy()
+    assert [repr(x) if np.isfinite(x) else "" for x in columns["l1"].tolist()] == [row["l1"] for row in rows]
+    assert columns["status"].tolist() == [row["status"] for row in rows]
+    lines = [json.loads(line) for line in (by_program / "states.jsonl").read_text().splitlines()]
+    assert [state.document for state in record.states] == lines
+    state = record.states[0]
+    assert state.position.shape == (len(state.elements), 3) and state.rotation.shape == (len(state.elements), 4)
+    assert np.allclose(np.linalg.norm(state.rotation, axis=1), 1)
+    assert np.allclose(state.lattice @ np.array([0, 0, 1]), 0)
+
+
+def test_the_program_reads_records_of_the_package(program, tmp_path):
+    out = tmp_path / "record"
+    record = maille.characterize("1.1", [0, 45], [0.0], out=out)
+    done = subprocess.run([program, "table", out, "--format", "json"], check=True, capture_output=True, text=True)
+    rows = json.loads(done.stdout)["rows"]
+    assert len(rows) == 2 and "0.44" in done.stdout
+    # It goes on from there, too: nothing is left to do, and nothing is refused.
+    again = [program, "characterize", "1.1", "--directions", "0,45", "--l2", "0", "--out", out]
+    done = subprocess.run(again, check=True, capture_output=True, text=True)
+    assert "2 of 2 limits are in" in done.stderr
+    calls = []
+    same = maille.characterize("1.1", [0, 45], [0.0], out=out, progress=lambda done, total: calls.append((done, total)))
+    assert calls == [(0, 0)] and np.array_equal(same.to_numpy()["l1"], record.to_numpy()["l1"])
+
+
+def test_arrow_pandas_and_numpy_hold_the_same(by_program):
+    record = maille.read_record(by_program)
+    arrow, frame, columns = record.to_arrow(), record.to_pandas(), record.to_numpy()
+    assert arrow.column_names == list(columns) == list(frame.columns)
+    assert arrow.schema.field("wall_s").metadata[b"unit"] == b"s"
+    for name in ("l1", "l2", "bound_l1", "direction_deg"):
+        assert np.array_equal(frame[name].to_numpy(dtype=float, na_value=np.nan), columns[name], equal_nan=True), name
+    missing = [value is None for value in arrow["zero_modes"].to_pylist()]
+    assert np.ma.getmaskarray(columns["zero_modes"]).tolist() == missing
+    # What was not earned is not a number, and not 0.
+    wide = maille.characterize("1.1", [0, 45], [1.5])
+    assert np.all(np.isnan(wide.to_numpy()["l1"])) and wide.to_pandas()["l1"].isna().all()
+
+
+def test_plot_has_a_curve_for_each_l2_all_round(by_program):
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    axes = maille.characterize("1.1", "0:180:30", [-0.125, 0.0]).plot()
+    assert axes.name == "polar" and len(axes.lines) == 2
+    angle, radius = axes.lines[1].get_data()
+    assert len(angle) == 13 and np.isclose(angle[-1], 2 * np.pi) and np.isclose(radius[0], 1.44)
+    with pytest.raises(maille.ArgumentError, match="quantity"):
+        maille.read_record(by_program).plot("l7")
+
+
+def test_free_width_and_the_energy_method():
+    free = maille.characterize("1.1", [0], lateral="free").to_numpy()
+    assert free["lateral"][0] == "free" and free["l2_min"][0] <= free["l2_max"][0]
+    energy = maille.characterize("1.1", [0], [0], method="energy", energy={"tau": 0.01})
+    assert energy.run["parameters"]["options"]["tau"] == 0.01
+    assert abs(energy.to_numpy()["l1"][0] - 0.44) < 0.02
+    for wrong in ({"tau": -1}, {"taus": 1}, {"tau": "a"}):
+        with pytest.raises(maille.ArgumentError) as raised:
+            maille.characterize("1.1", [0], [0], method="energy", energy=wrong)
+        assert raised.value.argument == "energy"
+
+
+def test_ctrl_c_ends_a_call_and_what_was_found_stays(tmp_path):
+    out = tmp_path / "record"
+
+    def at(done: int, total: int) -> None:
+        if done == 2:
+            os.kill(os.getpid(), signal.SIGINT)
+
+    with pytest.raises(KeyboardInterrupt):
+        maille.characterize("1.1", "0:180:1", [0.0], out=out, progress=at, threads=1)
+    found = maille.read_record(out)
+    finished = sum(status != "interrupted" for status in found.to_numpy()["status"])
+    assert 2 <= finished < 181
+
+
+def test_an_exception_of_the_callback_ends_the_call():
+    def refuse(done: int, total: int) -> None:
+        raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        maille.characterize("1.1", "0:180:1", [0.0], progress=refuse)
+
+
+def test_other_threads_run_meanwhile():
+    ticks, stop = [], threading.Event()
+
+    def tick():
+        while not stop.wait(0.001):
+            ticks.append(1)
+
+    thread = threading.Thread(target=tick)
+    thread.start()
+    before = len(ticks)
+    maille.characterize("3.1", "0:180:5", [-0.25, 0.0])
+    during = len(ticks) - before
+    stop.set()
+    thread.join()
+    assert during > 5
+
+
+def test_records_that_are_wrong(tmp_path, by_program):
+    with pytest.raises(maille.errors.NotARecordError) as raised:
+        maille.read_record(tmp_path)
+    assert raised.value.folder == tmp_path
+    with pytest.raises(maille.errors.RecordIOError):
+        maille.read_record(tmp_path / "none")
+    out = tmp_path / "record"
+    maille.characterize("1.1", [0], [0], out=out)
+    with pytest.raises(maille.errors.OtherInputsError) as raised:
+        maille.characterize("1.1", [0, 90], [0], out=out)
+    assert "directions_deg" in raised.value.difference and "overwrite=True" in str(raised.value)
+    assert len(maille.characterize("1.1", [0, 90], [0], out=out, overwrite=True)) == 2
+    limits = out / "limits.csv"
+    limits.write_text(limits.read_text().replace("global", "universal"))
+    with pytest.raises(maille.errors.MalformedRecordError) as raised:
+        maille.read_record(out)
+    assert raised.value.line == 2 and raised.value.file.endswith("limits.csv")
+
+
+def test_designs_travel_to_other_processes():
+    design = maille.Design.builtin("3.1").with_minor_radius(0.07)
+    again = pickle.loads(pickle.dumps(design))
+    assert again == design and again.minor_radius == 0.07

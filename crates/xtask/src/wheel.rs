@@ -1,0 +1,110 @@
+//! The Python package: its wheel, built, installed into an environment of its own, tried and tested.
+
+use std::{
+    ffi::OsStr,
+    path::{Path, PathBuf},
+    process::{Command, Stdio},
+};
+
+/// What is installed beside the wheel: the build backend, and what the tests need.
+const PACKAGES: &[&str] = &["maturin>=1.7,<2", "numpy", "pyarrow", "pandas", "matplotlib", "pytest"];
+/// Folder of the package.
+const PACKAGE: &str = "crates/maille-py";
+/// Programs that may be a Python of 3.10 or later.
+const PYTHONS: &[&str] = &["python3", "python", "python3.13", "python3.12", "python3.11", "python3.10"];
+const OLD_ENOUGH: &str = "import sys, venv; sys.exit(sys.version_info < (3, 10))";
+
+/// An environment with the wheel in it.
+pub struct Environment {
+    root: PathBuf,
+    folder: PathBuf,
+    target: PathBuf,
+}
+
+impl Environment {
+    /// Builds the wheel with the profile of the tests and installs it. With `clean`, the environment is made anew; else
+    /// one that is there is used again.
+    pub fn new(root: &Path, clean: bool) -> Result<Self, String> {
+        let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), |path| root.join(path));
+        let out = Environment { root: root.to_owned(), folder: target.join("python"), target };
+        let ready = out.folder.join("ready");
+        if clean || std::fs::read_to_string(&ready).ok().as_deref() != Some(&PACKAGES.join("\n")) {
+            out.create()?;
+            std::fs::write(&ready, PACKAGES.join("\n"))
+                .map_err(|e| format!("cannot write {}: {e}", ready.display()))?;
+        }
+        let wheels = out.folder.join("wheels");
+        if wheels.is_dir() {
+            std::fs::remove_dir_all(&wheels).map_err(|e| format!("cannot empty {}: {e}", wheels.display()))?;
+        }
+        let manifest = root.join(PACKAGE).join("Cargo.toml");
+        let arguments = [OsStr::new("build"), "--profile".as_ref(), "dev".as_ref(), "--locked".as_ref()];
+        let places = ["--manifest-path".as_ref(), manifest.as_os_str(), "--out".as_ref(), wheels.as_os_str()];
+        out.run(Command::new(out.program("maturin")).args(arguments).args(places), "build the wheel")?;
+        let wheel = std::fs::read_dir(&wheels).ok().and_then(|mut files| files.next()?.ok());
+        let wheel = wheel.ok_or_else(|| format!("maturin has left no wheel in {}", wheels.display()))?.path();
+        let install = ["-m", "pip", "install", "--quiet", "--force-reinstall", "--no-deps"];
+        out.run(out.python().args(install).arg(&wheel), "install the wheel")?;
+        Ok(out)
+    }
+
+    fn create(&self) -> Result<(), String> {
+        let is_new = |name: &&&str| {
+            let probe = Command::new(name).args(["-c", OLD_ENOUGH]).stderr(Stdio::null()).status();
+            probe.is_ok_and(|status| status.success())
+        };
+        let Some(python) = PYTHONS.iter().find(is_new) else {
+            return Err("no Python of 3.10 or later with its module venv was found; install one, as python3 and \
+                        python3-venv of the system"
+                .into());
+        };
+        self.run(Command::new(python).args(["-m", "venv", "--clear"]).arg(&self.folder), "make an environment")?;
+        let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
+        let done = self.run(self.python().args(install).args(PACKAGES), "install packages");
+        done.map_err(|e| {
+            format!(
+                "{e}\npip must reach a package index, or find wheels by PIP_FIND_LINKS; wanted: {}",
+                PACKAGES.join(", ")
+            )
+        })
+    }
+
+    /// A program of the environment.
+    fn program(&self, name: &str) -> PathBuf {
+        if cfg!(windows) { self.folder.join("Scripts").join(name) } else { self.folder.join("bin").join(name) }
+    }
+
+    fn python(&self) -> Command {
+        Command::new(self.program("python"))
+    }
+
+    /// Runs the examples of the package.
+    pub fn examples(&self) -> Result<(), String> {
+        for file in crate::files(&self.root, &format!("{PACKAGE}/examples"), "py").map_err(|e| e.to_string())? {
+            println!("   {file}");
+            self.run(self.python().arg(self.root.join(&file)).current_dir(&self.folder), &format!("run {file}"))?;
+        }
+        Ok(())
+    }
+
+    /// Runs the tests of the package and the examples of its docstrings. The program is built first: maps are compared.
+    pub fn test(&self) -> Result<(), String> {
+        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+        let build = ["build", "--package", "maille-cli", "--locked"];
+        self.run(Command::new(cargo).args(build).current_dir(&self.root), "build the program")?;
+        let program = self.target.join("debug").join(format!("maille{}", std::env::consts::EXE_SUFFIX));
+        let pytest = ["-m", "pytest", "-q", "-p", "no:cacheprovider", "--doctest-modules", "--pyargs", "maille"];
+        let tests = self.root.join(PACKAGE).join("tests");
+        let mut command = self.python();
+        command.args(pytest).arg(tests).env("MAILLE", program).env("MPLBACKEND", "Agg").current_dir(&self.folder);
+        self.run(&mut command, "test the Python package")
+    }
+
+    fn run(&self, command: &mut Command, what: &str) -> Result<(), String> {
+        match command.env("PYTHONDONTWRITEBYTECODE", "1").status() {
+            Ok(status) if status.success() => Ok(()),
+            Ok(status) => Err(format!("cannot {what}: `{}` ended with {status}", command.get_program().display())),
+            Err(e) => Err(format!("cannot {what}: `{}` did not start: {e}", command.get_program().display())),
+        }
+    }
+}
