@@ -149,7 +149,8 @@ class Record:
             from matplotlib import pyplot
             from matplotlib.projections import polar
 
-            made = pyplot.figure().add_subplot(projection="polar")
+            # Constrained: the legend beside the axes stays in the picture.
+            made = pyplot.figure(layout="constrained").add_subplot(projection="polar")
             assert isinstance(made, polar.PolarAxes)
             ax = made
         table = self.to_numpy()
@@ -167,6 +168,7 @@ class Record:
                 value = np.concatenate([value, value[1:]])
             free = bool(np.all(table["lateral"][chosen] == "free"))
             ax.plot(np.deg2rad(direction), value, **{"label": "width free" if free else f"l2 = {l2:g}", **line})
+        ax.set_rlabel_position(67.5)
         ax.set_title(f"{self.design.name}: {label}")
         ax.legend(loc="upper left", bbox_to_anchor=(1.05, 1.0))
         return ax
