@@ -149,6 +149,8 @@ pub fn boundary(
             hand_on(&method, &sphere, options.tolerance, &mut vertices, cancel);
             divided = wide(&vertices);
         }
+        // Stopped while states were handed on: the next run does that again.
+        let complete = complete && !cancel.load(Ordering::Relaxed);
         if !complete || divided.is_empty() || room == 0 || count == 0 {
             let bent = if complete { sphere.bent(&points(&vertices), 0.0) } else { Vec::new() };
             let arch = bent.first().map_or(if complete { 0.0 } else { f64::NAN }, |worst| worst.arch);
