@@ -15,11 +15,10 @@ use maille::{
     lattice::Cell,
     limit::extreme::{Extreme, ExtremeOptions, ExtremeOutcome, Size, extreme},
     model::Model,
-    record::{Status, pose_records},
+    record::Status,
 };
-use maille_io::write_design;
+use maille_io::{answer, write_design};
 use miette::Result;
-use serde_json::json;
 use std::{path::PathBuf, process::ExitCode, time::Instant};
 
 /// The thickest wire with which a weave exists
@@ -110,7 +109,8 @@ fn run(args: &Common, what: Extreme) -> Result<ExitCode> {
     let answer = search(&input, what, args.lattice, (args.starts, args.seed), args.threads)?;
     let found = &answer.found;
     if args.json {
-        output::print_json(&answer.json(begun.elapsed().as_secs_f64()))?;
+        let document = answer::extreme(&input.design, &answer.model, answer.lattice_free, found);
+        output::print_json(&output::timed(document, begun.elapsed().as_secs_f64()))?;
     } else {
         answer.print(begun.elapsed().as_secs_f64());
     }
@@ -221,34 +221,5 @@ impl Answer<'_> {
         if let Some(c) = &found.certificate {
             say!("  {}", certificate::line(c));
         }
-    }
-
-    fn json(&self, wall_s: f64) -> serde_json::Value {
-        let found = &self.found;
-        let finite = |x: f64| x.is_finite().then_some(x);
-        let sizes = self.found.sizes(&self.model).into_iter().map(|size| {
-            json!({
-                "major_radius": size.major_radius,
-                "minor_radius": finite(size.minor_radius),
-                "aspect_ratio": finite(size.aspect_ratio()),
-            })
-        });
-        let vector = |a: maille_geometry::Vec3| -> [f64; 3] { (a * self.model.unit).into() };
-        let certificate = found.certificate.as_ref().map(|c| certificate::json(c, self.model.unit));
-        json!({
-            "design": self.input.design.name,
-            "status": found.status.name(),
-            "lattice": if self.lattice_free { "free" } else { "fixed" },
-            "gap": self.found.gap(&self.model),
-            "sizes": sizes.collect::<Vec<_>>(),
-            "a1": vector(found.state.a1),
-            "a2": vector(found.state.a2),
-            "poses": pose_records(&self.model, &found.state),
-            "certificate": certificate,
-            "links_ok": found.links_ok,
-            "n_starts": found.n_starts,
-            "n_distinct": found.n_distinct,
-            "wall_s": wall_s,
-        })
     }
 }

@@ -13,15 +13,14 @@ use maille::{
     characterize::{CellChoice, Method},
     lattice::Cell,
     limit::{
-        CellTrend,
         exact::ExactOptions,
-        strain::{Strain, StrainMethod, StrainOptions, StrainOutcome, StrainQuery},
+        strain::{Strain, StrainMethod, StrainOptions, StrainQuery},
     },
     model::Model,
-    record::{Status, pose_records},
+    record::Status,
 };
+use maille_io::answer::StrainAnswer;
 use miette::Result;
-use serde_json::json;
 use std::{process::ExitCode, str::FromStr, time::Instant};
 
 /// One strain as large or as small as can be, the others held or free
@@ -128,11 +127,13 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let options = StrainOptions { starts: args.starts as usize, seed: args.seed, compression: args.minimize.is_some() };
     let found = StrainMethod::new(&models, options).solve(&query, &[], &cancel);
     let model = &models[found.cell];
-    let answer = Answer { args, cells: &cells, input: &input, model, found: &found, goal, sign };
+    let (direction_deg, free) = (args.direction, &args.free[..]);
+    let design = &input.design.name;
+    let answer = StrainAnswer { design, goal, sign, free, direction_deg, cells: &cells, model, found: &found };
     let wall_s = begun.elapsed().as_secs_f64();
     match args.json {
-        true => output::print_json(&answer.json(wall_s))?,
-        false => answer.print(wall_s),
+        true => output::print_json(&output::timed(answer.json(), wall_s))?,
+        false => print(&answer, wall_s),
     }
     Ok(ExitCode::from(match found.status {
         Status::Global | Status::Local | Status::L2Unreachable => exit::DONE,
@@ -141,119 +142,45 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     }))
 }
 
-struct Answer<'a> {
-    args: &'a Args,
-    cells: &'a [Cell],
-    input: &'a Input,
-    model: &'a Model,
-    found: &'a StrainOutcome,
-    goal: Strain,
-    sign: f64,
-}
-
-impl Answer<'_> {
-    fn status(&self) -> &'static str {
-        match self.found.status {
-            Status::L2Unreachable => "unreachable",
-            Status::L2NotReached => "not-reached",
-            status => status.name(),
+fn print(answer: &StrainAnswer<'_>, wall_s: f64) {
+    let found = answer.found;
+    let most = answer.most();
+    let turned = match answer.direction_deg {
+        0.0 => String::new(),
+        angle => format!(" with x along {angle}\u{b0}"),
+    };
+    say!("{}, {most} {}{turned}: {}", answer.design, answer.goal.name(), answer.status());
+    match found.status {
+        Status::L2Unreachable => return say!("  proved: no state of the sheet has the strains that are held"),
+        Status::L2NotReached => {
+            return say!("  {} starts did not reach the strains that are held; nothing is proved", found.n_starts);
+        }
+        _ if found.value.is_none() => return,
+        _ => {}
+    }
+    for strain in Strain::ALL {
+        // Rounding shows no sign of a 0.
+        let value = (strain.of(&found.strain, answer.direction_deg) * 1e9).round() / 1e9 + 0.0;
+        say!("  {}   {value:>15.9}  {}", strain.name(), answer.role(strain));
+    }
+    if let Some(l1) = answer.stretch() {
+        say!("  l1    {l1:>15.9}  of lines along {}", answer.goal.name());
+    }
+    if let Some(bound) = found.bound {
+        say!("  bound {:>15.9}  proved by the chains of links", answer.sign * bound);
+    }
+    let kept = if found.links_ok { "kept" } else { "LOST" };
+    let (starts, distinct) = (found.n_starts, found.n_distinct);
+    say!(
+        "  cell {}; {starts} starts led to {distinct} certified values; links {kept}; {wall_s:.2} s",
+        answer.model.cell
+    );
+    if found.trend.len() > 1 || answer.sign < 0.0 {
+        for cell in answer.by_cell() {
+            say!("    {}", cell.words(&answer.cells[cell.cell].to_string()));
         }
     }
-
-    fn role(&self, strain: Strain) -> &'static str {
-        let most = if self.sign > 0.0 { "largest" } else { "least" };
-        match strain {
-            goal if goal == self.goal => most,
-            free if self.args.free.contains(&free) => "free",
-            _ => "held",
-        }
-    }
-
-    /// What each cell reached, with the sign of the strain.
-    fn by_cell(&self) -> impl Iterator<Item = CellTrend> {
-        self.found.trend.iter().map(|t| CellTrend { value: t.value.map(|p| self.sign * p), ..*t })
-    }
-
-    /// l1 of lines along a normal strain that was sought.
-    fn stretch(&self) -> Option<f64> {
-        let normal = self.goal != Strain::Exy;
-        self.found.value.filter(|_| normal).map(|p| (1.0 + 2.0 * self.sign * p).max(0.0).sqrt() - 1.0)
-    }
-
-    fn print(&self, wall_s: f64) {
-        let found = self.found;
-        let most = if self.sign > 0.0 { "largest" } else { "least" };
-        let turned = match self.args.direction {
-            0.0 => String::new(),
-            angle => format!(" with x along {angle}\u{b0}"),
-        };
-        say!("{}, {most} {}{turned}: {}", self.input.design.name, self.goal.name(), self.status());
-        match found.status {
-            Status::L2Unreachable => return say!("  proved: no state of the sheet has the strains that are held"),
-            Status::L2NotReached => {
-                return say!("  {} starts did not reach the strains that are held; nothing is proved", found.n_starts);
-            }
-            _ if found.value.is_none() => return,
-            _ => {}
-        }
-        for strain in Strain::ALL {
-            // Rounding shows no sign of a 0.
-            let value = (strain.of(&found.strain, self.args.direction) * 1e9).round() / 1e9 + 0.0;
-            say!("  {}   {value:>15.9}  {}", strain.name(), self.role(strain));
-        }
-        if let Some(l1) = self.stretch() {
-            say!("  l1    {l1:>15.9}  of lines along {}", self.goal.name());
-        }
-        if let Some(bound) = found.bound {
-            say!("  bound {:>15.9}  proved by the chains of links", self.sign * bound);
-        }
-        let kept = if found.links_ok { "kept" } else { "LOST" };
-        let (starts, distinct) = (found.n_starts, found.n_distinct);
-        say!(
-            "  cell {}; {starts} starts led to {distinct} certified values; links {kept}; {wall_s:.2} s",
-            self.model.cell
-        );
-        if found.trend.len() > 1 || self.args.minimize.is_some() {
-            for cell in self.by_cell() {
-                say!("    {}", cell.words(&self.cells[cell.cell].to_string()));
-            }
-        }
-        if let Some(c) = &found.certificate {
-            say!("  {}", certificate::line(c));
-        }
-    }
-
-    fn json(&self, wall_s: f64) -> serde_json::Value {
-        let found = self.found;
-        let solved = found.value.is_some();
-        let strain = |s: Strain| {
-            let value = solved.then(|| s.of(&found.strain, self.args.direction));
-            (s.name().to_owned(), json!({ "value": value, "is": self.role(s) }))
-        };
-        let cell = |t: CellTrend| {
-            let name = self.cells[t.cell].to_string();
-            json!({ "cell": name, "value": t.value, "n_starts": t.n_starts, "n_distinct": t.n_distinct })
-        };
-        let certificate = found.certificate.as_ref().map(|c| certificate::json(c, self.model.unit));
-        let vector = |a: maille_geometry::Vec3| -> [f64; 3] { (a * self.model.unit).into() };
-        json!({
-            "design": self.input.design.name,
-            "status": self.status(),
-            "value": found.value.map(|p| self.sign * p),
-            "bound": found.bound.map(|bound| self.sign * bound),
-            "strains": Strain::ALL.map(strain).into_iter().collect::<serde_json::Map<_, _>>(),
-            "cell": self.model.cell.to_string(),
-            "by_cell": self.by_cell().map(cell).collect::<Vec<_>>(),
-            "direction_deg": self.args.direction,
-            "l1": self.stretch(),
-            "a1": solved.then(|| vector(found.state.a1)),
-            "a2": solved.then(|| vector(found.state.a2)),
-            "poses": solved.then(|| pose_records(self.model, &found.state)),
-            "certificate": certificate,
-            "links_ok": solved.then_some(found.links_ok),
-            "n_starts": found.n_starts,
-            "n_distinct": found.n_distinct,
-            "wall_s": wall_s,
-        })
+    if let Some(c) = &found.certificate {
+        say!("  {}", certificate::line(c));
     }
 }

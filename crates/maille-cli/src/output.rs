@@ -83,6 +83,12 @@ pub fn line(text: fmt::Arguments<'_>) {
     let _ = writeln!(std::io::stdout(), "{text}");
 }
 
+/// A document with the time that it took.
+pub fn timed(mut document: serde_json::Value, wall_s: f64) -> serde_json::Value {
+    document["wall_s"] = wall_s.into();
+    document
+}
+
 /// Prints one JSON document.
 pub fn print_json(document: &impl serde::Serialize) -> Result<()> {
     let text = serde_json::to_string_pretty(document).into_diagnostic().wrap_err("cannot write JSON")?;

@@ -14,12 +14,12 @@ use maille::{
     limit::energy::EnergyOptions,
     model::Model,
     record::{FrameRecord, pose_records},
-    simulate::{Accepted, End, Setup, Simulation, along, elements_at, simulate},
+    simulate::{Accepted, End, Simulation, along, simulate},
 };
 use maille_geometry::Vec3;
 use maille_io::{
     mesh::Tile,
-    record::{SIMULATION, SimulationOutcome, SimulationRecord, write_frames, write_simulation},
+    record::{LoadedPlace, PulledPlace, SIMULATION, SheetPlan, SimulationRecord, write_frames, write_simulation},
 };
 use miette::{Report, Result};
 use serde_json::json;
@@ -61,13 +61,13 @@ pub struct Args {
     fix: Option<Places>,
     /// Pull a place by a vector, in the file's unit, or along several, all from the start; may be given for several places
     #[arg(long, value_name = "PLACE=DX,DY,DZ[/…]", value_parser = parse_pull, allow_hyphen_values = true)]
-    pull: Vec<Pull>,
+    pull: Vec<PulledPlace>,
     /// Weight of every element; 1 is a thousandth of the stiffness of a pull at R
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true)]
-    gravity: Option<Vec3>,
+    gravity: Option<[f64; 3]>,
     /// Constant force on a place besides, in the unit of --gravity; may be given for several places
     #[arg(long, value_name = "PLACE=X,Y,Z", value_parser = parse_force, allow_hyphen_values = true)]
-    force: Vec<Force>,
+    force: Vec<LoadedPlace>,
     /// A floor at this height, in the file's unit
     #[arg(long, value_name = "Z", allow_hyphen_values = true, value_parser = parse_number)]
     floor: Option<f64>,
@@ -106,20 +106,6 @@ pub struct Args {
     quiet: bool,
 }
 
-/// A place and its way: displacements from the start, one after the other.
-#[derive(Clone, Debug, PartialEq)]
-struct Pull {
-    place: String,
-    way: Vec<Vec3>,
-}
-
-/// A place and the force on each of its elements.
-#[derive(Clone, Debug, PartialEq)]
-struct Force {
-    place: String,
-    force: Vec3,
-}
-
 /// Names of places.
 #[derive(Clone, Debug, PartialEq)]
 struct Places(Vec<String>);
@@ -131,34 +117,34 @@ fn parse_number(text: &str) -> Result<f64, String> {
     }
 }
 
-fn parse_vector(text: &str) -> Result<Vec3, String> {
+fn parse_vector(text: &str) -> Result<[f64; 3], String> {
     let parts = text.split(',').map(parse_number).collect::<Result<Vec<f64>, String>>();
     match parts.as_deref() {
-        Ok(&[x, y, z]) => Ok(Vec3::new(x, y, z)),
+        Ok(&[x, y, z]) => Ok([x, y, z]),
         _ => Err(format!("\"{text}\" is no vector; give three numbers, as 0,0,-1")),
     }
 }
 
 /// `right=0.5,0,0`, or `right=-3,0,0/0.5,0,0`.
-fn parse_pull(text: &str) -> Result<Pull, String> {
+fn parse_pull(text: &str) -> Result<PulledPlace, String> {
     let (place, way) = at_place(text, "pull")?;
-    if way.iter().all(|by| *by == Vec3::zeros()) {
+    if way.iter().all(|by| *by == [0.0; 3]) {
         return Err(format!("\"{text}\" pulls nowhere; hold the place with --fix instead"));
     }
-    Ok(Pull { place, way })
+    Ok(PulledPlace { place, way })
 }
 
 /// `flat@0,2=0,0,-1`.
-fn parse_force(text: &str) -> Result<Force, String> {
+fn parse_force(text: &str) -> Result<LoadedPlace, String> {
     let (place, forces) = at_place(text, "force")?;
     match forces[..] {
-        [force] if force != Vec3::zeros() => Ok(Force { place, force }),
+        [force] if force != [0.0; 3] => Ok(LoadedPlace { place, force }),
         [_] => Err(format!("\"{text}\" is no force; leave it out")),
         _ => Err(format!("\"{text}\" has {} forces; give one vector, as right=0.5,0,0", forces.len())),
     }
 }
 
-fn at_place(text: &str, what: &str) -> Result<(String, Vec<Vec3>), String> {
+fn at_place(text: &str, what: &str) -> Result<(String, Vec<[f64; 3]>), String> {
     let wrong = || format!("\"{text}\" is no {what}; give a place and a vector, as right=0.5,0,0");
     let (place, vectors) = text.split_once('=').ok_or_else(wrong)?;
     let vectors = vectors.split('/').map(parse_vector).collect::<Result<_, _>>().map_err(|_| wrong())?;
@@ -181,17 +167,18 @@ fn parse_places(text: &str) -> Result<Places, String> {
     Ok(Places(out))
 }
 
-fn refused(option: &str, problem: InvalidInput) -> Report {
-    wrong(exit::USAGE, format!("{option}: {}", problem.problem), problem.help)
+fn refused(problem: InvalidInput) -> Report {
+    wrong(exit::USAGE, format!("--{}: {}", problem.field, problem.problem), problem.help)
 }
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let input = Input::read(&args.design, args.minor_radius)?;
     let [m, n] = args.tile.0.map(|k| i32::try_from(k).unwrap_or(i32::MAX));
-    let tile = Cell::new([[m, 0], [0, n]]).map_err(|e| refused("--tile", e))?;
+    let tile = Cell::new([[m, 0], [0, n]]).map_err(|e| refused(InvalidInput { field: "tile".into(), ..e }))?;
     let model = input.compile_sheet(&input.design, tile)?;
-    let setup = setup(args, &model)?;
+    let plan = plan(args)?;
+    let setup = plan.setup(&model).map_err(refused)?;
     let begun = Instant::now();
     let mut all = Vec::new();
     let progress = Spinner::new(args.quiet);
@@ -211,9 +198,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         }
     };
     let cancel = interrupt::flag()?;
-    let end = simulate(&model, &setup, &cancel, &mut watch).map_err(|e| refused(&format!("--{}", e.field), e))?;
+    let end = simulate(&model, &setup, &cancel, &mut watch).map_err(refused)?;
     progress.finish();
-    let record = record(args, &input, &model, &end);
+    let record = SimulationRecord::new(&input.design, args.tile, plan, &model, &end);
     let stem = file_name(&input.design.name) + "-simulate";
     let out = args.out.clone().unwrap_or_else(|| PathBuf::from("maille-out").join(stem));
     // A run that failed at once has reached nothing: its last state is shown.
@@ -244,81 +231,28 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     }))
 }
 
-fn setup(args: &Args, model: &Model) -> Result<Setup> {
-    let at = |option: &str, place: &str| elements_at(model, place).map_err(|e| refused(option, e));
-    let mut fix = Vec::new();
-    for place in args.fix.iter().flat_map(|places| &places.0) {
-        for element in at("--fix", place)? {
-            if !fix.contains(&element) {
-                fix.push(element); // a corner belongs to two edges
-            }
-        }
-    }
-    let mut pull = Vec::new();
-    for one in &args.pull {
-        let way: Vec<Vec3> = one.way.iter().map(|by| by / model.unit).collect();
-        pull.extend(at("--pull", &one.place)?.into_iter().map(|e| (e, way.clone())));
-    }
-    let mut forces = Vec::new();
-    for one in &args.force {
-        forces.extend(at("--force", &one.place)?.into_iter().map(|e| (e, one.force)));
-    }
-    let gravity = args.gravity.unwrap_or_else(Vec3::zeros);
-    if pull.is_empty() && forces.is_empty() && gravity == Vec3::zeros() {
+fn plan(args: &Args) -> Result<SheetPlan> {
+    let plan = SheetPlan {
+        fix: args.fix.as_ref().map_or_else(Vec::new, |places| places.0.clone()),
+        pull: args.pull.clone(),
+        gravity: args.gravity,
+        force: args.force.clone(),
+        floor: args.floor,
+        steps: args.steps,
+        drag: args.drag,
+        alpha: args.alpha,
+        tau: args.tau,
+        max_iterations: args.max_iterations,
+        seed: args.seed,
+    };
+    if plan.is_still() {
         return Err(wrong(
             exit::USAGE,
             "nothing moves this sheet",
             "pull an edge, as --fix left --pull right=0.5,0,0, or give a weight, as --fix top --gravity 0,-1,0",
         ));
     }
-    let options = EnergyOptions {
-        alpha: args.alpha,
-        tau: args.tau,
-        max_iterations: args.max_iterations as usize,
-        seed: args.seed,
-        ..EnergyOptions::default()
-    };
-    let floor = args.floor.map(|z| z / model.unit);
-    Ok(Setup { fix, pull, gravity, forces, floor, steps: args.steps, drag: args.drag, options })
-}
-
-fn record(args: &Args, input: &Input, model: &Model, end: &Simulation) -> SimulationRecord {
-    let array = |v: &Vec3| [v.x, v.y, v.z];
-    let pulls: Vec<_> = args
-        .pull
-        .iter()
-        .map(|p| json!({ "place": p.place, "way": p.way.iter().map(array).collect::<Vec<_>>() }))
-        .collect();
-    let forces: Vec<_> = args.force.iter().map(|p| json!({ "place": p.place, "force": array(&p.force) })).collect();
-    SimulationRecord {
-        schema: 1,
-        version: env!("CARGO_PKG_VERSION").into(),
-        design: input.design.clone(),
-        tile: args.tile.to_string(),
-        setup: json!({
-            "fix": args.fix.as_ref().map_or(&[][..], |places| &places.0),
-            "pull": pulls,
-            "gravity": args.gravity.as_ref().map(array),
-            "force": forces,
-            "floor": args.floor,
-            "steps": args.steps,
-            "drag": args.drag,
-            "alpha": args.alpha,
-            "tau": args.tau,
-            "max_iterations": args.max_iterations,
-            "seed": args.seed,
-        }),
-        outcome: SimulationOutcome {
-            end: end.end,
-            share: end.share,
-            smallest_gap: end.smallest_gap.map(|gap| gap * model.unit),
-            links_ok: end.links_ok,
-            iterations: end.iterations,
-            kicks: end.kicks,
-            unbalanced: end.unbalanced,
-            note: end.note.clone(),
-        },
-    }
+    Ok(plan)
 }
 
 /// Frames first: a folder with simulation.json is whole.
@@ -338,7 +272,8 @@ fn summary(args: &Args, model: &Model, end: &Simulation, out: &Path, frames: usi
     };
     output::say!("{}, {} cells, {} elements: {what}", model.name, args.tile, model.elements.len());
     for pull in &args.pull {
-        let by = along(&pull.way, end.share);
+        let way: Vec<Vec3> = pull.way.iter().map(|by| Vec3::from(*by)).collect();
+        let by = along(&way, end.share);
         output::say!("  {} moved by {:.4}, {:.4}, {:.4}", pull.place, by.x, by.y, by.z);
     }
     if let Some(gap) = end.smallest_gap {
@@ -362,8 +297,8 @@ mod tests {
         let places = |text: &str| parse_places(text).map(|p| p.0);
         assert_eq!(places("left,flat@0,2,top").unwrap(), ["left", "flat@0,2", "top"]);
         assert!(places("left,,top").is_err() && places("").is_err());
-        assert_eq!(parse_pull("right=0.5,0,-1").unwrap().way, [Vec3::new(0.5, 0.0, -1.0)]);
-        assert_eq!(parse_pull("right=-3,0,0/0,0,0").unwrap().way, [Vec3::new(-3.0, 0.0, 0.0), Vec3::zeros()]);
+        assert_eq!(parse_pull("right=0.5,0,-1").unwrap().way, [[0.5, 0.0, -1.0]]);
+        assert_eq!(parse_pull("right=-3,0,0/0,0,0").unwrap().way, [[-3.0, 0.0, 0.0], [0.0; 3]]);
         assert!(parse_force("right=-3,0,0/0,0,0").is_err() && parse_pull("right=1,0,0/").is_err());
         for wrong in ["right", "right=1,2", "=1,0,0", "right=0,0,0", "right=a,0,0", "right=1,2,3,4"] {
             assert!(parse_pull(wrong).is_err() && parse_force(wrong).is_err(), "{wrong}");

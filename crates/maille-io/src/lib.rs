@@ -3,6 +3,7 @@
 //! Everything here works on text, bytes and readers; only doors open paths. The one exception is
 //! [`record::RecordFolder`], which owns a folder because its writes must be atomic.
 
+pub mod answer;
 pub mod boundary;
 pub mod builtin;
 pub mod design_toml;

@@ -31,6 +31,7 @@ pub use map::{Map, MapError, OpenMap};
 pub use reference::{Reference, ReferenceCell};
 pub use run::{Counters, RunRecord, input_hash, read_run, write_run};
 pub use simulation::{
-    SIMULATION, SimulationOutcome, SimulationRecord, read_frames, read_simulation, write_frames, write_simulation,
+    LoadedPlace, PulledPlace, SIMULATION, SheetPlan, SimulationOutcome, SimulationRecord, read_frames, read_simulation,
+    write_frames, write_simulation,
 };
 pub use states::{read_states, write_states};

@@ -23,6 +23,16 @@ impl Design {
         Model::compile(&self.design, cell).map_err(|problems| self.explain(&problems))
     }
 
+    /// The model of a finite sheet.
+    pub fn compile_sheet(&self, tile: Cell) -> PyResult<Model> {
+        Model::compile_sheet(&self.design, tile).map_err(|problems| self.explain(&problems))
+    }
+
+    /// The same with overlaps of its start accepted, to be looked at.
+    pub fn tolerant(&self) -> Self {
+        Self::of(maille::design::Design { allow_initial_overlap: true, ..self.design.clone() })
+    }
+
     fn explain(&self, problems: &[InvalidInput]) -> PyErr {
         match &self.source {
             Some((name, source)) => error::design_file(name, &source.explain(problems)),

@@ -8,7 +8,9 @@ mod error;
 mod geometry;
 mod map;
 mod question;
+mod simulate;
 mod surface;
+mod view;
 mod wait;
 
 use pyo3::prelude::*;
@@ -24,7 +26,11 @@ mod _native {
     #[pymodule_export]
     use crate::question::{extreme, limit};
     #[pymodule_export]
+    use crate::simulate::{read_simulation, simulate};
+    #[pymodule_export]
     use crate::surface::boundary;
+    #[pymodule_export]
+    use crate::view::Sheet;
 
     /// Version of the package, that of the program.
     #[pymodule_export]

@@ -103,7 +103,7 @@ fn energy_options(named: &str, seed: u64) -> PyResult<EnergyOptions> {
 
 /// Finds the limits of a map, as `maille characterize` does.
 #[pyfunction]
-#[pyo3(signature = (design, directions, l2, *, lateral_free, shear_free, method, cell, starts, seed, energy, quantity_name, out, overwrite, progress, threads))]
+#[pyo3(signature = (design, directions, l2, *, lateral_free, shear_free, compression, method, cell, starts, seed, energy, quantity_name, out, overwrite, progress, threads))]
 pub fn characterize(
     py: Python<'_>,
     design: &Design,
@@ -111,6 +111,7 @@ pub fn characterize(
     l2: Vec<f64>,
     lateral_free: bool,
     shear_free: bool,
+    compression: bool,
     method: &str,
     cell: &str,
     starts: usize,
@@ -124,7 +125,11 @@ pub fn characterize(
 ) -> PyResult<Record> {
     let across = Across { lateral_free, shear_free };
     let method = match method {
-        "exact" => Method::Exact(ExactOptions { starts: starts.max(1), seed, across, compression: false }),
+        "exact" => Method::Exact(ExactOptions { starts: starts.max(1), seed, across, compression }),
+        "energy" if compression => {
+            let remedy = "leave compression out, or take method=\"exact\"";
+            return Err(error::argument("method", "the energy method has no limits in compression", remedy));
+        }
         "energy" if across.any() => {
             let remedy = "leave lateral and shear fixed, or take method=\"exact\"";
             return Err(error::argument("method", "the energy method holds width and shear", remedy));

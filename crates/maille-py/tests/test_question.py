@@ -19,7 +19,7 @@ def test_limits_of_strains_are_those_of_the_program(program):
     its = by_program(program, "limit", "1.1", "--maximize", "exx", "--fix", "eyy=0.05", "--free", "exy")
     assert (mine.value, mine.bound, mine.status) == (its["value"], its["bound"], its["status"])
     assert mine.strain.tolist() == [its["strains"][name]["value"] for name in ("exx", "eyy", "exy")]
-    assert mine.state["poses"] == its["poses"]
+    assert mine.state.document["poses"] == its["poses"]
     # Along x a length of 1.44: exx = s + s²/2.
     assert np.isclose(maille.limit("1.1", maximize="exx").value, 0.44 + 0.44**2 / 2)
 

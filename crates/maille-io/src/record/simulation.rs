@@ -1,9 +1,17 @@
 //! `simulation.json` and `frames.jsonl`: what a simulated sheet leaves behind.
 
 use super::error::{RecordError, complete};
-use maille::{design::Design, record::FrameRecord, simulate::End};
+use crate::mesh::Tile;
+use maille::{
+    design::Design,
+    error::InvalidInput,
+    limit::energy::EnergyOptions,
+    model::Model,
+    record::FrameRecord,
+    simulate::{End, Setup, Simulation, elements_at},
+};
+use maille_geometry::Vec3;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 
 /// Names of the two files of the record.
 pub const SIMULATION: [&str; 2] = ["simulation.json", "frames.jsonl"];
@@ -19,10 +27,130 @@ pub struct SimulationRecord {
     pub design: Design,
     /// Cells along a1 and a2, as `10x10`.
     pub tile: String,
-    /// Edges, pulls, weight, floor and parameters, as given.
-    pub setup: Value,
+    /// What was done to it.
+    pub setup: SheetPlan,
     /// What came out.
     pub outcome: SimulationOutcome,
+}
+
+/// What is done to a finite sheet, as given: places by their names (see [`elements_at`]), lengths in the file's unit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SheetPlan {
+    /// Where elements are held.
+    pub fix: Vec<String>,
+    /// Where they are pulled.
+    pub pull: Vec<PulledPlace>,
+    /// Weight of every element, in [`maille::simulate::WEIGHT_UNIT`].
+    pub gravity: Option<[f64; 3]>,
+    /// Where else forces act.
+    pub force: Vec<LoadedPlace>,
+    /// Height of a floor.
+    pub floor: Option<f64>,
+    /// Steps of the pull; with a drag, of the whole motion.
+    pub steps: u32,
+    /// What slows the sheet.
+    #[serde(default)]
+    pub drag: Option<f64>,
+    /// Weight of the contacts against the pulls, α/β.
+    #[serde(default = "usual_alpha")]
+    pub alpha: f64,
+    /// Largest miss of a pulled element that is still no lock, in R.
+    #[serde(default = "usual_tau")]
+    pub tau: f64,
+    /// Newton iterations of one step at most.
+    pub max_iterations: u32,
+    /// Seed of everything random.
+    pub seed: u64,
+}
+
+/// A place and its way: displacements from the start, one after the other.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PulledPlace {
+    /// Its name.
+    pub place: String,
+    /// The displacements.
+    pub way: Vec<[f64; 3]>,
+}
+
+/// A place and the force on each of its elements, in [`maille::simulate::WEIGHT_UNIT`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LoadedPlace {
+    /// Its name.
+    pub place: String,
+    /// The force.
+    pub force: [f64; 3],
+}
+
+fn usual_alpha() -> f64 {
+    EnergyOptions::default().alpha
+}
+
+fn usual_tau() -> f64 {
+    EnergyOptions::default().tau
+}
+
+impl SheetPlan {
+    /// Whether nothing is pulled and no force acts.
+    pub fn is_still(&self) -> bool {
+        self.pull.is_empty() && self.force.is_empty() && self.gravity.is_none_or(|g| g == [0.0; 3])
+    }
+
+    /// The plan on the elements of a sheet. A wrong place names its field: `fix`, `pull` or `force`.
+    pub fn setup(&self, model: &Model) -> Result<Setup, InvalidInput> {
+        let at = |field: &str, place: &str| {
+            elements_at(model, place).map_err(|problem| InvalidInput { field: field.into(), ..problem })
+        };
+        let mut fix = Vec::new();
+        for place in &self.fix {
+            for element in at("fix", place)? {
+                if !fix.contains(&element) {
+                    fix.push(element); // a corner belongs to two edges
+                }
+            }
+        }
+        let (mut pull, mut forces) = (Vec::new(), Vec::new());
+        for PulledPlace { place, way } in &self.pull {
+            let way: Vec<Vec3> = way.iter().map(|by| Vec3::from(*by) / model.unit).collect();
+            pull.extend(at("pull", place)?.into_iter().map(|element| (element, way.clone())));
+        }
+        for LoadedPlace { place, force } in &self.force {
+            forces.extend(at("force", place)?.into_iter().map(|element| (element, Vec3::from(*force))));
+        }
+        let options = EnergyOptions {
+            alpha: self.alpha,
+            tau: self.tau,
+            max_iterations: self.max_iterations as usize,
+            seed: self.seed,
+            ..EnergyOptions::default()
+        };
+        let gravity = self.gravity.map_or_else(Vec3::zeros, Vec3::from);
+        let floor = self.floor.map(|height| height / model.unit);
+        Ok(Setup { fix, pull, gravity, forces, floor, steps: self.steps, drag: self.drag, options })
+    }
+}
+
+impl SimulationRecord {
+    /// What came of a plan for `tile` of `design`, compiled as `model`.
+    pub fn new(design: &Design, tile: Tile, plan: SheetPlan, model: &Model, end: &Simulation) -> Self {
+        SimulationRecord {
+            schema: 1,
+            version: env!("CARGO_PKG_VERSION").into(),
+            design: design.clone(),
+            tile: tile.to_string(),
+            setup: plan,
+            outcome: SimulationOutcome {
+                end: end.end,
+                share: end.share,
+                smallest_gap: end.smallest_gap.map(|gap| gap * model.unit),
+                links_ok: end.links_ok,
+                iterations: end.iterations,
+                kicks: end.kicks,
+                unbalanced: end.unbalanced,
+                note: end.note.clone(),
+            },
+        }
+    }
 }
 
 /// What came out of a simulation. Lengths in the file's unit.

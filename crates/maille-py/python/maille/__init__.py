@@ -24,6 +24,8 @@ from .errors import (
 )
 from .question import Extreme, StrainLimit, limit, roomiest, tightest
 from .record import Record, State, characterize, read_record
+from .sheet import Sheet, View, show
+from .simulate import Simulation, read_simulation, simulate
 
 __all__ = [
     "ArgumentError",
@@ -37,9 +39,12 @@ __all__ = [
     "RecordError",
     "Ring",
     "ShapeError",
+    "Sheet",
+    "Simulation",
     "State",
     "StrainLimit",
     "UnknownDesignError",
+    "View",
     "__version__",
     "boundary",
     "characterize",
@@ -48,6 +53,9 @@ __all__ = [
     "geometry",
     "limit",
     "read_record",
+    "read_simulation",
     "roomiest",
+    "show",
+    "simulate",
     "tightest",
 ]

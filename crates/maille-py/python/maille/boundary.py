@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native
-from .design import DesignLike
+from .design import DesignLike, chosen
 from .errors import ShapeError
-from .question import _chosen
 from .record import Progress, _Bar, _whole
+from .table import Columns
+
+if TYPE_CHECKING:
+    from mpl_toolkits.mplot3d import Axes3D
 
 __all__ = ["Boundary", "boundary"]
 
@@ -21,7 +25,7 @@ _CHUNK = 256
 
 
 @dataclass(frozen=True)
-class Boundary:
+class Boundary(Columns):
     """A closed surface of triangles in the space of Green strains (exx, eyy, exy), exy the tensor shear.
 
     Each vertex is the end of a ray from the written lattice, the origin. Strains are arrays of shape (3,) or (N, 3).
@@ -37,6 +41,27 @@ class Boundary:
     triangles: NDArray[np.int64]
     #: Largest expected distance between the surface and its triangles.
     arch: float
+
+    def to_numpy(self) -> dict[str, NDArray[Any]]:
+        """The columns: a row for each vertex, of exx, eyy, exy, bound and status."""
+        return {**dict(zip(("exx", "eyy", "exy"), self.vertices.T)), "bound": self.bound, "status": self.status}
+
+    def plot(self, *, ax: Axes3D | None = None, **surface: Any) -> Axes3D:
+        """Draws the surface in three dimensions, and gives the axes."""
+        if ax is None:
+            from matplotlib import pyplot
+            from mpl_toolkits.mplot3d import Axes3D
+
+            made = pyplot.figure(layout="constrained").add_subplot(projection="3d")
+            assert isinstance(made, Axes3D)
+            ax = made
+        look = {"cmap": "viridis", "edgecolor": "white", "linewidth": 0.1, "alpha": 0.9}
+        x, y, z = self.vertices.T
+        ax.plot_trisurf(x, y, z, triangles=self.triangles, **{**look, **surface})
+        ax.set_xlabel("exx")
+        ax.set_ylabel("eyy")
+        ax.set_zlabel("exy")
+        return ax
 
     def contains(self, strain: ArrayLike) -> NDArray[np.bool_]:
         """(N,), or a scalar: whether a strain lies in the surface or on it, to 1e-12.
@@ -107,9 +132,9 @@ def boundary(
 
     Rays are added until the surface is expected within `tolerance` of its triangles, or there are that many `vertices`.
     """
-    with _Bar(progress) as told:
+    with _Bar(progress, unit="ray") as told:
         found, triangles, arch = _native.boundary(
-            _chosen(design, minor_radius)._inner,
+            chosen(design, minor_radius)._inner,
             tolerance=tolerance,
             vertices=_whole("vertices", vertices, 162),
             starts=_whole("starts", starts, 1),

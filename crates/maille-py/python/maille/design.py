@@ -127,18 +127,7 @@ class Design:
 
     def save(self, file: str | os.PathLike[str]) -> None:
         """Writes the design as a TOML file, whole or not at all."""
-        path = Path(file)
-        handle, temporary = tempfile.mkstemp(prefix=".maille-", suffix=".tmp", dir=path.parent)
-        try:
-            with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as out:
-                out.write(self.to_toml())
-            mask = os.umask(0)
-            os.umask(mask)
-            os.chmod(temporary, 0o666 & ~mask)
-            os.replace(temporary, path)
-        except BaseException:
-            os.unlink(temporary)
-            raise
+        write_whole(Path(file), self.to_toml().encode())
 
     def to_toml(self) -> str:
         """The text of the design's file."""
@@ -233,6 +222,27 @@ def designs() -> list[str]:
     True
     """
     return _native.builtin_names()
+
+
+def chosen(design: DesignLike, minor_radius: float | None) -> Design:
+    """The design, with another wire where one is given."""
+    of = Design.of(design)
+    return of if minor_radius is None else of.with_minor_radius(minor_radius)
+
+
+def write_whole(path: Path, content: bytes) -> None:
+    """Writes a file, whole or not at all."""
+    handle, temporary = tempfile.mkstemp(prefix=".maille-", suffix=".tmp", dir=path.parent)
+    try:
+        with os.fdopen(handle, "wb") as out:
+            out.write(content)
+        mask = os.umask(0)
+        os.umask(mask)
+        os.chmod(temporary, 0o666 & ~mask)
+        os.replace(temporary, path)
+    except BaseException:
+        os.unlink(temporary)
+        raise
 
 
 def _from_json(text: str) -> Design:

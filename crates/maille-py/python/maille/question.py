@@ -5,27 +5,33 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
-from .design import Design, DesignLike
-from .errors import ArgumentError
+from .design import Design, DesignLike, chosen
+from .errors import ArgumentError, MailleError
 from .record import _sequence, _whole
+from .sheet import Sheet, start
+from .table import Columns
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 __all__ = ["Extreme", "StrainLimit", "limit", "roomiest", "tightest"]
 
 Strain = Literal["exx", "eyy", "exy"]
+_STRAINS: tuple[Strain, ...] = ("exx", "eyy", "exy")
 
 
 @dataclass(frozen=True)
-class StrainLimit:
+class StrainLimit(Columns):
     """The end of one in-plane strain. Strains are Green strains E = (C - 1)/2, C = FᵀF; exy is the tensor shear."""
 
-    #: `global` (certified, and the proven bound is attained), `local` (certified), `uncertified`, `l2-unreachable` (proved: no
-    #: state has what is held), or `l2-not-reached` (it was not reached; nothing is proved).
+    #: `global` (certified, and the proven bound is attained), `local` (certified), `uncertified`, `unreachable` (proved: no
+    #: state has what is held), or `not-reached` (it was not reached; nothing is proved).
     status: str
     #: The strain that was sought; None without a state.
     value: float | None
@@ -33,19 +39,38 @@ class StrainLimit:
     bound: float | None
     #: (3,): exx, eyy, exy of the state.
     strain: NDArray[np.float64] | None
+    #: Direction of the strains' x axis, degrees counter-clockwise from the design's.
+    direction_deg: float
+    #: l1 of lines along a normal strain that was sought.
+    l1: float | None
     #: Whether the links are those of the design.
-    links_ok: bool
+    links_ok: bool | None
     #: Starts that were solved, and distinct certified values among them.
     n_starts: int
     n_distinct: int
     #: (cell, best certified value) of each cell that was solved.
     by_cell: tuple[tuple[str, float | None], ...]
-    #: Poses, lattice and certificate, in the design's unit.
-    state: dict[str, Any] | None
+    #: What was checked: smallest gap, residuals, multipliers, curvature.
+    certificate: dict[str, Any] | None
+    #: The state, as poses to draw and to show.
+    state: Sheet | None
+
+    def to_numpy(self) -> dict[str, NDArray[Any]]:
+        """The columns: one row of status, value, bound, exx, eyy, exy, l1, direction_deg, n_starts, n_distinct; NaN where
+        nothing was found."""
+        row: dict[str, Any] = {"status": self.status, "value": self.value, "bound": self.bound}
+        strain = [None] * 3 if self.strain is None else self.strain.tolist()
+        row.update(zip(_STRAINS, strain), l1=self.l1, direction_deg=self.direction_deg)
+        row.update(n_starts=self.n_starts, n_distinct=self.n_distinct)
+        return {name: np.array([np.nan if x is None else x]) for name, x in row.items()}
+
+    def plot(self, *, ax: Axes | None = None, **line: Any) -> Axes:
+        """Draws the state from above, and gives the axes: see `Sheet.plot`."""
+        return _state(self.state).plot(ax=ax, **line)
 
 
 @dataclass(frozen=True)
-class Extreme:
+class Extreme(Columns):
     """The thickest wire, or the widest gaps, with the state as a design. Lengths in the design's unit."""
 
     #: `local` where a certificate is complete, else `uncertified` or `not-converged`.
@@ -54,13 +79,28 @@ class Extreme:
     gap: float | None
     #: (K, 3): major radius, minor radius and aspect ratio (inner diameter / wire diameter) of each size of ring.
     sizes: NDArray[np.float64]
+    #: Whether the lattice was `free` or `fixed`.
+    lattice: str
     links_ok: bool
     n_starts: int
     n_distinct: int
-    #: Poses, lattice and certificate.
-    state: dict[str, Any] | None
+    #: What was checked: smallest gap, residuals, multipliers, curvature.
+    certificate: dict[str, Any] | None
     #: The state as a design of its own.
     design: Design | None
+    #: The state, as poses to draw and to show.
+    state: Sheet | None
+
+    def to_numpy(self) -> dict[str, NDArray[Any]]:
+        """The columns: a row for each size of ring, of status, gap, major_radius, minor_radius, aspect_ratio."""
+        count = len(self.sizes)
+        columns = zip(("major_radius", "minor_radius", "aspect_ratio"), self.sizes.T)
+        gap = np.nan if self.gap is None else self.gap
+        return {"status": np.array([self.status] * count), "gap": np.full(count, gap), **dict(columns)}
+
+    def plot(self, *, ax: Axes | None = None, **line: Any) -> Axes:
+        """Draws the state from above, and gives the axes: see `Sheet.plot`."""
+        return _state(self.state).plot(ax=ax, **line)
 
 
 def limit(
@@ -70,6 +110,7 @@ def limit(
     minimize: Strain | None = None,
     fix: Mapping[Strain, float] | None = None,
     free: Sequence[Strain] = (),
+    direction: float = 0.0,
     cell: str = "auto",
     minor_radius: float | None = None,
     starts: int = 8,
@@ -77,7 +118,8 @@ def limit(
 ) -> StrainLimit:
     """One strain (exx, eyy or exy) as large or as small as can be: what `maille limit` does.
 
-    Strains of `fix` are held at their values, those of `free` left to the sheet, the others held at 0.
+    Strains of `fix` are held at their values, those of `free` left to the sheet, the others held at 0. Their x axis is turned by
+    `direction`, degrees counter-clockwise from that of the design.
 
     >>> limit("1.1", maximize="exx").status
     'global'
@@ -89,20 +131,30 @@ def limit(
     for name, value in held:
         if not np.isfinite(value):
             raise ArgumentError("fix", f"{name} = {value} is not finite", "give a strain, as 0.05")
+    if not np.isfinite(direction):
+        raise ArgumentError("direction", f"{direction} is not finite", "give an angle in degrees")
+    of = chosen(design, minor_radius)
     text = _native.limit(
-        _chosen(design, minor_radius)._inner,
+        of._inner,
         str(goal),
         sign,
         fix=held,
         free=_sequence(free),
+        direction_deg=float(direction),
         cell=cell,
         starts=_whole("starts", starts, 1),
         seed=_whole("seed", seed, 0),
     )
     found = json.loads(text)
-    strain = found.pop("strain")
-    by_cell = tuple((name, value) for name, value in found.pop("by_cell"))
-    return StrainLimit(strain=None if strain is None else np.array(strain), by_cell=by_cell, **found)
+    solved = found["poses"] is not None
+    strains = found["strains"]
+    return StrainLimit(
+        **{name: found[name] for name in ("status", "value", "bound", "direction_deg", "l1", "certificate")},
+        **{name: found[name] for name in ("links_ok", "n_starts", "n_distinct")},
+        strain=np.array([strains[name]["value"] for name in _STRAINS]) if solved else None,
+        by_cell=tuple((cell["cell"], cell["value"]) for cell in found["by_cell"]),
+        state=Sheet(**Sheet.fields(of, found["cell"], found)) if solved else None,
+    )
 
 
 def tightest(
@@ -135,11 +187,6 @@ def roomiest(
     return _extreme(design, False, lattice, minor_radius, starts, seed, threads)
 
 
-def _chosen(design: DesignLike, minor_radius: float | None) -> Design:
-    chosen = Design.of(design)
-    return chosen if minor_radius is None else chosen.with_minor_radius(minor_radius)
-
-
 def _extreme(
     design: DesignLike,
     thickest: bool,
@@ -152,7 +199,7 @@ def _extreme(
     if lattice not in ("free", "fixed"):
         raise ArgumentError("lattice", f"{lattice!r} is neither free nor fixed", 'give "free" or "fixed"')
     text, state = _native.extreme(
-        _chosen(design, minor_radius)._inner,
+        chosen(design, minor_radius)._inner,
         thickest=thickest,
         lattice_free=lattice == "free",
         starts=_whole("starts", starts, 1),
@@ -160,5 +207,18 @@ def _extreme(
         threads=None if threads is None else _whole("threads", threads, 1),
     )
     found = json.loads(text)
-    sizes = np.array(found.pop("sizes"), dtype=np.float64).reshape(-1, 3)
-    return Extreme(sizes=sizes, design=None if state is None else Design._of(state), **found)
+    sizes = [[size["major_radius"], size["minor_radius"], size["aspect_ratio"]] for size in found["sizes"]]
+    own = None if state is None else Design._of(state)
+    return Extreme(
+        **{name: found[name] for name in ("status", "gap", "lattice", "links_ok", "n_starts", "n_distinct")},
+        sizes=np.array(sizes if own is not None else [], dtype=np.float64).reshape(-1, 3),
+        certificate=found["certificate"],
+        design=own,
+        state=None if own is None else start(own),
+    )
+
+
+def _state(state: Sheet | None) -> Sheet:
+    if state is None:
+        raise MailleError("no state was found", remedy="look at status")
+    return state

@@ -6,20 +6,20 @@ import io
 import json
 import os
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native
-from .design import Design, DesignLike
+from .design import Design, DesignLike, chosen
 from .errors import ArgumentError
+from .sheet import Sheet
+from .table import Columns
 
 if TYPE_CHECKING:
-    import pandas  # type: ignore[import-untyped, unused-ignore]
-    import polars
-    import pyarrow  # type: ignore[import-untyped, unused-ignore]
+    import pyarrow
     from matplotlib.projections.polar import PolarAxes
 
 __all__ = ["Progress", "Record", "State", "characterize", "read_record"]
@@ -31,45 +31,34 @@ Held = Literal["fixed", "free"]
 
 
 @dataclass(frozen=True)
-class State:
-    """Poses of the solved cell at a limit. Lengths in the design's unit."""
-
+class _AtLimit:
     #: Direction of the pull, degrees counter-clockwise from x.
-    direction_deg: float
+    direction_deg: float = 0.0
     #: Stretch - 1 held across it.
-    l2: float
+    l2: float = 0.0
     #: Outcome of the search, as in the column `status`.
-    status: str
-    #: (2, 3): the lattice vectors.
-    lattice: NDArray[np.float64]
+    status: str = ""
     #: (2, 2): in-plane deformation gradient F.
-    deformation_gradient: NDArray[np.float64]
-    #: Names of the M elements, as `flat` or `flat@1,0`.
-    elements: tuple[str, ...]
-    #: (M, 3): positions of their reference points.
-    position: NDArray[np.float64]
-    #: (M, 4): unit quaternions (w, x, y, z) that turn them from the design's pose.
-    rotation: NDArray[np.float64]
-    #: The line of `states.jsonl`: contacts with forces, the chain of the bound, residual, note.
-    document: dict[str, Any]
+    deformation_gradient: NDArray[np.float64] = field(default_factory=lambda: np.eye(2))
+
+
+@dataclass(frozen=True)
+class State(_AtLimit, Sheet):
+    """The solved cell at a limit. Its `document` is the line of `states.jsonl`: contacts with forces, the chain of the bound,
+    residual, note."""
 
     @classmethod
-    def _of(cls, document: dict[str, Any]) -> State:
-        poses = document["poses"]
+    def _of(cls, design: Design, cell: str, document: dict[str, Any]) -> State:
         return cls(
+            **Sheet.fields(design, cell, document),
             direction_deg=document["direction_deg"],
             l2=document["l2"],
             status=document["status"],
-            lattice=np.array([document["a1"], document["a2"]], dtype=np.float64),
             deformation_gradient=np.array(document["deformation_gradient"], dtype=np.float64),
-            elements=tuple(pose["element"] for pose in poses),
-            position=np.array([pose["position"] for pose in poses], dtype=np.float64).reshape(-1, 3),
-            rotation=np.array([pose["rotation"] for pose in poses], dtype=np.float64).reshape(-1, 4),
-            document=document,
         )
 
 
-class Record:
+class Record(Columns):
     """Limits of a map: one row a direction and l2, and the state at each. What `maille characterize` leaves in a folder.
 
     `docs/record.md` says what the columns are.
@@ -100,7 +89,8 @@ class Record:
     @property
     def states(self) -> list[State]:
         """The states, in the order of the rows."""
-        return [State._of(json.loads(state)) for state in self._inner.states()]
+        design, cells = self.design, self.to_numpy()["cell"].tolist()
+        return [State._of(design, cell, json.loads(state)) for cell, state in zip(cells, self._inner.states())]
 
     def to_numpy(self) -> dict[str, NDArray[Any]]:
         """The columns, each an array of one value a row.
@@ -123,21 +113,10 @@ class Record:
 
     def to_arrow(self) -> pyarrow.Table:
         """A `pyarrow.Table`: what `maille table -o FILE.parquet` holds, with units, meanings and the run's inputs as metadata."""
-        from pyarrow import parquet  # type: ignore[import-untyped, unused-ignore]
+        from pyarrow import parquet
 
-        return parquet.read_table(io.BytesIO(self._inner.parquet()))
-
-    def to_pandas(self) -> pandas.DataFrame:
-        """A `pandas.DataFrame`."""
-        return self.to_arrow().to_pandas()
-
-    def to_polars(self) -> polars.DataFrame:
-        """A `polars.DataFrame`."""
-        import polars
-
-        frame = polars.from_arrow(self.to_arrow())
-        assert isinstance(frame, polars.DataFrame)
-        return frame
+        table: pyarrow.Table = parquet.read_table(io.BytesIO(self._inner.parquet()))
+        return table
 
     def plot(self, quantity: Quantity = "stretch", *, ax: PolarAxes | None = None, **line: Any) -> PolarAxes:
         """Draws the limits against the direction of pull, a curve for each l2, and gives the axes.
@@ -190,6 +169,7 @@ def characterize(
     *,
     lateral: Held = "fixed",
     shear: Held = "fixed",
+    compression: bool = False,
     method: Literal["exact", "energy"] = "exact",
     cell: str = "auto",
     minor_radius: float | None = None,
@@ -205,7 +185,8 @@ def characterize(
     """How far a sheet stretches in each direction before it locks: what `maille characterize` does, with its defaults.
 
     `directions` (degrees counter-clockwise from x) and `l2` (stretch - 1 held across) are numbers or ranges as
-    `"0:180:5"`. `lateral="free"` and `shear="free"` leave width and shear to the sheet. `energy` has options of the energy
+    `"0:180:5"`. `lateral="free"` and `shear="free"` leave width and shear to the sheet. `compression` asks how far
+    the sheet is pushed together instead, in all cells up to 3x3. `energy` has options of the energy
     method, as `{"tau": 0.01}`. With `out` the record is kept in that folder while limits come in, and the same call goes on
     where an earlier one stopped; without, it stays in memory. `progress` is True for a bar of tqdm, or is called with
     (done, total). Results do not depend on `threads`. Ctrl-C stops it; what was found is in `out`.
@@ -214,9 +195,6 @@ def characterize(
     >>> record.to_numpy()["l1"].round(9).tolist(), record.to_numpy()["status"].tolist()
     ([0.44], ['global'])
     """
-    chosen = Design.of(design)
-    if minor_radius is not None:
-        chosen = chosen.with_minor_radius(minor_radius)
     lateral_free, shear_free = _free("lateral", lateral), _free("shear", shear)
     usual_directions, usual_l2 = _native.usual()
     if lateral_free:
@@ -227,11 +205,12 @@ def characterize(
         raise ArgumentError("energy", "is for the energy method", 'leave it out, or give method="energy"')
     with _Bar(progress) as told:
         native = _native.characterize(
-            chosen._inner,
+            chosen(design, minor_radius)._inner,
             _numbers("directions", usual_directions if directions is None else directions),
             _numbers("l2", usual_l2 if l2 is None else l2),
             lateral_free=lateral_free,
             shear_free=shear_free,
+            compression=compression,
             method=method,
             cell=cell,
             starts=_whole("starts", starts, 1),
@@ -273,15 +252,16 @@ def _numbers(name: str, values: str | ArrayLike) -> list[float]:
 class _Bar:
     """A callback from what the user gave as progress."""
 
-    def __init__(self, progress: Progress) -> None:
+    def __init__(self, progress: Progress, unit: str = "limit") -> None:
         self._progress = progress
+        self._unit = unit
         self._bar: Any = None
 
     def __enter__(self) -> Callable[[int, int], object] | None:
         if self._progress is True:
-            from tqdm.auto import tqdm  # type: ignore[import-untyped, unused-ignore]
+            from tqdm.auto import tqdm
 
-            self._bar = tqdm(unit="limit")
+            self._bar = tqdm(unit=self._unit)
             return self._tell
         return self._progress if callable(self._progress) else None
 

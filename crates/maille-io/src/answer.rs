@@ -1,0 +1,150 @@
+//! Answers to single questions as JSON documents, with the keys of `docs/json.md`.
+
+use maille::{
+    design::Design,
+    lattice::Cell,
+    limit::{
+        CellTrend,
+        extreme::ExtremeOutcome,
+        strain::{Strain, StrainOutcome},
+    },
+    model::Model,
+    record::{Status, pose_records},
+    solve::certificate::Certificate,
+};
+use maille_geometry::Vec3;
+use serde_json::{Map, Value, json};
+
+/// A question on one strain, and what came of it.
+pub struct StrainAnswer<'a> {
+    /// Name of the design.
+    pub design: &'a str,
+    /// The strain that was sought.
+    pub goal: Strain,
+    /// 1 for the largest value, −1 for the least.
+    pub sign: f64,
+    /// Strains that were left to the sheet.
+    pub free: &'a [Strain],
+    /// Direction of the strains' x axis.
+    pub direction_deg: f64,
+    /// The cells that were solved.
+    pub cells: &'a [Cell],
+    /// The design, compiled for the cell of the answer.
+    pub model: &'a Model,
+    /// What was found.
+    pub found: &'a StrainOutcome,
+}
+
+impl StrainAnswer<'_> {
+    /// The status in words of strains.
+    pub fn status(&self) -> &'static str {
+        match self.found.status {
+            Status::L2Unreachable => "unreachable",
+            Status::L2NotReached => "not-reached",
+            status => status.name(),
+        }
+    }
+
+    /// `largest`, or `least`.
+    pub fn most(&self) -> &'static str {
+        if self.sign > 0.0 { "largest" } else { "least" }
+    }
+
+    /// What a strain is in the question.
+    pub fn role(&self, strain: Strain) -> &'static str {
+        match strain {
+            goal if goal == self.goal => self.most(),
+            free if self.free.contains(&free) => "free",
+            _ => "held",
+        }
+    }
+
+    /// What each cell reached, with the sign of the strain.
+    pub fn by_cell(&self) -> impl Iterator<Item = CellTrend> {
+        self.found.trend.iter().map(|t| CellTrend { value: t.value.map(|p| self.sign * p), ..*t })
+    }
+
+    /// l1 of lines along a normal strain that was sought: λ = √(1 + 2 E), l1 = λ − 1.
+    pub fn stretch(&self) -> Option<f64> {
+        let normal = self.goal != Strain::Exy;
+        self.found.value.filter(|_| normal).map(|p| (1.0 + 2.0 * self.sign * p).max(0.0).sqrt() - 1.0)
+    }
+
+    /// The document.
+    pub fn json(&self) -> Value {
+        let found = self.found;
+        let solved = found.value.is_some();
+        let strain = |s: Strain| {
+            let value = solved.then(|| s.of(&found.strain, self.direction_deg));
+            (s.name().to_owned(), json!({ "value": value, "is": self.role(s) }))
+        };
+        let cell = |t: CellTrend| {
+            let name = self.cells[t.cell].to_string();
+            json!({ "cell": name, "value": t.value, "n_starts": t.n_starts, "n_distinct": t.n_distinct })
+        };
+        json!({
+            "design": self.design,
+            "status": self.status(),
+            "value": found.value.map(|p| self.sign * p),
+            "bound": found.bound.map(|bound| self.sign * bound),
+            "strains": Strain::ALL.map(strain).into_iter().collect::<Map<_, _>>(),
+            "cell": self.model.cell.to_string(),
+            "by_cell": self.by_cell().map(cell).collect::<Vec<_>>(),
+            "direction_deg": self.direction_deg,
+            "l1": self.stretch(),
+            "a1": solved.then(|| length(self.model, found.state.a1)),
+            "a2": solved.then(|| length(self.model, found.state.a2)),
+            "poses": solved.then(|| pose_records(self.model, &found.state)),
+            "certificate": found.certificate.as_ref().map(|c| certificate(c, self.model.unit)),
+            "links_ok": solved.then_some(found.links_ok),
+            "n_starts": found.n_starts,
+            "n_distinct": found.n_distinct,
+        })
+    }
+}
+
+/// The thickest wire or the widest gap of a design, and the state.
+pub fn extreme(design: &Design, model: &Model, lattice_free: bool, found: &ExtremeOutcome) -> Value {
+    let sizes = found.sizes(model).into_iter().map(|size| {
+        json!({
+            "major_radius": size.major_radius,
+            "minor_radius": finite(size.minor_radius),
+            "aspect_ratio": finite(size.aspect_ratio()),
+        })
+    });
+    json!({
+        "design": design.name,
+        "status": found.status.name(),
+        "lattice": if lattice_free { "free" } else { "fixed" },
+        "gap": found.gap(model),
+        "sizes": sizes.collect::<Vec<_>>(),
+        "a1": length(model, found.state.a1),
+        "a2": length(model, found.state.a2),
+        "poses": pose_records(model, &found.state),
+        "certificate": found.certificate.as_ref().map(|c| certificate(c, model.unit)),
+        "links_ok": found.links_ok,
+        "n_starts": found.n_starts,
+        "n_distinct": found.n_distinct,
+    })
+}
+
+/// A vector in the file's unit.
+fn length(model: &Model, a: Vec3) -> [f64; 3] {
+    (a * model.unit).into()
+}
+
+fn finite(x: f64) -> Option<f64> {
+    x.is_finite().then_some(x)
+}
+
+/// Figures of a certificate, `null` where one is not finite; the gap in the file's unit, of which R is `unit`.
+fn certificate(c: &Certificate, unit: f64) -> Value {
+    json!({
+        "smallest_gap": finite(c.smallest_gap * unit),
+        "dual_residual": finite(c.dual_residual),
+        "complementarity": finite(c.complementarity),
+        "min_multiplier": finite(c.min_multiplier),
+        "min_curvature": c.min_curvature.and_then(finite),
+        "zero_modes": c.zero_modes,
+    })
+}

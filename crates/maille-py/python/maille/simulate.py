@@ -1,0 +1,216 @@
+"""Finite sheets: held at edges, pulled, under weight."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _native
+from .design import Design, DesignLike, chosen, write_whole
+from .errors import ArgumentError, NotARecordError, ShapeError
+from .record import Progress, _Bar, _sequence, _whole
+from .sheet import Sheet
+from .table import Columns
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+__all__ = ["Simulation", "read_simulation", "simulate"]
+
+_FILES = ("simulation.json", "frames.jsonl")
+
+
+@dataclass(frozen=True)
+class Simulation(Columns):
+    """What became of a finite sheet: F frames, each at rest, of M elements. Lengths in the design's unit."""
+
+    #: `reached` (the pull was done, or the sheet is at rest), `locked`, or `not-converged`.
+    end: str
+    #: Largest share of the pull that was reached.
+    share: float
+    #: Smallest gap there; negative where tori overlap; None where no rings are near each other.
+    smallest_gap: float | None
+    #: Whether the links are those of the start.
+    links_ok: bool
+    #: Newton iterations, random kicks, and steps against a drag without a balance of forces.
+    iterations: int
+    kicks: int
+    unbalanced: int
+    #: What happened, where `end` does not say it.
+    note: str | None
+    #: The design, and its cells along a1 and a2.
+    design: Design
+    tile: str
+    #: Names of the elements, as `flat@0,1`.
+    elements: tuple[str, ...]
+    #: (F,): share of the pull in each frame.
+    frame_share: NDArray[np.float64]
+    #: (F,): energy of each frame, in beta R^2.
+    energy: NDArray[np.float64]
+    #: (F, M, 3): positions of the elements' reference points.
+    position: NDArray[np.float64]
+    #: (F, M, 4): unit quaternions (w, x, y, z) that turn them from the design's pose.
+    rotation: NDArray[np.float64]
+    #: `simulation.json` and the lines of `frames.jsonl`.
+    document: dict[str, Any] = field(repr=False)
+    frames: tuple[dict[str, Any], ...] = field(repr=False)
+
+    @classmethod
+    def _of(cls, text: str, lines: str) -> Simulation:
+        document: dict[str, Any] = json.loads(text)
+        frames: tuple[dict[str, Any], ...] = tuple(json.loads(line) for line in lines.splitlines())
+        poses = [frame["poses"] for frame in frames]
+        return cls(
+            **document["outcome"],
+            design=Design._of(_native.Design.from_json(json.dumps(document["design"]))),
+            tile=document["tile"],
+            elements=tuple(pose["element"] for pose in poses[0]),
+            frame_share=np.array([frame["share"] for frame in frames], dtype=np.float64),
+            energy=np.array([frame["energy"] for frame in frames], dtype=np.float64),
+            position=np.array([[pose["position"] for pose in frame] for frame in poses], dtype=np.float64),
+            rotation=np.array([[pose["rotation"] for pose in frame] for frame in poses], dtype=np.float64),
+            document=document,
+            frames=frames,
+        )
+
+    def to_numpy(self) -> dict[str, NDArray[Any]]:
+        """The columns: a row for each element in each frame, of frame, share, energy, element, position x, y, z and rotation
+        w, i, j, k."""
+        count, of = len(self.frames), len(self.elements)
+        out: dict[str, NDArray[Any]] = {
+            "frame": np.repeat(np.arange(count), of),
+            "share": np.repeat(self.frame_share, of),
+            "energy": np.repeat(self.energy, of),
+            "element": np.tile(np.array(self.elements, dtype=np.str_), count),
+        }
+        out.update(zip("xyz", self.position.reshape(-1, 3).T))
+        out.update(zip(("qw", "qi", "qj", "qk"), self.rotation.reshape(-1, 4).T))
+        return out
+
+    def plot(self, *, ax: Axes | None = None, **line: Any) -> Axes:
+        """Draws the energy against the share of the pull, and gives the axes."""
+        if ax is None:
+            from matplotlib import pyplot
+
+            ax = pyplot.figure(layout="constrained").add_subplot()
+        ax.plot(self.frame_share, self.energy, **{"marker": "o", **line})
+        ax.set_xlabel("share of the pull")
+        ax.set_ylabel("energy [beta R^2]")
+        ax.set_title(f"{self.design.name}, {self.tile} cells: {self.end}")
+        return ax
+
+    def sheet(self, frame: int = -1) -> Sheet:
+        """The sheet in a frame, as poses to draw and to show."""
+        columns, rows = (int(n) for n in self.tile.split("x"))
+        a1 = [columns * x for x in self.design.a1]
+        a2 = [rows * x for x in self.design.a2]
+        document = {**self.frames[frame], "a1": a1, "a2": a2}
+        return Sheet(**Sheet.fields(self.design, self.tile, document), finite=True)
+
+    def save(self, folder: str | os.PathLike[str]) -> None:
+        """Writes the folder that `maille simulate` writes; `maille render --from FOLDER` draws it."""
+        out = Path(folder)
+        out.mkdir(parents=True, exist_ok=True)
+        # Frames first: a folder with simulation.json is whole.
+        lines = "".join(json.dumps(frame, ensure_ascii=False) + "\n" for frame in self.frames)
+        write_whole(out / _FILES[1], lines.encode())
+        write_whole(out / _FILES[0], (json.dumps(self.document, indent=2, ensure_ascii=False) + "\n").encode())
+
+
+def read_simulation(folder: str | os.PathLike[str]) -> Simulation:
+    """Reads what `maille simulate` or `Simulation.save` has written."""
+    files = [Path(folder) / name for name in _FILES]
+    if not files[0].is_file():
+        found = ", ".join(sorted(p.name for p in Path(folder).glob("*"))[:3]) or "nothing"
+        raise NotARecordError(f"{folder} holds no simulation", Path(folder), found)
+    text, lines = (file.read_text(encoding="utf-8") for file in files)
+    return Simulation._of(*_native.read_simulation((str(files[0]), str(files[1])), (text, lines)))
+
+
+def simulate(
+    design: DesignLike,
+    tile: tuple[int, int] = (4, 4),
+    *,
+    fix: str | Sequence[str] = (),
+    pull: Mapping[str, ArrayLike] | None = None,
+    gravity: ArrayLike | None = None,
+    force: Mapping[str, ArrayLike] | None = None,
+    floor: float | None = None,
+    drag: float | None = None,
+    steps: int = 10,
+    minor_radius: float | None = None,
+    alpha: float | None = None,
+    tau: float | None = None,
+    max_iterations: int = 2000,
+    seed: int = 1,
+    out: str | os.PathLike[str] | None = None,
+    progress: Progress = None,
+) -> Simulation:
+    """A finite sheet of `tile` cells, held at edges, pulled in steps, under weight: what `maille simulate` does.
+
+    Places are `left`, `right`, `top`, `bottom`, an element (`flat`), or its copy in one cell (`flat@0,2`). `pull` moves places by a
+    vector (3,), or along several (N, 3), all from the start, in the design's unit. `gravity` is the weight of every element, `force`
+    acts on places; 1 is a thousandth of the stiffness of a pull at R. `floor` is a height, `drag` slows the sheet. With `out` the
+    folder of `maille simulate` is written.
+
+    >>> sheet = simulate("1.1", (2, 2), fix="left", pull={"right": (0.2, 0, 0)}, steps=1)
+    >>> sheet.end, sheet.position.shape
+    ('reached', (2, 12, 3))
+    """
+    pulls = [{"place": place, "way": _vectors("pull", way)} for place, way in (pull or {}).items()]
+    forces = [{"place": place, "force": _vector("force", at)} for place, at in (force or {}).items()]
+    plan = {
+        "fix": _sequence(fix),
+        "pull": pulls,
+        "gravity": None if gravity is None else _vector("gravity", gravity),
+        "force": forces,
+        "floor": None if floor is None else _number("floor", floor),
+        "drag": None if drag is None else _positive("drag", drag),
+        "steps": _whole("steps", steps, 1),
+        "max_iterations": _whole("max_iterations", max_iterations, 1),
+        "seed": _whole("seed", seed, 0),
+    }
+    plan.update({name: _positive(name, x) for name, x in (("alpha", alpha), ("tau", tau)) if x is not None})
+    columns, rows = (_whole("tile", n, 1) for n in tile)
+    with _Bar(progress, unit="step") as told:
+        found = _native.simulate(chosen(design, minor_radius)._inner, (columns, rows), json.dumps(plan), told)
+    simulation = Simulation._of(*found)
+    if out is not None:
+        simulation.save(out)
+    return simulation
+
+
+def _number(name: str, value: float) -> float:
+    if not np.isfinite(value):
+        raise ArgumentError(name, f"{value!r} is not finite", "give a number")
+    return float(value)
+
+
+def _positive(name: str, value: float) -> float:
+    if not (np.isfinite(value) and value > 0):
+        raise ArgumentError(name, f"{value!r} is not positive", "give a positive number")
+    return float(value)
+
+
+def _vectors(name: str, values: ArrayLike) -> list[list[float]]:
+    array = np.atleast_2d(np.asarray(values, dtype=np.float64))
+    if array.ndim != 2 or array.shape[1] != 3 or array.shape[0] == 0:
+        raise ShapeError(name, f"has the shape {np.shape(values)}", "give (3,) or (N, 3)", value=np.shape(values))
+    if not np.all(np.isfinite(array)):
+        raise ArgumentError(name, f"{values!r} is not finite", "give finite numbers")
+    rows: list[list[float]] = array.tolist()
+    return rows
+
+
+def _vector(name: str, values: ArrayLike) -> list[float]:
+    rows = _vectors(name, values)
+    if len(rows) != 1:
+        raise ShapeError(name, f"has {len(rows)} vectors", "give one, (3,)", value=np.shape(values))
+    return rows[0]

@@ -1,0 +1,65 @@
+//! Finite sheets.
+
+use crate::{
+    design::Design,
+    error,
+    wait::{Step, wait},
+};
+use maille::{
+    lattice::Cell,
+    record::{FrameRecord, pose_records},
+    simulate::simulate as run,
+};
+use maille_io::{
+    mesh::Tile,
+    record::{SheetPlan, SimulationRecord, write_frames, write_simulation},
+};
+use pyo3::prelude::*;
+
+/// What `maille simulate` writes: `simulation.json` and `frames.jsonl`. `plan` is a document with the fields of
+/// [`SheetPlan`].
+#[pyfunction]
+#[pyo3(signature = (design, tile, plan, progress))]
+pub fn simulate(
+    py: Python<'_>,
+    design: &Design,
+    tile: [u32; 2],
+    plan: &str,
+    progress: Option<Bound<'_, PyAny>>,
+) -> PyResult<(String, String)> {
+    let plan: SheetPlan = serde_json::from_str(plan)
+        .map_err(|e| error::argument("pull", e.to_string(), "give vectors of three numbers"))?;
+    if plan.is_still() {
+        return Err(error::argument("pull", "nothing moves this sheet", "give a pull, a force or gravity"));
+    }
+    let [m, n] = tile.map(|k| i32::try_from(k).unwrap_or(i32::MAX));
+    let cell = Cell::new([[m, 0], [0, n]]).map_err(|e| error::argument("tile", e.problem, e.help))?;
+    let model = design.compile_sheet(cell)?;
+    let setup = plan.setup(&model).map_err(|e| error::invalid(&e))?;
+    let steps = f64::from(plan.steps);
+    let end = wait(py, None, progress.as_ref(), |cancel, tell| {
+        tell(Step::More(plan.steps as usize));
+        let mut told = 0;
+        // The step that is worked on is not done yet.
+        run(&model, &setup, cancel, &mut |accepted| {
+            let done = (accepted.share * steps).ceil() as usize;
+            for _ in told..done.saturating_sub(1) {
+                tell(Step::Done);
+            }
+            told = told.max(done.saturating_sub(1));
+        })
+    })?;
+    let end = end.map_err(|e| error::invalid(&e))?;
+    let last = || FrameRecord { run: 0, share: end.share, energy: end.energy, poses: pose_records(&model, &end.state) };
+    let frames = if end.path.is_empty() { vec![last()] } else { end.path.clone() };
+    let record = SimulationRecord::new(&design.design, Tile(tile), plan, &model, &end);
+    Ok((write_simulation(&record), write_frames(&frames)))
+}
+
+/// Reads `simulation.json` and `frames.jsonl`, and gives them as they would be written now.
+#[pyfunction]
+pub fn read_simulation(names: [String; 2], texts: [String; 2]) -> PyResult<(String, String)> {
+    let record = maille_io::record::read_simulation(&names[0], &texts[0]).map_err(|e| error::record(&e))?;
+    let frames = maille_io::record::read_frames(&names[1], &texts[1]).map_err(|e| error::record(&e))?;
+    Ok((write_simulation(&record), write_frames(&frames)))
+}
