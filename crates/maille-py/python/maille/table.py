@@ -26,7 +26,8 @@ class Columns:
         """A `pyarrow.Table`."""
         import pyarrow
 
-        return pyarrow.table({name: _plain(column) for name, column in self.to_numpy().items()})
+        columns = {name: (column, pyarrow.float64() if column.dtype.kind == "f" else None) for name, column in self.to_numpy().items()}
+        return pyarrow.table({name: pyarrow.array(_plain(column), kind) for name, (column, kind) in columns.items()})
 
     def to_pandas(self) -> pandas.DataFrame:
         """A `pandas.DataFrame`."""
