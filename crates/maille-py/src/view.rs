@@ -37,6 +37,8 @@ struct Document {
     contacts: Vec<ContactRecord>,
 }
 
+/// Vertices and corners of triangles.
+type Triangles = (Vec<[f32; 3]>, Vec<[u32; 3]>);
 /// Triangles of one kind of element: its name, vertices (V, 3) and corners (T, 3).
 type KindMesh<'py> = (String, Bound<'py, PyArray2<f32>>, Bound<'py, PyArray2<u32>>);
 
@@ -98,15 +100,15 @@ impl Sheet {
         let fineness = Fineness::Segments(around, Some(across));
         let scene = Scene::new(&self.model, &self.state, Tile(tile), fineness, 1.0);
         let scene = scene.map_err(|e| error::argument("tile", e.to_string(), "show fewer cells"))?;
-        let mut kinds = vec![(Vec::new(), Vec::new()); scene.kinds.len()];
+        let mut kinds: Vec<Triangles> = vec![(Vec::new(), Vec::new()); scene.kinds.len()];
         for ring in scene.rings() {
-            let (vertices, triangles): &mut (Vec<[f32; 3]>, Vec<[u32; 3]>) = &mut kinds[ring.placed.kind];
+            let (vertices, triangles) = &mut kinds[ring.placed.kind];
             let first = vertices.len();
             let shape = &scene.shapes[ring.shape];
             vertices.extend(shape.vertices.iter().map(|v| placed(&ring.pose, v)));
             triangles.extend(shape.triangles().map(|corners| corners.map(|k| (first + k) as u32)));
         }
-        let mesh = |(kind, (vertices, triangles)): (&Kind, (Vec<[f32; 3]>, Vec<[u32; 3]>))| {
+        let mesh = |(kind, (vertices, triangles)): (&Kind, Triangles)| {
             let (v, t) = (vertices.len(), triangles.len());
             let vertices = vertices.into_flattened().into_pyarray(py).reshape([v, 3])?;
             let triangles = triangles.into_flattened().into_pyarray(py).reshape([t, 3])?;
