@@ -6,6 +6,7 @@
 //!
 //! No closures in the kernels: what is not inlined into the function of an instruction set cannot use it.
 
+use crate::circle::are_sound;
 use crate::grid::Direction;
 use crate::lane::{Lane, Register};
 use crate::placed::{Block, WIDTH};
@@ -70,6 +71,11 @@ impl Approaches {
     /// By the complete enumeration of one pair.
     pub(crate) fn of_pair(a: &Circle, b: &Circle) -> Self {
         let (mut out, mut continuum) = (Self::NONE, false);
+        if !are_sound(a, b) {
+            out.found[0] = Approach { distance: f64::NAN, direction_b: Vec3::repeat(f64::NAN) };
+            out.count = 1;
+            return out;
+        }
         let mut add = |distance: f64, direction_b: Vec3| {
             out.found[out.count] = Approach { distance, direction_b };
             out.count += 1;

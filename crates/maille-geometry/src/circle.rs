@@ -15,6 +15,17 @@ pub struct Circle {
     pub radius: f64,
 }
 
+/// Whether the numbers of two circles are such that distances can be found: finite but for the place of both together.
+pub(crate) fn are_sound(a: &Circle, b: &Circle) -> bool {
+    let sized = |c: &Circle| (SMALLEST..=LARGEST).contains(&c.radius) && (c.normal.norm_squared() - 1.0).abs() < 1e-6;
+    sized(a) && sized(b) && (b.center - a.center).iter().all(|x| x.abs() <= LARGEST)
+}
+
+/// Radii from here and lengths up to [`LARGEST`] have squares and cubes that are ordinary numbers.
+pub(crate) const SMALLEST: f64 = 1e-90;
+/// See [`SMALLEST`].
+pub(crate) const LARGEST: f64 = 1e90;
+
 impl Circle {
     /// The circle with this centre, normal and radius (positive and finite, asserted in debug builds).
     pub fn new(center: Vec3, normal: UnitVector3<f64>, radius: f64) -> Self {

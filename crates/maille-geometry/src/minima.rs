@@ -1,5 +1,6 @@
 //! The local minima of the distance between two circles: what they are, and how they are handed over.
 
+use crate::circle::are_sound;
 use crate::grid::Direction;
 use crate::relative::Relative;
 use crate::{Circle, Vec3, quick, search, single};
@@ -145,6 +146,9 @@ impl Minima {
 /// kink, is a maximum or no extremum and never among the answers, except for equal circles' meridian, a continuum.
 /// Two minima closer than `2.4e-5` rad, which differ by rounding only, are one.
 ///
+/// **Wrong input.** Where a number is not finite, a radius is not positive, a length is beyond `1e±90`, or a normal is no unit
+/// vector, there is one minimum, and all its numbers are NaN.
+///
 /// **Cost.** No heap; times are those of `cargo bench -p maille-geometry --bench pair`, some in the repository's
 /// `docs/decisions/0010-batch-kernel.md`; [`circle_distance_approaches`](crate::circle_distance_approaches) takes many pairs
 /// at a quarter of it. Pairs that are close to an equidistant one without a common axis (within
@@ -164,6 +168,18 @@ pub fn circle_distance_minima(a: &Circle, b: &Circle) -> Minima {
 /// [`circle_distance_minima`] without registers, for every pair.
 #[inline(never)]
 fn enumerate(a: &Circle, b: &Circle, out: &mut Minima) {
+    if !are_sound(a, b) {
+        let nowhere = Vec3::repeat(f64::NAN);
+        out.found.push(Minimum {
+            distance: f64::NAN,
+            point_a: nowhere,
+            point_b: nowhere,
+            direction_b: [f64::NAN; 2],
+            gradient: [f64::NAN; 2],
+            hessian: [[f64::NAN; 2]; 2],
+        });
+        return;
+    }
     // Along the smaller circle `h` is the smoother: it comes near the other's axis only far from the other circle.
     let swapped = a.radius < b.radius;
     let pair = if swapped { Relative::new(b, a) } else { Relative::new(a, b) };

@@ -2,6 +2,7 @@
 
 use crate::Circle;
 use crate::brackets::Angle;
+use crate::circle::{LARGEST, SMALLEST};
 use crate::lane::{Lane, Register};
 use crate::reduced::Reduced;
 use pulp::Simd;
@@ -183,7 +184,7 @@ impl<T: Lane> Placed<T> {
         let offset = [dot(x, between) * inverse, dot(y, between) * inverse, dot(base_normal, between) * inverse];
         let pair =
             Reduced::new(base_radius * inverse, radius * inverse, offset, dot(base_normal, normal), dot(y, tilt));
-        Framed { pair, axes: [x, y], steepest: cross(y, normal), scale, swapped, length }
+        Framed { pair, axes: [x, y], steepest: cross(y, normal), scale, swapped, least_radius: radius, length }
     }
 }
 
@@ -194,15 +195,19 @@ pub(crate) struct Framed<T: Lane> {
     pub steepest: Vector<T>,
     pub scale: T,
     swapped: T::Mask,
+    least_radius: T,
     /// Sine of the planes' angle.
     length: T,
 }
 
 impl<T: Lane> Framed<T> {
-    /// The planes are not so nearly parallel that rounding turns the axes.
+    /// The planes are not so nearly parallel that rounding turns the axes, and no square overflows or vanishes. Radii of 0
+    /// or less and numbers that are not finite are not ordinary either.
     #[inline(always)]
-    pub fn is_tilted(&self) -> T::Mask {
-        self.length.like(LEAST_TILT).below(self.length)
+    pub fn is_ordinary(&self) -> T::Mask {
+        let like = |x| self.length.like(x);
+        let sized = T::both(self.scale.below(like(LARGEST)), like(SMALLEST).below(self.least_radius));
+        T::both(like(LEAST_TILT).below(self.length), sized)
     }
 
     /// The distance at an angle, and the direction on circle B.

@@ -82,7 +82,7 @@ impl WithSimd for Single<'_> {
         let (base, moving) = if swapped { (b, a) } else { (a, b) };
         let framed = Placed::one(simd, base, moving).framed();
         let pair = &framed.pair;
-        if !<Register<S>>::any(<Register<S>>::both(is_steep(pair), framed.is_tilted())) {
+        if !<Register<S>>::any(<Register<S>>::both(is_steep(pair), framed.is_ordinary())) {
             return false;
         }
         let Some(rising) = rising(simd, pair) else { return false };

@@ -157,7 +157,7 @@ impl WithSimd for Solve<'_> {
             let (brackets, count) = rows.rising(simd, from, &framed.pair);
             let (angles, good) = roots([&framed.pair; SLOTS], &brackets, SLOTS);
             let few = <Register<S>>::both(zero.below(count), count.below(zero.like(SLOTS as f64 + 0.5)));
-            let regular = <Register<S>>::both(few, <Register<S>>::both(is_steep(&framed.pair), framed.is_tilted()));
+            let regular = <Register<S>>::both(few, <Register<S>>::both(is_steep(&framed.pair), framed.is_ordinary()));
             count.store(&mut rows.counts, from);
             <Register<S>>::pick(regular, good[0] * good[1], zero).store(&mut rows.complete, from);
             let alone = count.below(one + zero.like(0.5));
