@@ -3,11 +3,13 @@
 //! What is here turns Python's arguments into those of the crates, lets other Python threads run meanwhile, listens for
 //! Ctrl-C, and turns errors into the classes of `maille.errors`. What needs no native code is Python, in `python/maille`.
 
+mod chain;
 mod design;
 mod error;
 mod geometry;
 mod map;
 mod question;
+mod study;
 mod surface;
 mod wait;
 
@@ -15,6 +17,8 @@ use pyo3::prelude::*;
 
 #[pymodule]
 mod _native {
+    #[pymodule_export]
+    use crate::chain::{OpenMap, joint_csv};
     #[pymodule_export]
     use crate::design::{Design, builtin_names, nearest_builtin_name};
     #[pymodule_export]
@@ -24,7 +28,9 @@ mod _native {
     #[pymodule_export]
     use crate::question::{extreme, limit};
     #[pymodule_export]
-    use crate::surface::boundary;
+    use crate::study::{folder_name, study};
+    #[pymodule_export]
+    use crate::surface::{boundary, boundary_by, boundary_head, solve_rays};
 
     /// Version of the package, that of the program.
     #[pymodule_export]

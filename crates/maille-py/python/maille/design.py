@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 import os
-import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Union
 
 from . import _native
+from ._files import write_whole
 from .errors import DesignError, UnknownDesignError
 
 __all__ = ["Design", "DesignLike", "Element", "Ring", "designs"]
@@ -127,18 +127,7 @@ class Design:
 
     def save(self, file: str | os.PathLike[str]) -> None:
         """Writes the design as a TOML file, whole or not at all."""
-        path = Path(file)
-        handle, temporary = tempfile.mkstemp(prefix=".maille-", suffix=".tmp", dir=path.parent)
-        try:
-            with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as out:
-                out.write(self.to_toml())
-            mask = os.umask(0)
-            os.umask(mask)
-            os.chmod(temporary, 0o666 & ~mask)
-            os.replace(temporary, path)
-        except BaseException:
-            os.unlink(temporary)
-            raise
+        write_whole(Path(file), self.to_toml().encode())
 
     def to_toml(self) -> str:
         """The text of the design's file."""

@@ -1,0 +1,44 @@
+"""Tasks on a cluster: handed out once, their results in the order in which they come."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, TypeVar, Union
+
+import distributed
+
+from ..errors import ArgumentError, ChainError, MailleError
+
+T = TypeVar("T")
+
+
+def client_of(client: distributed.Client | None) -> distributed.Client:
+    """The client that is given, or the current one."""
+    if client is None:
+        try:
+            client = distributed.get_client()
+        except ValueError:
+            remedy = "make one: dask.distributed.Client(address), or Client() for the cores of this machine"
+            raise ArgumentError("client", "there is none", remedy) from None
+    if not isinstance(client, distributed.Client) or client.asynchronous:
+        raise ArgumentError("client", f"{client!r} is none that waits", "give a dask.distributed.Client")
+    return client
+
+
+def results(
+    client: distributed.Client, function: Callable[..., T], calls: Mapping[str, tuple[Any, ...]], retries: int
+) -> Iterator[tuple[str, Union[T, MailleError]]]:
+    """Calls a function on the workers and gives each result with its key. What raised to the end, or lost its workers more often than the
+    scheduler allows, is a `ChainError`. When this is left early, what has not begun is taken back."""
+    futures = {key: client.submit(function, *call, key=key, retries=retries) for key, call in calls.items()}
+    try:
+        for future in distributed.as_completed(list(futures.values())):
+            del futures[future.key]
+            if future.status == "finished":
+                yield future.key, future.result()
+            else:
+                error = future.exception()
+                yield future.key, ChainError(f"{type(error).__name__}: {error}".splitlines()[0])
+            future.release()
+    finally:
+        client.cancel(list(futures.values()), force=True)
