@@ -21,7 +21,8 @@ except ImportError as error:
 from ._maps import characterize
 from ._results import Failure, Results
 from ._study import sweep
+from ._surface import Surfaces, boundary
 
 del _distributed, _pyarrow
 
-__all__ = ["Failure", "Results", "characterize", "sweep"]
+__all__ = ["Failure", "Results", "Surfaces", "boundary", "characterize", "sweep"]

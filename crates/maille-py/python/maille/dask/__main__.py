@@ -15,6 +15,7 @@ import distributed
 from .. import __version__
 from ..errors import MailleError, RecordError, RecordIOError, StudyError
 from . import Results, sweep
+from ._client import engine
 
 # As the program's.
 DONE, FAILED, USAGE, RECORD, INCOMPLETE, INTERRUPTED = 0, 1, 2, 4, 5, 130
@@ -81,7 +82,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--overwrite", action="store_true", help="replace what that folder holds of other inputs")
     parser.add_argument("--retries", type=_whole, default=2, metavar="N", help="so often a chain that raised is tried again [default: 2]")
     parser.add_argument("--quiet", "-q", action="store_true", help="no progress and no summary")
-    parser.add_argument("--version", action="version", version=f"maille {__version__}, distributed {distributed.__version__}")
+    parser.add_argument("--version", action="version", version=f"maille {__version__}, distributed {engine.__version__}")
     return parser
 
 
@@ -104,18 +105,18 @@ def _client(args: argparse.Namespace) -> Iterator[distributed.Client]:
         file = None if args.scheduler_file is None else str(args.scheduler_file)
         if file is not None and not Path(file).is_file():
             raise FileNotFoundError(f"there is no scheduler file {file}")
-        with distributed.Client(args.scheduler, scheduler_file=file) as client:
+        with engine.Client(args.scheduler, scheduler_file=file) as client:
             yield client
         return
     # Ctrl-C is for this process, which stops the others.
     before = signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
-        cluster = distributed.LocalCluster(
+        cluster = engine.LocalCluster(
             n_workers=args.workers, threads_per_worker=1, dashboard_address=None, silence_logs=50
         )
     finally:
         signal.signal(signal.SIGINT, before)
-    with cluster, distributed.Client(cluster) as client:
+    with cluster, engine.Client(cluster) as client:
         yield client
 
 

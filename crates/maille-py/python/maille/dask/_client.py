@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Generator, Mapping
 from typing import Any, TypeVar, Union
 
 import distributed
@@ -10,13 +10,15 @@ import distributed
 from ..errors import ArgumentError, ChainError, MailleError
 
 T = TypeVar("T")
+#: Most of its functions have no types.
+engine: Any = distributed
 
 
 def client_of(client: distributed.Client | None) -> distributed.Client:
     """The client that is given, or the current one."""
     if client is None:
         try:
-            client = distributed.get_client()
+            client = engine.get_client()
         except ValueError:
             remedy = "make one: dask.distributed.Client(address), or Client() for the cores of this machine"
             raise ArgumentError("client", "there is none", remedy) from None
@@ -27,12 +29,13 @@ def client_of(client: distributed.Client | None) -> distributed.Client:
 
 def results(
     client: distributed.Client, function: Callable[..., T], calls: Mapping[str, tuple[Any, ...]], retries: int
-) -> Iterator[tuple[str, Union[T, MailleError]]]:
+) -> Generator[tuple[str, Union[T, MailleError]], None, None]:
     """Calls a function on the workers and gives each result with its key. What raised to the end, or lost its workers more often than the
     scheduler allows, is a `ChainError`. When this is left early, what has not begun is taken back."""
-    futures = {key: client.submit(function, *call, key=key, retries=retries) for key, call in calls.items()}
+    cluster: Any = client
+    futures = {key: cluster.submit(function, *call, key=key, retries=retries) for key, call in calls.items()}
     try:
-        for future in distributed.as_completed(list(futures.values())):
+        for future in engine.as_completed(list(futures.values())):
             del futures[future.key]
             if future.status == "finished":
                 yield future.key, future.result()
@@ -41,4 +44,4 @@ def results(
                 yield future.key, ChainError(f"{type(error).__name__}: {error}".splitlines()[0])
             future.release()
     finally:
-        client.cancel(list(futures.values()), force=True)
+        cluster.cancel(list(futures.values()), force=True)

@@ -3,31 +3,28 @@
 from __future__ import annotations
 
 import os
-from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping
 from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, Union
+from typing import TYPE_CHECKING, Any, Literal
 
 from numpy.typing import ArrayLike
 
 from .. import _native
 from .._files import PREFIX, write_whole
-from ..design import Design, DesignLike
-from ..errors import ArgumentError, MailleError, OtherInputsError, RecordError
+from ..design import Design
+from ..errors import MailleError, OtherInputsError, RecordError
 from ..record import Held, Progress, Quantity, Record, _asked, _Bar, _whole
 from ._chains import chain_file, limits, read_limits, solve
 from ._client import client_of, results
+from ._names import Designs, named
 from ._results import CHAINS, RECORDS, TABLE, Failure, Results
 
 if TYPE_CHECKING:
     import distributed
 
     from .._native import Asked
-
-#: One design or several; with names where several have the same one.
-Designs = Union[DesignLike, Sequence[DesignLike], Mapping[str, DesignLike]]
 
 
 def characterize(
@@ -69,7 +66,7 @@ def characterize(
         energy=energy,
         quantity=quantity,
     )
-    return run(_named(designs), asked, out, client, overwrite=overwrite, retries=retries, progress=progress)
+    return run(named(designs), asked, out, client, overwrite=overwrite, retries=retries, progress=progress)
 
 
 def run(
@@ -100,7 +97,7 @@ def run(
     done, solved = 0, 0
     total = sum(chain.left for map in maps.values() for chain in map.left.values())
     with _Bar(progress) as told:
-        tell = told or (lambda done, total: None)
+        tell: Callable[[int, int], object] = told or (lambda done, total: None)
         tell(done, total)
         # Under two names a design has the same chains.
         tasks: dict[str, list[tuple[_Map, _Chain]]] = {}
@@ -149,7 +146,7 @@ class _Map:
     native: _native.OpenMap
     #: All chains, and those that are not solved yet, by hash.
     chains: int
-    left: dict[str, _Chain] = field(default_factory=dict)
+    left: dict[str, _Chain] = field(default_factory=dict[str, "_Chain"])
     record: Record | None = None
 
     @classmethod
@@ -202,34 +199,3 @@ def _clear(folder: Path, known: set[str], overwrite: bool) -> None:
                 difference = f"{file.name} is not of this map"
                 raise OtherInputsError(f"{folder} holds chains of other inputs: {difference}", folder, difference)
             file.unlink()
-
-
-def _named(designs: Designs) -> dict[str, Design | MailleError]:
-    if isinstance(designs, Mapping):
-        given = [(str(name), _read(design)) for name, design in designs.items()]
-    else:
-        several = [designs] if isinstance(designs, (Design, str, os.PathLike)) else list(designs)
-        read = [(design, _read(design)) for design in several]
-        given = [(d.name if isinstance(d, Design) else str(design), d) for design, d in read]
-        often = Counter(name for name, _ in given)
-        given = [(_with_radius(name, d) if often[name] > 1 else name, d) for name, d in given]
-    out: dict[str, Design | MailleError] = {}
-    for name, design in given:
-        name = _native.folder_name(name)
-        if name in out:
-            raise ArgumentError("designs", f"two have the name {name}", "give a dictionary with a name for each")
-        out[name] = design
-    if not out:
-        raise ArgumentError("designs", "there is none", "give one or more")
-    return out
-
-
-def _with_radius(name: str, design: Design | MailleError) -> str:
-    return f"{name}-r{design.minor_radius:g}" if isinstance(design, Design) and design.minor_radius is not None else name
-
-
-def _read(design: DesignLike) -> Design | MailleError:
-    try:
-        return Design.of(design)
-    except MailleError as error:
-        return error

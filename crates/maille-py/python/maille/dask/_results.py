@@ -29,7 +29,8 @@ class Failure:
 
     def __str__(self) -> str:
         chain = "" if self.direction_deg is None else f", {self.direction_deg:g}°"
-        return f"{self.name}{chain}: {self.error}"
+        first, *more = str(self.error).splitlines()
+        return f"{self.name}{chain}: {first}" + (f" … and {len(more)} more" if more else "")
 
 
 @dataclass(frozen=True)
