@@ -190,13 +190,22 @@ impl Record {
         Ok(out)
     }
 
-    /// The table as Parquet, as `maille table` writes it.
-    fn parquet<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+    /// The table as Parquet, as `maille table` writes it; with `states`, each row with the line of its state.
+    fn parquet<'py>(&self, py: Python<'py>, states: bool) -> PyResult<Bound<'py, PyBytes>> {
         let named = [NamedRecord { name: self.name.clone(), record: self.record.clone() }];
-        let mut out = Vec::new();
-        let done = Table::new(&named, Field::all(false)).parquet(&mut out);
+        let (table, mut out) = (Table::new(&named, Field::all(false)), Vec::new());
+        let done = match states {
+            true => table.parquet_with_states(&self.record.states, &mut out),
+            false => table.parquet(&mut out),
+        };
         done.map_err(|e| error::other(&e.to_string()))?;
         Ok(PyBytes::new(py, &out))
+    }
+
+    /// Rows with their states, both as JSON.
+    fn limits(&self) -> Vec<(String, String)> {
+        let row = |row| serde_json::to_string(row).expect("a row has no map with odd keys");
+        self.record.rows.iter().map(row).zip(self.states()).collect()
     }
 
     /// The states, each a JSON document as in `states.jsonl`.

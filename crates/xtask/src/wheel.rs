@@ -7,8 +7,7 @@ use std::{
 };
 
 /// What is installed beside the wheel: the build backend, and what the tests need.
-const PACKAGES: &[&str] =
-    &["maturin>=1.7,<2", "numpy", "pyarrow", "pandas", "matplotlib", "distributed", "pytest"];
+const PACKAGES: &[&str] = &["maturin>=1.7,<2", "numpy", "pyarrow", "pandas", "matplotlib", "distributed", "pytest"];
 /// Folder of the package.
 const PACKAGE: &str = "crates/maille-py";
 /// Programs that may be a Python of 3.10 or later.

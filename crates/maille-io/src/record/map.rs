@@ -168,16 +168,7 @@ impl OpenMap {
         };
         let wanted = |task: Task| open.contains(&task);
         let Map { method, directions_deg, l2, .. } = &self.map;
-        characterize(
-            &self.models,
-            self.design.minor_radius,
-            method,
-            directions_deg,
-            l2,
-            &wanted,
-            cancel,
-            &receive,
-        );
+        characterize(&self.models, self.design.minor_radius, method, directions_deg, l2, &wanted, cancel, &receive);
         self.finish()
     }
 

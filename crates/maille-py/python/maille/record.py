@@ -125,7 +125,7 @@ class Record:
         """A `pyarrow.Table`: what `maille table -o FILE.parquet` holds, with units, meanings and the run's inputs as metadata."""
         from pyarrow import parquet  # type: ignore[import-untyped, unused-ignore]
 
-        return parquet.read_table(io.BytesIO(self._inner.parquet()))
+        return parquet.read_table(io.BytesIO(self._inner.parquet(False)))
 
     def to_pandas(self) -> pandas.DataFrame:
         """A `pandas.DataFrame`."""

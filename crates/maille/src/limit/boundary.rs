@@ -254,7 +254,12 @@ fn hand_on(
 }
 
 /// One ray; `None` after `cancel`.
-fn solve_ray(method: &StrainMethod<'_>, direction: Vec3, from: &[State], cancel: &AtomicBool) -> Option<BoundaryVertex> {
+fn solve_ray(
+    method: &StrainMethod<'_>,
+    direction: Vec3,
+    from: &[State],
+    cancel: &AtomicBool,
+) -> Option<BoundaryVertex> {
     let along = Matrix2::new(direction.x, direction.z, direction.z, direction.y);
     let query = StrainQuery { held: Matrix2::zeros(), free: vec![along] };
     let outcome = method.solve(&query, from, cancel);

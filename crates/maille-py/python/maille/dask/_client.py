@@ -35,10 +35,11 @@ def results(
     cluster: Any = client
     futures = {key: cluster.submit(function, *call, key=key, retries=retries) for key, call in calls.items()}
     try:
-        for future in engine.as_completed(list(futures.values())):
+        # Results are fetched while earlier ones are dealt with.
+        for future, value in engine.as_completed(list(futures.values()), with_results=True, raise_errors=False):
             del futures[future.key]
             if future.status == "finished":
-                yield future.key, future.result()
+                yield future.key, value
             else:
                 error = future.exception()
                 yield future.key, ChainError(f"{type(error).__name__}: {error}".splitlines()[0])

@@ -16,7 +16,7 @@ from .._files import PREFIX, write_whole
 from ..design import Design
 from ..errors import MailleError, OtherInputsError, RecordError
 from ..record import Held, Progress, Quantity, Record, _asked, _Bar, _whole
-from ._chains import chain_file, limits, read_limits, solve
+from ._chains import Solved, read_limits, solve
 from ._client import client_of, results
 from ._names import Designs, named
 from ._results import CHAINS, RECORDS, TABLE, Failure, Results
@@ -110,9 +110,9 @@ def run(
         try:
             with closing(results(client, solve, calls, retries)) as found:
                 for key, value in found:
-                    solved += isinstance(value, bytes)
+                    solved += isinstance(value, Solved)
                     for map, chain in tasks[key]:
-                        if isinstance(value, bytes):
+                        if isinstance(value, Solved):
                             map.take(chain, value)
                         else:
                             failures.append(Failure(map.name, chain.direction_deg, value))
@@ -168,13 +168,13 @@ class _Map:
                     map.left[chain.hash] = chain
             elif not chain.file.exists():
                 # The program has solved it.
-                write_whole(chain.file, chain_file(Record(native.chain(chain.direction_deg))))
+                write_whole(chain.file, native.chain(chain.direction_deg).parquet(True))
         return map
 
-    def take(self, chain: _Chain, data: bytes) -> None:
+    def take(self, chain: _Chain, found: Solved) -> None:
         """Keeps a chain."""
-        write_whole(chain.file, data)
-        self.native.keep(str(chain.file), limits(data))
+        write_whole(chain.file, found.file)
+        self.native.keep(str(chain.file), found.limits)
         self.give_up(chain)
 
     def give_up(self, chain: _Chain) -> None:
