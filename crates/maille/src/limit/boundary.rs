@@ -111,6 +111,9 @@ pub struct Ray {
     pub from: Vec<BoundaryVertex>,
 }
 
+/// Solves rays of which none needs another: gets them, and whether they are new, and gives their ends in order, `None` after a stop.
+pub type SolveRays<'a> = &'a mut dyn FnMut(&[Ray], bool) -> Vec<Option<BoundaryVertex>>;
+
 /// Solves rays, each for itself.
 pub struct RaySolver<'a>(StrainMethod<'a>);
 
@@ -153,14 +156,14 @@ pub fn boundary(
     boundary_by(options, known, cancel, planned, &mut solve)
 }
 
-/// The same with rays solved elsewhere: `solve` gets the rays of a pass, none of which needs another, and whether they are new
-/// (later some are tried again from their neighbours' states), and gives their ends in order, `None` after `cancel`.
+/// The same with rays solved elsewhere: `solve` gets those of a pass; those that are not new are tried again from their neighbours'
+/// states.
 pub fn boundary_by(
     options: &BoundaryOptions,
     known: &[BoundaryVertex],
     cancel: &AtomicBool,
     planned: &mut dyn FnMut(usize),
-    solve: &mut dyn FnMut(&[Ray], bool) -> Vec<Option<BoundaryVertex>>,
+    solve: SolveRays<'_>,
 ) -> Boundary {
     let bits = |direction: [f64; 3]| direction.map(f64::to_bits);
     let known: BTreeMap<[u64; 3], &BoundaryVertex> = known.iter().map(|v| (bits(v.direction), v)).collect();
@@ -216,12 +219,7 @@ const ROUNDS: usize = 40;
 const GAIN: f64 = 1e-7;
 
 /// Rays at bent edges, solved once more from the state at the other end.
-fn hand_on(
-    sphere: &Sphere,
-    tolerance: f64,
-    vertices: &mut [BoundaryVertex],
-    solve: &mut dyn FnMut(&[Ray], bool) -> Vec<Option<BoundaryVertex>>,
-) {
+fn hand_on(sphere: &Sphere, tolerance: f64, vertices: &mut [BoundaryVertex], solve: SolveRays<'_>) {
     // A state is tried once on a ray.
     let mut tried: BTreeSet<(usize, usize, u64)> = BTreeSet::new();
     for _ in 0..ROUNDS {
