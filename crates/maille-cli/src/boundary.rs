@@ -17,10 +17,8 @@ use maille::{
 use maille_io::{
     boundary::{BoundaryHead, boundary_csv, boundary_obj, boundary_ply, journal_head, journal_line, read_journal},
     plot::{boundary_svg, svg_to_png},
-    record::input_hash,
 };
 use miette::{IntoDiagnostic, Result, WrapErr};
-use serde_json::json;
 use std::{
     fs,
     io::Write,
@@ -87,13 +85,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     };
     let usual = || PathBuf::from("maille-out").join(format!("{}-boundary", file_name(&input.design.name)));
     let out = args.run.out.clone().unwrap_or_else(usual);
-    // Tolerance and number of vertices say which rays there are, not where one ends.
-    let parameters = json!({ "starts": options.starts, "seed": options.seed, "cell": args.cell.to_string() });
-    let head = BoundaryHead {
-        program_version: env!("CARGO_PKG_VERSION").into(),
-        input_hash: input_hash(&input.design, &parameters),
-        design: input.design.name.clone(),
-    };
+    let head = BoundaryHead::new(&input.design, args.cell, &options);
     let (known, journal) = open(&out, &head, args.run.overwrite)?;
     if !known.is_empty() && !args.quiet {
         eprintln!("{} rays are in {} already", known.len(), out.display());

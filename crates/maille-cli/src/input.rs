@@ -2,6 +2,7 @@
 
 use crate::exit::{self, wrong};
 use maille::{design::Design, error::InvalidInput, lattice::Cell, model::Model};
+pub use maille_io::record::file_name;
 use maille_io::{DesignError, DesignSource, builtin, builtin_designs, nearest_builtin, write_design};
 use miette::{IntoDiagnostic, Report, Result, WrapErr};
 use serde_json::{Value, json};
@@ -133,9 +134,4 @@ pub fn problems(report: &Report) -> Value {
         })
     };
     error.problems().iter().map(one).collect()
-}
-
-/// A design's name as a file or folder: path separators and other odd characters become underscores.
-pub fn file_name(name: &str) -> String {
-    name.chars().map(|c| if c.is_alphanumeric() || ".-_ ".contains(c) { c } else { '_' }).collect()
 }

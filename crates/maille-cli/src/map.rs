@@ -26,7 +26,7 @@ pub struct RunArgs {
 }
 
 /// Compiles the design and opens the record, with what an earlier run has left there.
-pub fn open<'a>(map: &'a Map, input: &'a Input) -> Result<OpenMap<'a>> {
+pub fn open(map: &Map, input: &Input) -> Result<OpenMap> {
     let compile = |cell| input.compile(&input.design, cell);
     let models = map.cells(&input.design).into_iter().map(compile).collect::<Result<_>>()?;
     if let Some(out) = map.out.as_ref().filter(|out| out.is_file()) {
@@ -37,7 +37,7 @@ pub fn open<'a>(map: &'a Map, input: &'a Input) -> Result<OpenMap<'a>> {
 }
 
 /// Finds the limits that are left on the current thread pool, and gives all rows of the record.
-pub fn run(open: OpenMap<'_>, cancel: &AtomicBool, found: &(dyn Fn(&LimitRow) + Sync)) -> Result<Vec<LimitRow>> {
+pub fn run(open: OpenMap, cancel: &AtomicBool, found: &(dyn Fn(&LimitRow) + Sync)) -> Result<Vec<LimitRow>> {
     let failed = |error: MapError| {
         let words = error.to_string();
         match error {
@@ -50,12 +50,12 @@ pub fn run(open: OpenMap<'_>, cancel: &AtomicBool, found: &(dyn Fn(&LimitRow) + 
 
 /// Runs maps side by side, so that no thread waits for the last limit of a map, and gives the rows of each.
 pub fn run_all(
-    open: Vec<(&str, OpenMap<'_>)>,
+    open: Vec<(&str, OpenMap)>,
     pool: &rayon::ThreadPool,
     cancel: &AtomicBool,
     progress: &Progress,
 ) -> Result<Vec<Vec<LimitRow>>> {
-    let each = |(name, open): (&str, OpenMap<'_>)| {
+    let each = |(name, open): (&str, OpenMap)| {
         let found = |row: &LimitRow| progress.step(format!("{name}: {}°, l2 = {}", row.direction_deg, row.l2));
         run(open, cancel, &found)
     };

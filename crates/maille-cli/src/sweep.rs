@@ -9,15 +9,10 @@ use crate::{
     progress::Progress,
     records,
 };
-use maille::{
-    characterize::{CellChoice, Method},
-    limit::exact::ExactOptions,
-};
 use maille_io::{
     builtin,
-    plot::Quantity,
     record::{Map, OpenMap},
-    study::{Study, StudyDesign},
+    study::{Study, StudyDesign, Variant},
     table::{Field, Table},
 };
 use miette::{IntoDiagnostic, Result, WrapErr};
@@ -97,7 +92,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     let out = args.run.out.clone().unwrap_or_else(|| Path::new("maille-out").join(file_name(&stem)));
     let plan = plan(&study, path.parent().unwrap_or(Path::new("")), &out, args.run.overwrite)?;
-    let mut open: Vec<(&str, OpenMap<'_>)> = Vec::new();
+    let mut open: Vec<(&str, OpenMap)> = Vec::new();
     let mut unused = Vec::new();
     for planned in &plan {
         match map::open(&planned.map, &planned.input) {
@@ -160,41 +155,22 @@ fn read(path: &Path) -> Result<Study> {
     Ok(Study::read(&path.display().to_string(), &text)?)
 }
 
-/// Every map of the study; a design without values of a parameter keeps its own.
+/// Every map of the study.
 fn plan(study: &Study, folder: &Path, out: &Path, overwrite: bool) -> Result<Vec<Planned>> {
     let mut plan: Vec<Planned> = Vec::new();
-    for StudyDesign { design, minor_radius, spacing } in &study.designs {
+    for of_study in &study.designs {
+        let StudyDesign { design, .. } = of_study;
         let file = folder.join(design);
         let design = if builtin(design).is_some() { design.clone() } else { file.display().to_string() };
         let input = Input::read(&design, None)?;
-        let some = |values: &[f64]| match values {
-            [] => vec![None],
-            _ => values.iter().copied().map(Some).collect::<Vec<_>>(),
-        };
-        for r in some(minor_radius) {
-            for s in some(spacing) {
-                let mut name = file_name(&input.design.name);
-                name.extend(r.map(|r| format!("-r{r}")));
-                name.extend(s.map(|s| format!("-s{s}")));
-                if plan.iter().any(|known| known.name == name) {
-                    let help = "name each design and value once";
-                    return Err(wrong(exit::USAGE, format!("{name} is in the study twice"), help));
-                }
-                let map = Map {
-                    method: Method::Exact(ExactOptions {
-                        starts: study.starts.unwrap_or(ExactOptions::default().starts),
-                        seed: study.seed,
-                        ..ExactOptions::default()
-                    }),
-                    cell: study.cell.map_or(CellChoice::Auto, CellChoice::One),
-                    directions_deg: study.directions_deg.clone(),
-                    l2: study.l2.clone(),
-                    quantity: Quantity::Stretch,
-                    out: Some(out.join("records").join(&name)),
-                    overwrite,
-                };
-                plan.push(Planned { name, input: input.varied(r, s), map });
+        for Variant { suffix, minor_radius, spacing } in of_study.variants() {
+            let name = file_name(&input.design.name) + &suffix;
+            if plan.iter().any(|known| known.name == name) {
+                let help = "name each design and value once";
+                return Err(wrong(exit::USAGE, format!("{name} is in the study twice"), help));
             }
+            let map = study.map(Some(out.join("records").join(&name)), overwrite);
+            plan.push(Planned { name, input: input.varied(minor_radius, spacing), map });
         }
     }
     Ok(plan)

@@ -2,11 +2,15 @@
 //!
 //! Meshes have E_xx, E_yy and E_xy as coordinates. The colours of the PLY file tell the status.
 
+use crate::record::input_hash;
 use maille::{
-    limit::boundary::{Boundary, BoundaryVertex},
+    design::Design,
+    lattice::Cell,
+    limit::boundary::{Boundary, BoundaryOptions, BoundaryVertex},
     record::Status,
 };
 use serde::{Deserialize, Serialize};
+use serde_json::json;
 use std::fmt::Write;
 
 /// First line of a journal.
@@ -18,6 +22,18 @@ pub struct BoundaryHead {
     pub input_hash: String,
     /// Name of the design.
     pub design: String,
+}
+
+impl BoundaryHead {
+    /// That of a surface of `design`. Tolerance and number of vertices say which rays there are, not where one ends.
+    pub fn new(design: &Design, cell: Cell, options: &BoundaryOptions) -> Self {
+        let parameters = json!({ "starts": options.starts, "seed": options.seed, "cell": cell.to_string() });
+        BoundaryHead {
+            program_version: env!("CARGO_PKG_VERSION").into(),
+            input_hash: input_hash(design, &parameters),
+            design: design.name.clone(),
+        }
+    }
 }
 
 /// The first line.

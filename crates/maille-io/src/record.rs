@@ -24,10 +24,10 @@ mod states;
 
 pub use columns::{Cell, Column, LIMIT_COLUMNS, Unit, Values};
 pub use error::RecordError;
-pub use folder::{NamedRecord, Record, RecordFolder};
+pub use folder::{NamedRecord, Record, RecordFolder, file_name};
 pub(crate) use limits::csv_cell;
 pub use limits::{read_limits, write_limits};
-pub use map::{Map, MapError, OpenMap};
+pub use map::{Chain, Map, MapError, OpenMap};
 pub use reference::{Reference, ReferenceCell};
 pub use run::{Counters, RunRecord, input_hash, read_run, write_run};
 pub use simulation::{

@@ -1,10 +1,18 @@
 //! Studies: which maps of which designs, in one TOML file.
 
-use crate::numbers::{Numbers, parse, parse_l2};
-use maille::lattice::Cell;
+use crate::{
+    numbers::{Numbers, parse, parse_l2},
+    plot::Quantity,
+    record::Map,
+};
+use maille::{
+    characterize::{CellChoice, Method},
+    lattice::Cell,
+    limit::exact::ExactOptions,
+};
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode, SourceSpan};
 use serde::Deserialize;
-use std::{fmt, ops::Range, sync::Arc};
+use std::{fmt, ops::Range, path::PathBuf, sync::Arc};
 use toml::Spanned;
 
 /// What `maille sweep` computes: each design, at each of its radii and spacings, over all directions and l2.
@@ -33,6 +41,36 @@ pub struct StudyDesign {
     pub minor_radius: Vec<f64>,
     /// Factors of all distances between elements; empty: as designed.
     pub spacing: Vec<f64>,
+}
+
+/// A design of a study at one value of each parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Variant {
+    /// What it adds to the design's name, as `-r0.05-s0.95`.
+    pub suffix: String,
+    /// Minor radius in the design's unit; `None`: the design's own.
+    pub minor_radius: Option<f64>,
+    /// Factor of all distances between elements; `None`: as designed.
+    pub spacing: Option<f64>,
+}
+
+impl StudyDesign {
+    /// Every radius with every spacing; a design without values of a parameter keeps its own.
+    pub fn variants(&self) -> Vec<Variant> {
+        let some = |values: &[f64]| match values {
+            [] => vec![None],
+            _ => values.iter().copied().map(Some).collect::<Vec<_>>(),
+        };
+        let mut out = Vec::new();
+        for minor_radius in some(&self.minor_radius) {
+            for spacing in some(&self.spacing) {
+                let mut suffix = minor_radius.map(|r| format!("-r{r}")).unwrap_or_default();
+                suffix.extend(spacing.map(|s| format!("-s{s}")));
+                out.push(Variant { suffix, minor_radius, spacing });
+            }
+        }
+        out
+    }
 }
 
 #[derive(Deserialize)]
@@ -89,6 +127,25 @@ impl Study {
     pub fn read(source_name: &str, text: &str) -> Result<Study, StudyError> {
         let source = Arc::new(NamedSource::new(source_name, text.to_owned()));
         Self::parsed(text).map_err(|wrong| StudyError { source, wrong })
+    }
+
+    /// How limits are found: starts and seed of the study, the rest as usual.
+    pub fn options(&self) -> ExactOptions {
+        let usual = ExactOptions::default();
+        ExactOptions { starts: self.starts.unwrap_or(usual.starts), seed: self.seed, ..usual }
+    }
+
+    /// The map that each design gets, with its record in `out`.
+    pub fn map(&self, out: Option<PathBuf>, overwrite: bool) -> Map {
+        Map {
+            method: Method::Exact(self.options()),
+            cell: self.cell.map_or(CellChoice::Auto, CellChoice::One),
+            directions_deg: self.directions_deg.clone(),
+            l2: self.l2.clone(),
+            quantity: Quantity::Stretch,
+            out,
+            overwrite,
+        }
     }
 
     fn parsed(text: &str) -> Result<Study, Wrong> {
@@ -151,6 +208,20 @@ impl Study {
 pub struct StudyError {
     source: Arc<NamedSource<String>>,
     wrong: Wrong,
+}
+
+impl StudyError {
+    /// Line and column of the place, from 1.
+    pub fn line_column(&self) -> (usize, usize) {
+        let before = self.source.inner().get(..self.wrong.span.start).unwrap_or_default();
+        let line = before.rsplit('\n').next().unwrap_or_default();
+        (before.matches('\n').count() + 1, line.chars().count() + 1)
+    }
+
+    /// What would be right.
+    pub fn help_text(&self) -> &str {
+        &self.wrong.help
+    }
 }
 
 #[derive(Debug)]
@@ -218,6 +289,8 @@ mod tests {
             assert!(error.to_string().contains(problem), "{text}: {error}");
             if let Some(place) = place {
                 assert_eq!(&text[error.wrong.span.clone()], place, "{text}");
+                let line = text.lines().position(|line| line.contains(place));
+                assert_eq!(Some(error.line_column().0), line.map(|k| k + 1), "{text}");
             }
         }
     }

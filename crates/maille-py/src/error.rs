@@ -4,6 +4,7 @@ use maille::error::InvalidInput;
 use maille_io::{
     DesignError,
     record::{MapError, RecordError},
+    study::StudyError,
 };
 use pyo3::{
     prelude::*,
@@ -104,6 +105,18 @@ pub fn design(problems: &[InvalidInput]) -> PyErr {
         list.push(Problem { field, problem: problem.clone(), remedy: help, place: None });
     }
     design_error(None, &list)
+}
+
+/// What is wrong with a study; `file` is its name.
+pub fn study(file: &str, error: &StudyError) -> PyErr {
+    exception("StudyError", |_, to| {
+        let (line, column) = error.line_column();
+        to.set_item("problem", error.to_string())?;
+        to.set_item("remedy", error.help_text())?;
+        to.set_item("file", file)?;
+        to.set_item("line", line)?;
+        to.set_item("column", column)
+    })
 }
 
 /// What is wrong with a record.

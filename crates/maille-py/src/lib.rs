@@ -3,12 +3,14 @@
 //! What is here turns Python's arguments into those of the crates, lets other Python threads run meanwhile, listens for
 //! Ctrl-C, and turns errors into the classes of `maille.errors`. What needs no native code is Python, in `python/maille`.
 
+mod chain;
 mod design;
 mod error;
 mod geometry;
 mod map;
 mod question;
 mod simulate;
+mod study;
 mod surface;
 mod view;
 mod wait;
@@ -17,6 +19,8 @@ use pyo3::prelude::*;
 
 #[pymodule]
 mod _native {
+    #[pymodule_export]
+    use crate::chain::{OpenMap, joint_csv};
     #[pymodule_export]
     use crate::design::{Design, builtin_names, nearest_builtin_name};
     #[pymodule_export]
@@ -28,7 +32,9 @@ mod _native {
     #[pymodule_export]
     use crate::simulate::{read_simulation, simulate};
     #[pymodule_export]
-    use crate::surface::boundary;
+    use crate::study::{folder_name, study};
+    #[pymodule_export]
+    use crate::surface::{boundary, boundary_by, boundary_head, solve_rays};
     #[pymodule_export]
     use crate::view::Sheet;
 

@@ -101,46 +101,62 @@ fn energy_options(named: &str, seed: u64) -> PyResult<EnergyOptions> {
     }
 }
 
-/// Finds the limits of a map, as `maille characterize` does.
-#[pyfunction]
-#[pyo3(signature = (design, directions, l2, *, lateral_free, shear_free, compression, method, cell, starts, seed, energy, quantity_name, out, overwrite, progress, threads))]
-pub fn characterize(
-    py: Python<'_>,
-    design: &Design,
+/// What a map is asked for, a dictionary in Python.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct Asked {
     directions: Vec<f64>,
     l2: Vec<f64>,
     lateral_free: bool,
     shear_free: bool,
     compression: bool,
-    method: &str,
-    cell: &str,
+    method: String,
+    cell: String,
     starts: usize,
     seed: u64,
-    energy: &str,
-    quantity_name: &str,
+    energy: String,
+    quantity_name: String,
+}
+
+impl Asked {
+    /// The map of a design, open.
+    pub fn open(self, design: &Design, out: Option<PathBuf>, overwrite: bool) -> PyResult<maille_io::record::OpenMap> {
+        let across = Across { lateral_free: self.lateral_free, shear_free: self.shear_free };
+        let (starts, seed) = (self.starts.max(1), self.seed);
+        let method = match self.method.as_str() {
+            "exact" => Method::Exact(ExactOptions { starts, seed, across, compression: self.compression }),
+            "energy" if self.compression => {
+                let remedy = "leave compression out, or take method=\"exact\"";
+                return Err(error::argument("method", "the energy method has no limits in compression", remedy));
+            }
+            "energy" if across.any() => {
+                let remedy = "leave lateral and shear fixed, or take method=\"exact\"";
+                return Err(error::argument("method", "the energy method holds width and shear", remedy));
+            }
+            "energy" => Method::Energy(energy_options(&self.energy, seed)?),
+            other => return Err(error::argument("method", format!("\"{other}\" is none"), "give exact or energy")),
+        };
+        let quantity = quantity(&self.quantity_name)?;
+        let (cell, directions_deg, l2) = (cell_choice(&self.cell)?, self.directions, self.l2);
+        let map = Map { method, cell, directions_deg, l2, quantity, out, overwrite };
+        let models = map.cells(&design.design).into_iter().map(|cell| design.compile(cell)).collect::<PyResult<_>>()?;
+        map.open(&design.design, models).map_err(|e| error::record(&e))
+    }
+}
+
+/// Finds the limits of a map, as `maille characterize` does.
+#[pyfunction]
+#[pyo3(signature = (design, asked, *, out, overwrite, progress, threads))]
+pub fn characterize(
+    py: Python<'_>,
+    design: &Design,
+    asked: Asked,
     out: Option<PathBuf>,
     overwrite: bool,
     progress: Option<Bound<'_, PyAny>>,
     threads: Option<usize>,
 ) -> PyResult<Record> {
-    let across = Across { lateral_free, shear_free };
-    let method = match method {
-        "exact" => Method::Exact(ExactOptions { starts: starts.max(1), seed, across, compression }),
-        "energy" if compression => {
-            let remedy = "leave compression out, or take method=\"exact\"";
-            return Err(error::argument("method", "the energy method has no limits in compression", remedy));
-        }
-        "energy" if across.any() => {
-            let remedy = "leave lateral and shear fixed, or take method=\"exact\"";
-            return Err(error::argument("method", "the energy method holds width and shear", remedy));
-        }
-        "energy" => Method::Energy(energy_options(energy, seed)?),
-        _ => return Err(error::argument("method", format!("\"{method}\" is none"), "give exact or energy")),
-    };
-    let quantity = quantity(quantity_name)?;
-    let map = Map { method, cell: cell_choice(cell)?, directions_deg: directions, l2, quantity, out, overwrite };
-    let models = map.cells(&design.design).into_iter().map(|cell| design.compile(cell)).collect::<PyResult<_>>()?;
-    let open = map.open(&design.design, models).map_err(|e| error::record(&e))?;
+    let open = asked.open(design, out, overwrite)?;
     let run = wait(py, threads, progress.as_ref(), |cancel, tell| {
         tell(Step::More(open.left()));
         open.run(cancel, &|_| tell(Step::Done))
@@ -152,8 +168,8 @@ pub fn characterize(
 /// The record of a map.
 #[pyclass(frozen, module = "maille._native")]
 pub struct Record {
-    name: String,
-    record: maille_io::record::Record,
+    pub name: String,
+    pub record: maille_io::record::Record,
 }
 
 #[pymethods]
@@ -179,13 +195,22 @@ impl Record {
         Ok(out)
     }
 
-    /// The table as Parquet, as `maille table` writes it.
-    fn parquet<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+    /// The table as Parquet, as `maille table` writes it; with `states`, each row with the line of its state.
+    fn parquet<'py>(&self, py: Python<'py>, states: bool) -> PyResult<Bound<'py, PyBytes>> {
         let named = [NamedRecord { name: self.name.clone(), record: self.record.clone() }];
-        let mut out = Vec::new();
-        let done = Table::new(&named, Field::all(false)).parquet(&mut out);
+        let (table, mut out) = (Table::new(&named, Field::all(false)), Vec::new());
+        let done = match states {
+            true => table.parquet_with_states(&self.record.states, &mut out),
+            false => table.parquet(&mut out),
+        };
         done.map_err(|e| error::other(&e.to_string()))?;
         Ok(PyBytes::new(py, &out))
+    }
+
+    /// Rows with their states, both as JSON.
+    fn limits(&self) -> Vec<(String, String)> {
+        let row = |row| serde_json::to_string(row).expect("a row has no map with odd keys");
+        self.record.rows.iter().map(row).zip(self.states()).collect()
     }
 
     /// The states, each a JSON document as in `states.jsonl`.

@@ -5,11 +5,44 @@ use crate::{
     error,
     wait::{Step, wait},
 };
-use maille::limit::boundary::BoundaryOptions;
+use maille::{
+    lattice::Cell,
+    limit::boundary::{BoundaryOptions, BoundaryVertex, Ray, RaySolver, boundary_by as boundary_by_rays},
+};
+use maille_io::boundary::{BoundaryHead, journal_head};
 use pyo3::prelude::*;
+use serde::de::DeserializeOwned;
+use std::{
+    cell::RefCell,
+    sync::atomic::{AtomicBool, Ordering},
+};
 
 /// Vertices as JSON documents, corners of the triangles, the largest expected distance from them.
 type Surface = (Vec<String>, Vec<[usize; 3]>, f64);
+
+fn options(tolerance: f64, vertices: usize, starts: usize, seed: u64) -> PyResult<BoundaryOptions> {
+    if !(tolerance.is_finite() && tolerance > 0.0) {
+        return Err(error::argument("tolerance", format!("{tolerance} is not positive"), "give a strain, as 0.001"));
+    }
+    Ok(BoundaryOptions { tolerance, most: vertices, starts: starts.max(1), seed })
+}
+
+fn cell_of(text: &str) -> PyResult<Cell> {
+    text.parse().map_err(|e| error::invalid(&e))
+}
+
+fn json(value: &impl serde::Serialize) -> String {
+    serde_json::to_string(value).expect("a vertex has no map with odd keys")
+}
+
+fn read<T: DeserializeOwned>(texts: &[String]) -> PyResult<Vec<T>> {
+    let read = |text: &String| serde_json::from_str(text).map_err(|e| error::other(&format!("no ray: {e}")));
+    texts.iter().map(read).collect()
+}
+
+fn surface(found: maille::limit::boundary::Boundary) -> Surface {
+    (found.vertices.iter().map(json).collect(), found.triangles, found.arch)
+}
 
 /// The surface, as `maille boundary` finds it.
 #[pyfunction]
@@ -25,16 +58,77 @@ pub fn boundary(
     progress: Option<Bound<'_, PyAny>>,
     threads: Option<usize>,
 ) -> PyResult<Surface> {
-    if !(tolerance.is_finite() && tolerance > 0.0) {
-        return Err(error::argument("tolerance", format!("{tolerance} is not positive"), "give a strain, as 0.001"));
-    }
-    let model = design.compile(cell.parse().map_err(|e| error::invalid(&e))?)?;
-    let options = BoundaryOptions { tolerance, most: vertices, starts: starts.max(1), seed };
-    let surface = wait(py, threads, progress.as_ref(), |cancel, tell| {
+    let options = options(tolerance, vertices, starts, seed)?;
+    let model = design.compile(cell_of(cell)?)?;
+    let found = wait(py, threads, progress.as_ref(), |cancel, tell| {
         let mut planned = |rays| tell(Step::More(rays));
         let found = |_: &_| tell(Step::Done);
         maille::limit::boundary::boundary(&model, &options, &[], cancel, &mut planned, &found)
     })?;
-    let json = |vertex| serde_json::to_string(vertex).expect("a vertex has no map with odd keys");
-    Ok((surface.vertices.iter().map(json).collect(), surface.triangles, surface.arch))
+    Ok(surface(found))
+}
+
+/// The first line of the journal of `maille boundary`.
+#[pyfunction]
+pub fn boundary_head(design: &Design, starts: usize, cell: &str, seed: u64) -> PyResult<String> {
+    let options = BoundaryOptions { starts: starts.max(1), seed, ..BoundaryOptions::default() };
+    Ok(journal_head(&BoundaryHead::new(&design.design, cell_of(cell)?, &options)))
+}
+
+/// Ends of rays, on this thread: JSON in and out.
+#[pyfunction]
+pub fn solve_rays(
+    py: Python<'_>,
+    design: &Design,
+    rays: Vec<String>,
+    starts: usize,
+    cell: &str,
+    seed: u64,
+) -> PyResult<Vec<String>> {
+    let options = BoundaryOptions { starts: starts.max(1), seed, ..BoundaryOptions::default() };
+    let (model, rays) = (design.compile(cell_of(cell)?)?, read::<Ray>(&rays)?);
+    let ends = wait(py, Some(1), None, |cancel, _| {
+        let solver = RaySolver::new(&model, &options);
+        rays.iter().map_while(|ray| solver.solve(ray, cancel)).collect::<Vec<_>>()
+    })?;
+    Ok(ends.iter().map(json).collect())
+}
+
+/// The surface with rays solved by `solve`: it gets the rays of a pass, and whether they are new, and gives their ends. `known` are
+/// vertices of an earlier run.
+#[pyfunction]
+pub fn boundary_by(
+    design: &Design,
+    tolerance: f64,
+    vertices: usize,
+    starts: usize,
+    cell: &str,
+    seed: u64,
+    known: Vec<String>,
+    solve: &Bound<'_, PyAny>,
+) -> PyResult<Surface> {
+    let options = options(tolerance, vertices, starts, seed)?;
+    design.compile(cell_of(cell)?)?;
+    let known = read::<BoundaryVertex>(&known)?;
+    let (cancel, failure) = (AtomicBool::new(false), RefCell::new(None));
+    let mut by_solve = |rays: &[Ray], new: bool| {
+        if rays.is_empty() || cancel.load(Ordering::Relaxed) {
+            return vec![None; rays.len()];
+        }
+        let texts: Vec<String> = rays.iter().map(json).collect();
+        let ends = solve.call1((texts, new)).and_then(|ends| read::<BoundaryVertex>(&ends.extract::<Vec<String>>()?));
+        match ends {
+            Ok(ends) => ends.into_iter().map(Some).collect(),
+            Err(error) => {
+                failure.borrow_mut().get_or_insert(error);
+                cancel.store(true, Ordering::Relaxed);
+                vec![None; rays.len()]
+            }
+        }
+    };
+    let found = boundary_by_rays(&options, &known, &cancel, &mut |_| (), &mut by_solve);
+    match failure.into_inner() {
+        Some(error) => Err(error),
+        None => Ok(surface(found)),
+    }
 }

@@ -16,6 +16,7 @@ const PACKAGES: &[&str] = &[
     "polars",
     "matplotlib",
     "tqdm",
+    "distributed",
     "k3d",
     "ipywidgets",
     "nbclient",

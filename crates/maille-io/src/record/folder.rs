@@ -32,6 +32,11 @@ const PNG: &str = "polar.png";
 const JOURNAL: &str = "limits.journal";
 const TEMPORARY: (&str, &str) = (".maille-", ".tmp");
 
+/// A design's name as a file or folder: path separators and other odd characters become underscores.
+pub fn file_name(name: &str) -> String {
+    name.chars().map(|c| if c.is_alphanumeric() || ".-_ ".contains(c) { c } else { '_' }).collect()
+}
+
 /// What a record's folder holds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Record {

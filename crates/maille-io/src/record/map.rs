@@ -2,7 +2,7 @@
 
 use super::error::RecordError;
 use super::folder::{Record, RecordFolder};
-use super::run::{Counters, RunRecord};
+use super::run::{Counters, RunRecord, input_hash};
 use crate::plot::{Layout, PlotError, PolarPlot, Quantity, parameter_words, polar_svg, svg_to_png};
 use maille::characterize::{CellChoice, Finished, Method, Task, characterize, tasks};
 use maille::design::Design;
@@ -15,6 +15,8 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use thiserror::Error;
+
+const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// A map that could not be kept.
 #[derive(Debug, Error)]
@@ -54,7 +56,7 @@ impl Map {
 
     /// Opens the record, with what an earlier run has left there. `models` are the design compiled for
     /// [`Self::cells`].
-    pub fn open<'a>(&'a self, design: &'a Design, models: Vec<Model>) -> Result<OpenMap<'a>, RecordError> {
+    pub fn open(&self, design: &Design, models: Vec<Model>) -> Result<OpenMap, RecordError> {
         let parameters = json!({
             "method": self.method.name(),
             "cells": models.iter().map(|model| model.cell.to_string()).collect::<Vec<_>>(),
@@ -69,9 +71,8 @@ impl Map {
         let mut rows: Vec<Option<(LimitRow, StateRecord)>> = vec![None; all.len()];
         let mut folder = None;
         if let Some(path) = &self.out {
-            let version = env!("CARGO_PKG_VERSION");
             let (opened, old_rows, old_states) =
-                RecordFolder::open(path, design, &parameters, version, self.overwrite)?;
+                RecordFolder::open(path, design, &parameters, VERSION, self.overwrite)?;
             folder = Some(opened);
             for (row, state) in old_rows.into_iter().zip(old_states) {
                 if let Some(k) = place(&all, &row) {
@@ -79,24 +80,22 @@ impl Map {
                 }
             }
         }
-        let open = all.iter().zip(&rows).filter(|(_, row)| row.is_none()).map(|(task, _)| *task).collect();
-        Ok(OpenMap { map: self, design, models, parameters, folder, all, rows, open })
+        let collected = Collected { folder, rows, written: Instant::now(), failure: None };
+        Ok(OpenMap { map: self.clone(), design: design.clone(), models, parameters, all, collected })
     }
 }
 
 /// A map whose record is open.
-pub struct OpenMap<'a> {
-    map: &'a Map,
-    design: &'a Design,
+pub struct OpenMap {
+    map: Map,
+    design: Design,
     models: Vec<Model>,
     parameters: Value,
-    folder: Option<RecordFolder>,
     all: Vec<Task>,
-    rows: Vec<Option<(LimitRow, StateRecord)>>,
-    open: Vec<Task>,
+    collected: Collected,
 }
 
-impl OpenMap<'_> {
+impl OpenMap {
     /// Limits of the map.
     pub fn total(&self) -> usize {
         self.all.len()
@@ -104,7 +103,11 @@ impl OpenMap<'_> {
 
     /// Limits that are not in the record yet.
     pub fn left(&self) -> usize {
-        self.open.len()
+        self.open().count()
+    }
+
+    fn open(&self) -> impl Iterator<Item = Task> {
+        self.all.iter().zip(&self.collected.rows).filter(|(_, row)| row.is_none()).map(|(task, _)| *task)
     }
 
     /// Whether no chain of links joins the cells of the design.
@@ -117,24 +120,61 @@ impl OpenMap<'_> {
         self.map.out.as_deref()
     }
 
+    /// The chains of the map, the least that can be asked for alone: the limits along one direction, in the order in which
+    /// they go on from each other. The record of a map of that direction alone has the same rows, bit for bit.
+    pub fn chains(&self) -> impl Iterator<Item = Chain> {
+        let chain = |&direction_deg: &f64| {
+            let mut parameters = self.parameters.clone();
+            parameters["directions_deg"] = json!([direction_deg]);
+            let inputs = json!({ "program_version": VERSION, "parameters": parameters });
+            let left = self.open().filter(|task| task.direction_deg == direction_deg).count();
+            Chain { direction_deg, left, hash: input_hash(&self.design, &inputs) }
+        };
+        self.map.directions_deg.iter().map(chain)
+    }
+
+    /// The limits of a chain that are in the record, as a record.
+    pub fn chain(&self, direction_deg: f64) -> Record {
+        let mut parameters = self.parameters.clone();
+        parameters["directions_deg"] = json!([direction_deg]);
+        let found = self.collected.rows.iter().flatten().filter(|(row, _)| row.direction_deg == direction_deg);
+        let (rows, states): (Vec<_>, Vec<_>) = found.cloned().unzip();
+        let counters = Counters::of(&rows);
+        Record { run: RunRecord { counters, ..RunRecord::new(&self.design, &parameters, VERSION) }, rows, states }
+    }
+
+    /// Takes a limit that was found elsewhere; says whether it was one of the map that was left. With a folder, it is on the
+    /// disk when this returns.
+    pub fn keep(&mut self, row: LimitRow, state: StateRecord) -> Result<bool, RecordError> {
+        match place(&self.all, &row).filter(|k| self.collected.rows[*k].is_none()) {
+            Some(k) => self.collected.keep(k, Finished { row, state }).map(|()| true),
+            None => Ok(false),
+        }
+    }
+
     /// Asks for the limits that are left, on the current thread pool, writes the record, and gives it. `found` hears of
     /// each limit; after `cancel` what is finished is written.
-    pub fn run(self, cancel: &AtomicBool, found: &(dyn Fn(&LimitRow) + Sync)) -> Result<Record, MapError> {
-        let OpenMap { map, design, models, parameters, folder, all, rows, open } = self;
-        let collected = Mutex::new(Collected { folder, rows, written: Instant::now(), failure: None });
+    pub fn run(mut self, cancel: &AtomicBool, found: &(dyn Fn(&LimitRow) + Sync)) -> Result<Record, MapError> {
+        let open: Vec<Task> = self.open().collect();
+        let collected = Mutex::new(&mut self.collected);
         let receive = |finished: Finished| {
             found(&finished.row);
             let mut collected = collected.lock().unwrap_or_else(|e| e.into_inner());
-            let Some(k) = place(&all, &finished.row) else { return };
+            let Some(k) = place(&self.all, &finished.row) else { return };
             if let Err(error) = collected.keep(k, finished) {
                 collected.failure = Some(error);
                 cancel.store(true, Ordering::Relaxed);
             }
         };
         let wanted = |task: Task| open.contains(&task);
-        let (directions, l2) = (&map.directions_deg, &map.l2);
-        characterize(&models, design.minor_radius, &map.method, directions, l2, &wanted, cancel, &receive);
-        let mut collected = collected.into_inner().unwrap_or_else(|e| e.into_inner());
+        let Map { method, directions_deg, l2, .. } = &self.map;
+        characterize(&self.models, self.design.minor_radius, method, directions_deg, l2, &wanted, cancel, &receive);
+        self.finish()
+    }
+
+    /// Writes the record with what was found, and its plot, and gives it.
+    pub fn finish(self) -> Result<Record, MapError> {
+        let OpenMap { map, design, parameters, mut collected, .. } = self;
         if let Some(error) = collected.failure {
             return Err(error.into());
         }
@@ -144,7 +184,7 @@ impl OpenMap<'_> {
             Some(folder) => folder.run().clone(),
             None => {
                 let counters = Counters::of(&rows);
-                RunRecord { counters, ..RunRecord::new(design, &parameters, env!("CARGO_PKG_VERSION")) }
+                RunRecord { counters, ..RunRecord::new(&design, &parameters, VERSION) }
             }
         };
         let record = Record { run, rows, states };
@@ -153,6 +193,17 @@ impl OpenMap<'_> {
         }
         Ok(record)
     }
+}
+
+/// The limits along one direction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chain {
+    /// Direction of the pull.
+    pub direction_deg: f64,
+    /// Its limits that are not in the record yet.
+    pub left: usize,
+    /// SHA-256 of all that it depends on: design, parameters, this direction, version of the program.
+    pub hash: String,
 }
 
 impl Record {

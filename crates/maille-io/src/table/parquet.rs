@@ -4,7 +4,7 @@ use super::{Field, Table, json};
 use crate::record::{Cell, Values};
 use arrow_array::{ArrayRef, BooleanArray, Float64Array, Int64Array, RecordBatch, StringArray};
 use arrow_schema::{ArrowError, DataType, Schema};
-use maille::record::RECORD_SCHEMA;
+use maille::record::{RECORD_SCHEMA, StateRecord};
 use parquet::arrow::ArrowWriter;
 use parquet::basic::Compression;
 use parquet::file::metadata::KeyValue;
@@ -29,9 +29,34 @@ impl Table<'_> {
     /// Writes the table as Parquet. `unit` and `meaning` stand with each column, the inputs of each record as JSON under
     /// the file's key `maille.records`, the version of the columns under `maille.schema`.
     pub fn parquet(&self, out: impl Write + Send) -> Result<(), ParquetError> {
-        let columns: Vec<(Field, ArrayRef)> =
-            self.fields.iter().map(|&field| Ok((field, self.array(field)?))).collect::<Result<_, ArrowError>>()?;
-        let schema = columns.iter().map(|(field, array)| self.arrow_field(*field, array.data_type().clone()));
+        self.write_parquet(out, Vec::new())
+    }
+
+    /// The same with a last column `state`, the line of `states.jsonl` of each row: all that a record has of them. `states` go
+    /// with the rows of this table.
+    pub fn parquet_with_states(&self, states: &[StateRecord], out: impl Write + Send) -> Result<(), ParquetError> {
+        let lines =
+            states.iter().map(|state| serde_json::to_string(state).map_err(|e| ArrowError::JsonError(e.to_string())));
+        let lines: ArrayRef = Arc::new(StringArray::from(lines.collect::<Result<Vec<_>, _>>()?));
+        let meaning = HashMap::from([("meaning".to_owned(), "the line of states.jsonl".to_owned())]);
+        self.write_parquet(
+            out,
+            vec![(arrow_schema::Field::new("state", DataType::Utf8, true).with_metadata(meaning), lines)],
+        )
+    }
+
+    fn write_parquet(
+        &self,
+        out: impl Write + Send,
+        more: Vec<(arrow_schema::Field, ArrayRef)>,
+    ) -> Result<(), ParquetError> {
+        let column = |&field: &Field| {
+            let array = self.array(field)?;
+            Ok((self.arrow_field(field, array.data_type().clone()), array))
+        };
+        let mut columns: Vec<_> = self.fields.iter().map(column).collect::<Result<_, ArrowError>>()?;
+        columns.extend(more);
+        let schema = columns.iter().map(|(field, _)| field.clone());
         let records: serde_json::Value = self.records.iter().map(json::inputs).collect();
         let metadata = [("maille.schema", RECORD_SCHEMA.to_string()), ("maille.records", records.to_string())];
         // Twice: pyarrow shows those of the Arrow schema, DuckDB those of the file.

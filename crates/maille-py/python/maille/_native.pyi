@@ -1,7 +1,7 @@
 """The native part. What users need is in the Python modules beside it."""
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,7 +27,8 @@ class Design:
 
 class Record:
     def columns(self) -> list[dict[str, Any]]: ...
-    def parquet(self) -> bytes: ...
+    def parquet(self, states: bool) -> bytes: ...
+    def limits(self) -> list[tuple[str, str]]: ...
     def states(self) -> list[str]: ...
     def run(self) -> str: ...
     def design(self) -> Design: ...
@@ -48,25 +49,41 @@ def nearest_builtin_name(name: str) -> str | None: ...
 def usual() -> tuple[str, str]: ...
 def numbers(name: str, text: str | None = None, values: list[float] | None = None) -> list[float]: ...
 def read_record(folder: str) -> Record: ...
+
+class Asked(TypedDict):
+    directions: list[float]
+    l2: list[float]
+    lateral_free: bool
+    shear_free: bool
+    compression: bool
+    method: str
+    cell: str
+    starts: int
+    seed: int
+    energy: str
+    quantity_name: str
+
 def characterize(
     design: Design,
-    directions: list[float],
-    l2: list[float],
+    asked: Asked,
     *,
-    lateral_free: bool,
-    shear_free: bool,
-    compression: bool,
-    method: str,
-    cell: str,
-    starts: int,
-    seed: int,
-    energy: str,
-    quantity_name: str,
     out: str | None,
     overwrite: bool,
     progress: _Progress | None,
     threads: int | None,
 ) -> Record: ...
+
+class OpenMap:
+    def __init__(self, design: Design, asked: Asked, out: str | None, overwrite: bool) -> None: ...
+    def count(self) -> tuple[int, int]: ...
+    def chains(self) -> list[tuple[float, int, str]]: ...
+    def chain(self, direction_deg: float) -> Record: ...
+    def keep(self, file: str, limits: list[tuple[str, str]]) -> int: ...
+    def finish(self) -> Record: ...
+
+def joint_csv(names: list[str], records: list[Record]) -> str: ...
+def study(name: str, text: str) -> str: ...
+def folder_name(name: str) -> str: ...
 def limit(
     design: Design,
     goal: str,
@@ -98,6 +115,18 @@ def boundary(
     seed: int,
     progress: _Progress | None,
     threads: int | None,
+) -> tuple[list[str], list[tuple[int, int, int]], float]: ...
+def boundary_head(design: Design, starts: int, cell: str, seed: int) -> str: ...
+def solve_rays(design: Design, rays: list[str], starts: int, cell: str, seed: int) -> list[str]: ...
+def boundary_by(
+    design: Design,
+    tolerance: float,
+    vertices: int,
+    starts: int,
+    cell: str,
+    seed: int,
+    known: list[str],
+    solve: Callable[[list[str], bool], list[str]],
 ) -> tuple[list[str], list[tuple[int, int, int]], float]: ...
 def circle_distance_minima(
     center_a: _Floats,

@@ -143,6 +143,10 @@ def boundary(
             progress=told,
             threads=None if threads is None else _whole("threads", threads, 1),
         )
+    return _surface(found, triangles, arch)
+
+
+def _surface(found: list[str], triangles: list[tuple[int, int, int]], arch: float) -> Boundary:
     rays = [json.loads(vertex) for vertex in found]
     return Boundary(
         vertices=np.array([ray["direction"] for ray in rays]) * np.array([[ray["distance"] or 0.0] for ray in rays]),

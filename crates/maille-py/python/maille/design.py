@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 import os
-import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Union
 
 from . import _native
+from ._files import write_whole
 from .errors import DesignError, UnknownDesignError
 
 __all__ = ["Design", "DesignLike", "Element", "Ring", "designs"]
@@ -228,21 +228,6 @@ def chosen(design: DesignLike, minor_radius: float | None) -> Design:
     """The design, with another wire where one is given."""
     of = Design.of(design)
     return of if minor_radius is None else of.with_minor_radius(minor_radius)
-
-
-def write_whole(path: Path, content: bytes) -> None:
-    """Writes a file, whole or not at all."""
-    handle, temporary = tempfile.mkstemp(prefix=".maille-", suffix=".tmp", dir=path.parent)
-    try:
-        with os.fdopen(handle, "wb") as out:
-            out.write(content)
-        mask = os.umask(0)
-        os.umask(mask)
-        os.chmod(temporary, 0o666 & ~mask)
-        os.replace(temporary, path)
-    except BaseException:
-        os.unlink(temporary)
-        raise
 
 
 def _from_json(text: str) -> Design:

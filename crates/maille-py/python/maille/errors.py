@@ -9,6 +9,7 @@ from typing import Any
 
 __all__ = [
     "ArgumentError",
+    "ChainError",
     "DesignError",
     "DesignProblem",
     "MailleError",
@@ -19,6 +20,7 @@ __all__ = [
     "RecordError",
     "RecordIOError",
     "ShapeError",
+    "StudyError",
     "UnknownDesignError",
 ]
 
@@ -33,6 +35,17 @@ class MailleError(Exception):
         self.problem = problem
         self.remedy = remedy
         super().__init__(problem if remedy is None else f"{problem}; {remedy}")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # To other processes: the classes are made from fields, not from the text.
+        return (_again, (type(self), self.args, self.__dict__))
+
+
+def _again(of: type[MailleError], args: tuple[Any, ...], fields: dict[str, Any]) -> MailleError:
+    error = of.__new__(of)
+    error.args = args
+    error.__dict__.update(fields)
+    return error
 
 
 class ArgumentError(MailleError, ValueError):
@@ -95,6 +108,21 @@ class UnknownDesignError(MailleError, LookupError):
     def __init__(self, name: str, remedy: str) -> None:
         super().__init__(f'there is no built-in design and no file "{name}"', remedy=remedy)
         self.name = name
+
+
+class StudyError(MailleError, ValueError):
+    """A study that cannot be used: the `file`, with `line` and `column` of what is wrong, from 1."""
+
+    def __init__(self, problem: str, remedy: str, file: str, line: int, column: int) -> None:
+        super().__init__(f"{file}:{line}: {problem}", remedy=remedy)
+        self.problem = problem
+        self.file = file
+        self.line = line
+        self.column = column
+
+
+class ChainError(MailleError):
+    """A chain of limits that a cluster could not compute, though it tried again; `problem` is what the last worker said."""
 
 
 class RecordError(MailleError):

@@ -115,7 +115,7 @@ class Record(Columns):
         """A `pyarrow.Table`: what `maille table -o FILE.parquet` holds, with units, meanings and the run's inputs as metadata."""
         from pyarrow import parquet
 
-        table: pyarrow.Table = parquet.read_table(io.BytesIO(self._inner.parquet()))
+        table: pyarrow.Table = parquet.read_table(io.BytesIO(self._inner.parquet(False)))
         return table
 
     def plot(self, quantity: Quantity = "stretch", *, ax: PolarAxes | None = None, **line: Any) -> PolarAxes:
@@ -195,6 +195,46 @@ def characterize(
     >>> record.to_numpy()["l1"].round(9).tolist(), record.to_numpy()["status"].tolist()
     ([0.44], ['global'])
     """
+    asked = _asked(
+        directions,
+        l2,
+        lateral=lateral,
+        shear=shear,
+        compression=compression,
+        method=method,
+        cell=cell,
+        starts=starts,
+        seed=seed,
+        energy=energy,
+        quantity=quantity,
+    )
+    with _Bar(progress) as told:
+        native = _native.characterize(
+            chosen(design, minor_radius)._inner,
+            asked,
+            out=None if out is None else os.fspath(out),
+            overwrite=overwrite,
+            progress=told,
+            threads=None if threads is None else _whole("threads", threads, 1),
+        )
+    return Record(native)
+
+
+def _asked(
+    directions: str | ArrayLike | None = None,
+    l2: str | ArrayLike | None = None,
+    *,
+    lateral: Held = "fixed",
+    shear: Held = "fixed",
+    compression: bool = False,
+    method: Literal["exact", "energy"] = "exact",
+    cell: str = "auto",
+    starts: int = 4,
+    seed: int = 1,
+    energy: dict[str, Any] | None = None,
+    quantity: Quantity = "stretch",
+) -> _native.Asked:
+    """What a map is asked for, as the native part takes it."""
     lateral_free, shear_free = _free("lateral", lateral), _free("shear", shear)
     usual_directions, usual_l2 = _native.usual()
     if lateral_free:
@@ -203,26 +243,19 @@ def characterize(
         l2 = [0.0]
     if energy is not None and method != "energy":
         raise ArgumentError("energy", "is for the energy method", 'leave it out, or give method="energy"')
-    with _Bar(progress) as told:
-        native = _native.characterize(
-            chosen(design, minor_radius)._inner,
-            _numbers("directions", usual_directions if directions is None else directions),
-            _numbers("l2", usual_l2 if l2 is None else l2),
-            lateral_free=lateral_free,
-            shear_free=shear_free,
-            compression=compression,
-            method=method,
-            cell=cell,
-            starts=_whole("starts", starts, 1),
-            seed=_whole("seed", seed, 0),
-            energy=json.dumps(energy or {}),
-            quantity_name=quantity,
-            out=None if out is None else os.fspath(out),
-            overwrite=overwrite,
-            progress=told,
-            threads=None if threads is None else _whole("threads", threads, 1),
-        )
-    return Record(native)
+    return {
+        "directions": _numbers("directions", usual_directions if directions is None else directions),
+        "l2": _numbers("l2", usual_l2 if l2 is None else l2),
+        "lateral_free": lateral_free,
+        "shear_free": shear_free,
+        "compression": compression,
+        "method": method,
+        "cell": cell,
+        "starts": _whole("starts", starts, 1),
+        "seed": _whole("seed", seed, 0),
+        "energy": json.dumps(energy or {}),
+        "quantity_name": quantity,
+    }
 
 
 def _whole(name: str, value: int, least: int) -> int:

@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
-from .design import Design, DesignLike, write_whole
+from ._files import write_whole
+from .design import Design, DesignLike
 from .errors import ArgumentError
 
 if TYPE_CHECKING:

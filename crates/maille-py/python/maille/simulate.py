@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native
-from .design import Design, DesignLike, chosen, write_whole
+from ._files import write_whole
+from .design import Design, DesignLike, chosen
 from .errors import ArgumentError, NotARecordError, ShapeError
 from .record import Progress, _Bar, _sequence, _whole
 from .sheet import Sheet

@@ -102,6 +102,35 @@ pub struct Boundary {
 /// Divisions of the icosahedron before the surface decides: 162 rays.
 const FIRST: usize = 2;
 
+/// A ray that is to be solved.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Ray {
+    /// Unit vector (E_xx, E_yy, E_xy).
+    pub direction: [f64; 3],
+    /// Vertices whose states are starts.
+    pub from: Vec<BoundaryVertex>,
+}
+
+/// Solves rays of which none needs another: gets them, and whether they are new, and gives their ends in order, `None` after a stop.
+pub type SolveRays<'a> = &'a mut dyn FnMut(&[Ray], bool) -> Vec<Option<BoundaryVertex>>;
+
+/// Solves rays, each for itself.
+pub struct RaySolver<'a>(StrainMethod<'a>);
+
+impl<'a> RaySolver<'a> {
+    /// For rays of one surface.
+    pub fn new(model: &'a Model, options: &BoundaryOptions) -> Self {
+        let options = StrainOptions { starts: options.starts, seed: options.seed, ..StrainOptions::default() };
+        RaySolver(StrainMethod::new(std::slice::from_ref(model), options))
+    }
+
+    /// Where the ray ends; `None` after `cancel`.
+    pub fn solve(&self, ray: &Ray, cancel: &AtomicBool) -> Option<BoundaryVertex> {
+        let from: Vec<State> = ray.from.iter().map(BoundaryVertex::state).collect();
+        solve_ray(&self.0, ray.direction.into(), &from, cancel)
+    }
+}
+
 /// Finds the surface on the current thread pool; the result does not depend on the number of threads. `known` are vertices of
 /// an earlier run, perhaps of another tolerance: a ray depends on its direction alone, and on the rays between which it was
 /// put. `found` gets each new one, `planned` the number of rays of a pass before it begins.
@@ -113,31 +142,48 @@ pub fn boundary(
     planned: &mut dyn FnMut(usize),
     found: &(dyn Fn(&BoundaryVertex) + Sync),
 ) -> Boundary {
-    let method = StrainMethod::new(
-        std::slice::from_ref(model),
-        StrainOptions { starts: options.starts, seed: options.seed, ..StrainOptions::default() },
-    );
+    let solver = RaySolver::new(model, options);
+    let mut solve = |rays: &[Ray], new: bool| -> Vec<Option<BoundaryVertex>> {
+        let one = |ray: &Ray| -> Option<BoundaryVertex> {
+            let vertex = solver.solve(ray, cancel)?;
+            if new {
+                found(&vertex);
+            }
+            Some(vertex)
+        };
+        rays.par_iter().with_max_len(1).map(one).collect()
+    };
+    boundary_by(options, known, cancel, planned, &mut solve)
+}
+
+/// The same with rays solved elsewhere: `solve` gets those of a pass; those that are not new are tried again from their neighbours'
+/// states.
+pub fn boundary_by(
+    options: &BoundaryOptions,
+    known: &[BoundaryVertex],
+    cancel: &AtomicBool,
+    planned: &mut dyn FnMut(usize),
+    solve: SolveRays<'_>,
+) -> Boundary {
     let bits = |direction: [f64; 3]| direction.map(f64::to_bits);
     let known: BTreeMap<[u64; 3], &BoundaryVertex> = known.iter().map(|v| (bits(v.direction), v)).collect();
     let mut sphere = Sphere::new(FIRST);
     let mut vertices: Vec<BoundaryVertex> = Vec::new();
     loop {
         let open = vertices.len()..sphere.directions.len();
-        let known = |k: usize| known.get(&bits(sphere.directions[k].into())).copied();
-        planned(open.clone().filter(|k| known(*k).is_none()).count());
-        let solve = |k: usize| -> Option<BoundaryVertex> {
-            if let Some(vertex) = known(k) {
-                return Some(vertex.clone());
-            }
+        let count = open.len();
+        let known = |k: &usize| known.get(&bits(sphere.directions[*k].into())).copied();
+        let rays = open.clone().filter(|k| known(k).is_none()).map(|k| {
             let parents = sphere.parents[k].into_iter().filter_map(|parent| vertices.get(parent));
-            let from: Vec<State> = parents.filter(|p| p.distance.is_some()).map(BoundaryVertex::state).collect();
-            let vertex = ray(&method, sphere.directions[k], &from, cancel)?;
-            found(&vertex);
-            Some(vertex)
-        };
-        let solved: Vec<Option<BoundaryVertex>> = open.into_par_iter().with_max_len(1).map(solve).collect();
-        let count = solved.len();
-        vertices.extend(solved.into_iter().map_while(|vertex| vertex));
+            let from = parents.filter(|p| p.distance.is_some()).cloned().collect();
+            Ray { direction: sphere.directions[k].into(), from }
+        });
+        let rays: Vec<Ray> = rays.collect();
+        planned(rays.len());
+        let mut solved = solve(&rays, true).into_iter();
+        let mut end = |k: usize| known(&k).cloned().or_else(|| solved.next().flatten());
+        let ends: Vec<Option<BoundaryVertex>> = open.map(&mut end).collect();
+        vertices.extend(ends.into_iter().map_while(|vertex| vertex));
         let complete = vertices.len() == sphere.directions.len();
         let wide = |vertices: &[BoundaryVertex]| -> Vec<Bent> {
             let bends = if complete { sphere.bent(&points(vertices), options.tolerance) } else { Vec::new() };
@@ -146,7 +192,7 @@ pub fn boundary(
         let room = options.most.saturating_sub(vertices.len());
         let mut divided = wide(&vertices);
         if complete && (divided.is_empty() || room == 0) {
-            hand_on(&method, &sphere, options.tolerance, &mut vertices, cancel);
+            hand_on(&sphere, options.tolerance, &mut vertices, solve);
             divided = wide(&vertices);
         }
         // Stopped while states were handed on: the next run does that again.
@@ -173,44 +219,45 @@ const ROUNDS: usize = 40;
 const GAIN: f64 = 1e-7;
 
 /// Rays at bent edges, solved once more from the state at the other end.
-fn hand_on(
-    method: &StrainMethod<'_>,
-    sphere: &Sphere,
-    tolerance: f64,
-    vertices: &mut [BoundaryVertex],
-    cancel: &AtomicBool,
-) {
+fn hand_on(sphere: &Sphere, tolerance: f64, vertices: &mut [BoundaryVertex], solve: SolveRays<'_>) {
     // A state is tried once on a ray.
     let mut tried: BTreeSet<(usize, usize, u64)> = BTreeSet::new();
     for _ in 0..ROUNDS {
-        let mut tasks: BTreeMap<usize, Vec<State>> = BTreeMap::new();
+        let mut tasks: BTreeMap<usize, Ray> = BTreeMap::new();
         for Bent { edge: [a, b], .. } in sphere.bent(&points(vertices), tolerance) {
             for (k, other) in [(a, b), (b, a)] {
                 let Some(distance) = vertices[other].distance else { continue };
                 if tried.insert((k, other, distance.to_bits())) {
-                    tasks.entry(k).or_default().push(vertices[other].state());
+                    let ray = || Ray { direction: sphere.directions[k].into(), from: Vec::new() };
+                    tasks.entry(k).or_insert_with(ray).from.push(vertices[other].clone());
                 }
             }
         }
-        let again = |(&k, from): (&usize, &Vec<State>)| -> Option<(usize, BoundaryVertex)> {
-            let (old, new) = (&vertices[k], ray(method, sphere.directions[k], from, cancel)?);
+        let (places, rays): (Vec<usize>, Vec<Ray>) = tasks.into_iter().unzip();
+        let mut gained = false;
+        for (k, new) in places.into_iter().zip(solve(&rays, false)) {
+            let (old, Some(new)) = (&vertices[k], new) else { continue };
             let certified = matches!(new.status, Status::Global | Status::Local);
-            let gains = certified && new.distance? > old.distance? + GAIN;
-            let n_distinct = new.n_distinct.max(old.n_distinct);
-            gains.then_some((k, BoundaryVertex { first: old.first, n_distinct, ..new }))
-        };
-        let better: Vec<(usize, BoundaryVertex)> = tasks.par_iter().filter_map(again).collect();
-        if better.is_empty() {
-            return;
+            let farther = new.distance.is_some_and(|d| old.distance.is_some_and(|old| d > old + GAIN));
+            if certified && farther {
+                let n_distinct = new.n_distinct.max(old.n_distinct);
+                vertices[k] = BoundaryVertex { first: old.first, n_distinct, ..new };
+                gained = true;
+            }
         }
-        for (k, vertex) in better {
-            vertices[k] = vertex;
+        if !gained {
+            return;
         }
     }
 }
 
 /// One ray; `None` after `cancel`.
-fn ray(method: &StrainMethod<'_>, direction: Vec3, from: &[State], cancel: &AtomicBool) -> Option<BoundaryVertex> {
+fn solve_ray(
+    method: &StrainMethod<'_>,
+    direction: Vec3,
+    from: &[State],
+    cancel: &AtomicBool,
+) -> Option<BoundaryVertex> {
     let along = Matrix2::new(direction.x, direction.z, direction.z, direction.y);
     let query = StrainQuery { held: Matrix2::zeros(), free: vec![along] };
     let outcome = method.solve(&query, from, cancel);

@@ -1,0 +1,77 @@
+"""Studies of `maille sweep` on a cluster."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .. import _native
+from ..design import Design, designs
+from ..errors import ArgumentError, MailleError
+from ..record import Progress, _asked
+from ._maps import run
+from ._results import Results
+
+if TYPE_CHECKING:
+    import distributed
+
+
+def sweep(
+    study: str | os.PathLike[str],
+    *,
+    out: str | os.PathLike[str] | None = None,
+    client: distributed.Client | None = None,
+    overwrite: bool = False,
+    retries: int = 2,
+    progress: Progress = None,
+) -> Results:
+    """What `maille sweep STUDY` does, on a cluster: the same study file, the same records and joint table in `out`.
+
+    `out` is by default `maille-out/STUDY`. A design that cannot be used is in `.failures`, and stops nothing else. The other
+    arguments are those of `characterize`.
+    """
+    file = Path(study)
+    if file.is_dir():
+        raise ArgumentError("study", f"{file} is a folder, not a study", "give a TOML file")
+    try:
+        text = file.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        raise ArgumentError("study", f"there is no study {file}", "`maille sweep --example` prints one") from None
+    except UnicodeDecodeError:
+        raise ArgumentError("study", f"{file} is no text", "give a TOML file, encoded in UTF-8") from None
+    read: dict[str, Any] = json.loads(_native.study(str(file), text))
+    asked = _asked(read["directions"], read["l2"], cell=read["cell"], starts=read["starts"], seed=read["seed"])
+    if out is None:
+        out = Path("maille-out") / _native.folder_name(file.stem)
+    return run(_plan(read["designs"], file.parent), asked, out, client, overwrite=overwrite, retries=retries, progress=progress)
+
+
+def _plan(of_study: list[dict[str, Any]], folder: Path) -> dict[str, Design | MailleError]:
+    plan: dict[str, Design | MailleError] = {}
+    for item in of_study:
+        named = item["design"]
+        design: Design | MailleError
+        try:
+            design = Design.of(named if named in designs() else folder / named)
+            stem = design.name
+        except MailleError as error:
+            design, stem = error, named
+        for suffix, minor_radius, spacing in item["variants"]:
+            name = _native.folder_name(stem) + suffix
+            if name in plan:
+                raise ArgumentError("study", f"{name} is in the study twice", "name each design and value once")
+            plan[name] = _varied(design, minor_radius, spacing)
+    return plan
+
+
+def _varied(design: Design | MailleError, minor_radius: float | None, spacing: float | None) -> Design | MailleError:
+    try:
+        if isinstance(design, Design) and minor_radius is not None:
+            design = design.with_minor_radius(minor_radius)
+        if isinstance(design, Design) and spacing is not None:
+            design = design.spaced(spacing)
+    except MailleError as error:
+        return error
+    return design

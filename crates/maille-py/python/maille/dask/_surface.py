@@ -1,0 +1,185 @@
+"""Surfaces of attainable strains on a cluster: the rays of a pass as tasks."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager
+from dataclasses import dataclass
+from hashlib import sha256
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Any, Union
+
+import pyarrow
+from pyarrow import parquet
+
+from .. import _native
+from .._files import write_whole
+from ..boundary import Boundary, _surface
+from ..design import Design
+from ..errors import ChainError, MailleError, MalformedRecordError, OtherInputsError, RecordError
+from ..record import Progress, _Bar, _whole
+from ._client import client_of, results
+from ._names import Designs, named
+from ._results import Failure
+
+if TYPE_CHECKING:
+    import distributed
+
+#: Journal of `maille boundary`, and the folder of the vertices as Parquet.
+JOURNAL, RAYS = "boundary.jsonl", "rays"
+#: Tasks for each thread of the workers in a pass, and rays in a task at most.
+TASKS, MOST = 4, 32
+
+
+@dataclass(frozen=True)
+class Surfaces:
+    """The surfaces of a run by name, and what could not be computed."""
+
+    out: Path
+    surfaces: dict[str, Boundary]
+    failures: tuple[Failure, ...]
+    #: Rays that this run has solved.
+    solved: int
+
+
+def boundary(
+    designs: Designs,
+    *,
+    out: str | os.PathLike[str],
+    client: distributed.Client | None = None,
+    tolerance: float = 1e-3,
+    vertices: int = 1500,
+    starts: int = 2,
+    cell: str = "1x1",
+    seed: int = 1,
+    overwrite: bool = False,
+    retries: int = 2,
+    progress: Progress = None,
+) -> Surfaces:
+    """The surface of each design, as `maille.boundary` finds it, one after the other; the rays of a pass are shared among the workers.
+
+    `out/NAME/boundary.jsonl` is the journal of `maille boundary`, kept while rays come in: the same call goes on from there, and so
+    does `maille boundary DESIGN --out out/NAME`, which writes meshes and a figure. `out/rays/record=NAME/` has the
+    vertices as Parquet. `designs`, `client`, `retries` and failures are as in `characterize`, the rest as in `maille.boundary`.
+    """
+    client = client_of(client)
+    starts, seed, vertices = _whole("starts", starts, 1), _whole("seed", seed, 0), _whole("vertices", vertices, 162)
+    retries = _whole("retries", retries, 0)
+    surfaces: dict[str, Boundary] = {}
+    failures: list[Failure] = []
+    counted = _Counted()
+    with _Bar(progress) as told:
+        counted.told = told or (lambda done, total: None)
+        for name, design in named(designs).items():
+            try:
+                if isinstance(design, MailleError):
+                    raise design
+                design.check()
+                head = _native.boundary_head(design._inner, starts, cell, seed)
+                with _journal(Path(out) / name, head, overwrite) as (known, journal):
+                    ask = _Ask(client, design, starts, cell, seed, retries, journal, counted)
+                    found = _native.boundary_by(
+                        design._inner, tolerance, vertices, starts, cell, seed, known, ask.solve
+                    )
+                _write_rays(Path(out) / RAYS / f"record={name}", found[0])
+                surfaces[name] = _surface(*found)
+            except RecordError:
+                raise
+            except MailleError as error:
+                failures.append(Failure(name, None, error))
+    return Surfaces(Path(out), surfaces, tuple(failures), counted.done)
+
+
+class _Counted:
+    done = 0
+    total = 0
+
+    def __init__(self) -> None:
+        self.told: Callable[[int, int], object] = lambda done, total: None
+
+    def more(self, done: int, total: int) -> None:
+        self.done += done
+        self.total += total
+        self.told(self.done, self.total)
+
+
+@dataclass
+class _Ask:
+    """Has rays solved by the workers."""
+
+    client: Any
+    design: Design
+    starts: int
+    cell: str
+    seed: int
+    retries: int
+    journal: IO[str]
+    counted: _Counted
+
+    def solve(self, rays: list[str], new: bool) -> list[str]:
+        """The ends of the rays, in order; new ones are in the journal when they come in."""
+        self.counted.more(0, len(rays))
+        threads = max(sum(self.client.nthreads().values()), 1)
+        size = min(max(len(rays) // (TASKS * threads), 1), MOST)
+        first = range(0, len(rays), size)
+        calls: dict[str, tuple[Any, ...]] = {}
+        for k in first:
+            part = rays[k : k + size]
+            inputs = "".join([self.design.to_toml(), repr((self.starts, self.cell, self.seed, k)), *part])
+            question = (self.design, part, self.starts, self.cell, self.seed, _native.__VERSION__)
+            calls[f"maille-{sha256(inputs.encode()).hexdigest()[:32]}"] = question
+        ends: dict[str, list[str]] = {}
+        with closing(results(self.client, solve, calls, self.retries)) as found:
+            for key, value in found:
+                if isinstance(value, MailleError):
+                    raise value
+                ends[key] = value
+                if new:
+                    self.journal.write("".join(f"{end}\n" for end in value))
+                    self.journal.flush()
+                self.counted.more(len(value), 0)
+        return [end for key in calls for end in ends[key]]
+
+
+def solve(
+    design: Design, rays: list[str], starts: int, cell: str, seed: int, version: str
+) -> Union[list[str], MailleError]:
+    """What a worker does: the ends of rays."""
+    if version != _native.__VERSION__:
+        return ChainError(f"the worker has maille {_native.__VERSION__}, not {version}")
+    try:
+        return _native.solve_rays(design._inner, rays, starts, cell, seed)
+    except MailleError as error:
+        return error
+
+
+@contextmanager
+def _journal(folder: Path, head: str, overwrite: bool) -> Iterator[tuple[list[str], IO[str]]]:
+    """The vertices of an earlier run, and the journal to go on with."""
+    file = folder / JOURNAL
+    folder.mkdir(parents=True, exist_ok=True)
+    known: list[str] = []
+    if file.exists() and not overwrite:
+        lines = file.read_text(encoding="utf-8").splitlines(keepends=True)
+        if lines and lines[0] != head:
+            try:
+                old = json.loads(lines[0])["input_hash"]
+            except (ValueError, KeyError, TypeError):
+                raise MalformedRecordError(f"{file}:1: no head of a surface", str(file), 1) from None
+            difference = f"its inputs have the hash {old[:12]}…"
+            raise OtherInputsError(f"{folder} holds a surface of other inputs: {difference}", folder, difference)
+        # The last line may have been cut off.
+        known = [line.rstrip("\n") for line in lines[1:] if line.endswith("}\n")]
+    write_whole(file, "".join([head, *(f"{line}\n" for line in known)]).encode())
+    with open(file, "a", encoding="utf-8", newline="\n") as journal:
+        yield known, journal
+
+
+def _write_rays(folder: Path, vertices: list[str]) -> None:
+    folder.mkdir(parents=True, exist_ok=True)
+    out = io.BytesIO()
+    parquet.write_table(pyarrow.Table.from_pylist([json.loads(vertex) for vertex in vertices]), out)
+    write_whole(folder / "rays.parquet", out.getvalue())

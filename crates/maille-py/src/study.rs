@@ -1,0 +1,34 @@
+//! Studies of `maille sweep`.
+
+use crate::error;
+use maille_io::{record::file_name, study::Study};
+use pyo3::prelude::*;
+use serde_json::json;
+
+/// What a study asks for, as JSON: what is asked of each design, and the designs with the values that they take. `name` is
+/// what errors show.
+#[pyfunction]
+pub fn study(name: &str, text: &str) -> PyResult<String> {
+    let study = Study::read(name, text).map_err(|e| error::study(name, &e))?;
+    let exact = study.options();
+    let designs = study.designs.iter().map(|design| {
+        let variants = design.variants();
+        let variants = variants.iter().map(|v| json!([v.suffix, v.minor_radius, v.spacing]));
+        json!({ "design": design.design, "variants": variants.collect::<Vec<_>>() })
+    });
+    Ok(json!({
+        "directions": study.directions_deg,
+        "l2": study.l2,
+        "cell": study.cell.map_or("auto".to_owned(), |cell| cell.to_string()),
+        "starts": exact.starts,
+        "seed": exact.seed,
+        "designs": designs.collect::<Vec<_>>(),
+    })
+    .to_string())
+}
+
+/// A design's name as a file or folder.
+#[pyfunction]
+pub fn folder_name(name: &str) -> String {
+    file_name(name)
+}
