@@ -380,7 +380,7 @@ impl Source {
     }
 }
 
-fn holds_record(folder: &Path) -> bool {
+pub fn holds_record(folder: &Path) -> bool {
     folder.join("run.json").is_file()
 }
 
