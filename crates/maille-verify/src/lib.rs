@@ -14,6 +14,7 @@ mod sheet;
 mod strain;
 mod verifier;
 
+pub use balance::{COMPLEMENTARITY, RESIDUAL};
 pub use record::{Texts, Unreadable};
 pub use report::{Check, Finding, RowReport, Verdict};
-pub use verifier::{COMPLEMENTARITY, OVERLAP, RESIDUAL, Verifier};
+pub use verifier::{OVERLAP, Verifier};

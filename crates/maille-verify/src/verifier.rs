@@ -2,7 +2,7 @@
 
 use crate::{
     apart::{Apart, apart, some_distance},
-    balance::{Free, balance},
+    balance::{COMPLEMENTARITY, Free, RESIDUAL, balance},
     chain::{self, ChainBound},
     files,
     linking::linking_number,
@@ -15,10 +15,6 @@ use std::collections::BTreeMap;
 
 /// Overlap that a limit may have, in reference radii.
 pub const OVERLAP: f64 = 1e-9;
-/// Residual of the balance that is allowed, for a unit pull.
-pub const RESIDUAL: f64 = 1e-6;
-/// Product of a force and its gap that is allowed.
-pub const COMPLEMENTARITY: f64 = 1e-8;
 /// A bound is attained within this.
 const ATTAINED: f64 = 1e-9;
 /// Tolerance of the record's own figures of a certificate.
@@ -235,7 +231,9 @@ impl Verifier {
             let words = format!("own_image_force is {:?}, {:?} in the state", row.own_image_force, found.own_image);
             return wrong(Some(found.own_image), words);
         }
-        let words = format!("{} forces, all pushing, balance the pull to {residual:.1e}", state.contacts.len());
+        let anew = if found.anew { "; those of flat pairs as heights, and others on closed points" } else { "" };
+        let count = state.contacts.len();
+        let words = format!("{count} forces, all pushing, balance the pull to {residual:.1e}{anew}");
         Finding::new(Check::Balance, Verdict::Proved, Some(residual), words)
     }
 
