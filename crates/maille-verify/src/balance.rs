@@ -132,14 +132,15 @@ impl<'a> Closed<'a> {
         Closed { sheet, pair, out, gap, slope: at.slope / (2.0 * at.distance) }
     }
 
-    /// Closed points of a pair: of a grid, and at and about the least distances, where the closed arc may be narrower.
+    /// Closed points of a pair: its least distances; where it lies flat, points of the closed arcs about them, and of a grid.
     fn all(sheet: &'a Sheet, pair: Pair) -> Vec<Self> {
         let (one, other) = (sheet.circle(pair.0, [0, 0]), sheet.circle(pair.1, pair.2));
         let arc = Arc::new(&one, &other);
         let touching = sheet.touching(pair.0, pair.1);
         let open = |angle: f64| (arc.at(angle).distance - touching).abs() > CLOSED;
         let width = std::f64::consts::TAU / SCAN as f64;
-        let mut angles: Vec<f64> = (0..SCAN).map(|k| width * k as f64).collect();
+        let flat = lie_flat(sheet, pair);
+        let mut angles: Vec<f64> = (0..SCAN).filter(|_| flat).map(|k| width * k as f64).collect();
         let slopes: Vec<f64> = (0..=SCAN).map(|k| arc.at(width * k as f64).slope).collect();
         for k in (0..SCAN).filter(|&k| slopes[k] < 0.0 && slopes[k + 1] >= 0.0) {
             let (mut low, mut high) = (width * k as f64, width * (k + 1) as f64);
@@ -148,12 +149,13 @@ impl<'a> Closed<'a> {
                 if arc.at(mid).slope < 0.0 { low = mid } else { high = mid }
             }
             let least = 0.5 * (low + high);
-            for side in [-1.0, 1.0] {
+            angles.push(least);
+            for side in [-1.0, 1.0].into_iter().filter(|_| flat) {
                 let mut reach = width;
                 while reach > 1e-9 && open(least + side * reach) {
                     reach *= 0.5;
                 }
-                angles.extend([least, least + 0.5 * side * reach, least + side * reach]);
+                angles.extend([0.5, 1.0].map(|part| least + part * side * reach));
             }
         }
         angles.into_iter().filter(|&angle| !open(angle)).map(|angle| Closed::at(sheet, pair, angle)).collect()

@@ -7,8 +7,9 @@
 //! - A new record: `run.json` first, so that the folder is known as ours before anything else is in it.
 //! - A replaced record: `limits.csv` is removed first, then the states and plots, then `run.json` is replaced. Until that
 //!   last step the folder is the old record with fewer rows, never a mixture.
-//! - More rows: `states.jsonl`, then `limits.csv`, then `run.json` (only its counters change). A kill in between leaves
-//!   states without rows, which are ignored, or counters that lag until the next write.
+//! - More rows: `run.json` with the new counters and checksums, the old ones behind them, then `states.jsonl`, then
+//!   `limits.csv`. A kill in between leaves files of which each has one of its two checksums, states without rows, which are
+//!   ignored, and counters that are ahead until the next write.
 //! - Each limit as it is found: a line at the end of `limits.journal`, in one write, until all files are written again. A kill
 //!   loses the limits in work and no other; a line that is cut off is not read.
 
@@ -51,16 +52,8 @@ impl Record {
             return Err(RecordError::NotARecord { folder: folder.into(), found: some_names(&names(folder)?) });
         };
         let run = read_run(&run.display().to_string(), &text)?;
-        let path = folder.join(LIMITS);
-        let rows = match read_if_there(&path)? {
-            Some(text) => read_limits(&path.display().to_string(), &text)?,
-            None => Vec::new(),
-        };
-        let path = folder.join(STATES);
-        let states = match read_if_there(&path)? {
-            Some(text) => read_states(&path.display().to_string(), &text)?,
-            None => Vec::new(),
-        };
+        let rows = read_checked(folder, LIMITS, &run, read_limits)?;
+        let states = read_checked(folder, STATES, &run, read_states)?;
         Ok(Self { run, rows, states })
     }
 
@@ -287,6 +280,36 @@ fn short(value: &Value) -> String {
     match text.char_indices().nth(40) {
         Some((cut, _)) => format!("{}…", &text[..cut]),
         None => text,
+    }
+}
+
+/// The content of a file of the record, if it is the one that was written. What cannot be read at all is told with its line.
+fn read_checked<T>(
+    folder: &Path,
+    name: &'static str,
+    run: &RunRecord,
+    read: impl Fn(&str, &str) -> Result<Vec<T>, RecordError>,
+) -> Result<Vec<T>, RecordError> {
+    let path = folder.join(name);
+    let file = path.display().to_string();
+    let sums = run.files.get(name).map_or(&[][..], Vec::as_slice);
+    let Some(text) = read_if_there(&path)? else {
+        // The first write of a record names a file that a kill can keep from being there.
+        return match sums {
+            [now] if *now != sha256(b"") => Ok(Vec::new()),
+            [] => Ok(Vec::new()),
+            [now, ..] => {
+                Err(RecordError::Edited { file, found: "none: it is missing".into(), expected: now.clone() })
+            }
+        };
+    };
+    let content = read(&file, &text)?;
+    let found = sha256(text.as_bytes());
+    match sums {
+        [expected, ..] if !sums.contains(&found) => {
+            Err(RecordError::Edited { file, found, expected: expected.clone() })
+        }
+        _ => Ok(content),
     }
 }
 
