@@ -36,11 +36,18 @@ pub(crate) fn sha256(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// All findings on the files; the first word on each is its worst.
+/// All findings on the files.
 pub(crate) fn check(texts: &Texts<'_>, run: &Run, rows: &[Row], states: &[State]) -> Vec<Finding> {
     let mut out = vec![inputs(texts.run, run)];
-    out.extend(sums(texts, run));
-    out.extend(rows_and_states(run, rows, states));
+    let sums = sums(texts, run);
+    // A run that was killed between two files leaves what does not fit together until it goes on.
+    let torn = sums.iter().any(|finding| finding.verdict == Verdict::Open);
+    out.extend(sums);
+    let mut rest = rows_and_states(run, rows, states);
+    for finding in rest.iter_mut().filter(|finding| torn && finding.verdict == Verdict::False) {
+        finding.verdict = Verdict::Open;
+    }
+    out.extend(rest);
     out
 }
 
@@ -93,8 +100,10 @@ fn sums(texts: &Texts<'_>, run: &Run) -> Vec<Finding> {
         (None | Some([]), Some(_)) => {
             say(Verdict::Consistent, format!("{name} has no checksum in {RUN}: an older version of maille wrote it"))
         }
-        (None | Some([]), None) => say(Verdict::Consistent, format!("there is no {name}")),
-        (Some(_), None) => say(Verdict::False, format!("{name} is missing, and {RUN} has its checksum")),
+        (_, None) => say(
+            Verdict::Open,
+            format!("there is no {name}: the run was stopped before it wrote one, or it was deleted"),
+        ),
         (Some([now, before @ ..]), Some(text)) => {
             let found = sha256(text.as_bytes());
             if found == *now {
