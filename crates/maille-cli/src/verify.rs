@@ -5,7 +5,7 @@ use crate::{
     map, output,
     progress::Progress,
     records,
-    source::holds_record,
+    source::is_record,
 };
 use maille_verify::{Check, Finding, RowReport, Texts, Verdict, Verifier};
 use miette::{IntoDiagnostic, Result, WrapErr};
@@ -87,16 +87,13 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 
 fn verified(folder: &Path, pool: &rayon::ThreadPool, quiet: bool) -> Result<Verified> {
     let name = folder.display().to_string();
-    if !holds_record(folder) {
-        let help = "give the folder that `maille characterize` wrote: it holds run.json, limits.csv and states.jsonl";
-        return Err(wrong(exit::RECORD, format!("{name} holds no record of maille"), help));
-    }
+    is_record(folder)?;
     let run = text(folder, "run.json")?.unwrap_or_default();
     let (limits, states) = (text(folder, "limits.csv")?, text(folder, "states.jsonl")?);
     let texts = Texts { run: &run, limits: limits.as_deref(), states: states.as_deref() };
     let verifier = Verifier::new(&texts).map_err(|e| {
         let help = "the file is damaged or was edited: restore it, or compute the record again with --overwrite";
-        wrong(exit::RECORD, format!("{}: {e}", folder.display()), help)
+        wrong(exit::RECORD, format!("{}:{}: {}", folder.join(e.file).display(), e.line, e.problem), help)
     })?;
     let progress = Progress::new(verifier.len() as u64, quiet);
     let row = |k: usize| {

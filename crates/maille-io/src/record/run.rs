@@ -8,7 +8,8 @@ use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 
-/// Enough to repeat a run. No time of day and no machine in it: the same run gives the same file.
+/// Enough to repeat a run. No time of day and no machine in it: the same run gives the same file, but for the checksum of
+/// `limits.csv`, which has wall times.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RunRecord {
