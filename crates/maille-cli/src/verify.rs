@@ -76,7 +76,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         all.push(verified(&records::folder(named), &pool, args.quiet)?);
     }
     if args.json {
-        output::print_json(&all)?;
+        output::print_json(&serde_json::json!({ "records": all }))?;
     } else {
         all.iter().for_each(|record| tell(record, args.rows));
     }

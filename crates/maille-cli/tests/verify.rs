@@ -22,7 +22,7 @@ fn verified(folder: &Path, record: &str) -> (i32, Value) {
     let output = maille(folder, &format!("verify {record} --json --quiet"));
     let found: Value = serde_json::from_slice(&output.stdout)
         .unwrap_or_else(|e| panic!("{record}: {e}: {}", String::from_utf8_lossy(&output.stderr)));
-    (code(&output), found[0].clone())
+    (code(&output), found["records"][0].clone())
 }
 
 /// The words of the checks of `name` that came to `verdict`.

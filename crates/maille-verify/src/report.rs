@@ -60,7 +60,6 @@ pub struct Finding {
     /// What came of it.
     pub verdict: Verdict,
     /// The figure that decided, in the unit that `words` name.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub figure: Option<f64>,
     /// One sentence.
     pub words: String,
