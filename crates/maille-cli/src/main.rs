@@ -33,6 +33,7 @@ mod summary;
 mod sweep;
 mod table;
 mod units;
+mod verify;
 mod watch;
 
 use clap::{Parser, Subcommand};
@@ -48,6 +49,7 @@ Examples:
   maille characterize 1.1                 its limits, as a table and a polar plot in maille-out/1.1/
   maille characterize my-weave.toml --directions 0:90:5 --l2 0
   maille replay maille-out/1.3            solve the rows without a limit again
+  maille verify maille-out/1.3            derive each state of a record anew
   maille sweep radius.toml                many designs, radii and spacings
   maille reproduce --quick                chapter 6 of the thesis, computed anew
   maille limit 1.1 --maximize exx --free eyy,exy    one strain as large as can be
@@ -62,8 +64,8 @@ Exit codes:
     1  a file cannot be read or written, or maille is at fault
     2  the arguments are wrong
     3  a design file is wrong, or there is none of that name
-    4  a record is missing, damaged, or of other inputs
-    5  done, but some limits were not found; replay: some rows came out otherwise
+    4  a record is missing, damaged, or of other inputs; verify: something in it is false
+    5  done, but some limits were not found; replay: some rows came out otherwise; verify: not all could be proved
   130  interrupted
 
 NO_COLOR=1 takes colours away; where standard error is no terminal, progress is plain lines.")]
@@ -80,6 +82,7 @@ enum Command {
     New(new::Args),
     Designs(designs::Args),
     Replay(replay::Args),
+    Verify(verify::Args),
     Sweep(sweep::Args),
     Limit(limit::Args),
     Boundary(boundary::Args),
@@ -106,6 +109,7 @@ fn main() -> ExitCode {
         Command::Check(args) => check::run(&args),
         Command::New(args) => done(new::run(&args)),
         Command::Replay(args) => replay::run(&args),
+        Command::Verify(args) => verify::run(&args),
         Command::Sweep(args) => sweep::run(&args),
         Command::Limit(args) => limit::run(&args),
         Command::Boundary(args) => boundary::run(&args),

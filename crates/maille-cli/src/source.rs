@@ -386,8 +386,14 @@ fn holds_record(folder: &Path) -> bool {
 
 /// The record of a folder that was named.
 pub fn read_record(folder: &Path) -> Result<Record> {
+    is_record(folder)?;
+    Ok(Record::read(folder)?)
+}
+
+/// Refuses a folder without a record.
+pub fn is_record(folder: &Path) -> Result<()> {
     if holds_record(folder) {
-        return Ok(Record::read(folder)?);
+        return Ok(());
     }
     let problem = match folder.exists() {
         true => format!("{} holds no record of maille", folder.display()),

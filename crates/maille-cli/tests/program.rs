@@ -110,6 +110,7 @@ fn every_key_of_the_json_output_is_documented() {
     keys(&json(folder, "designs --json"), &mut found);
     keys(&json(folder, "inspect 1.1 --json"), &mut found);
     keys(&check, &mut found);
+    keys(&json(folder, "verify 1.1 --json --quiet"), &mut found);
     let mut summary = summary;
     summary["statuses"] = Value::Null; // its keys are the statuses of the README
     keys(&summary, &mut found);

@@ -24,7 +24,7 @@ fn rows(out: &Path) -> usize {
     tables.filter_map(|table| fs::read_to_string(table).ok()).map(|text| text.lines().count() - 1).sum()
 }
 
-/// Every file by its name, tables without wall times; what shows times is left out.
+/// Every file by its name, tables without wall times and run.json without their checksums; what shows times is left out.
 fn files(folder: &Path, below: &str, into: &mut BTreeMap<String, String>) {
     for entry in fs::read_dir(folder).unwrap() {
         let entry = entry.unwrap();
@@ -33,7 +33,12 @@ fn files(folder: &Path, below: &str, into: &mut BTreeMap<String, String>) {
         if path.is_dir() {
             files(&path, &name, into);
         } else if !["index.html", "6.1-times"].iter().any(|times| name.contains(times)) {
-            into.insert(name.clone(), if name.ends_with(".csv") { without_times(&path) } else { text(&path) });
+            let content = match name.rsplit('/').next() {
+                Some("run.json") => text(&path).split("\"files\"").next().unwrap().to_owned(),
+                _ if name.ends_with(".csv") => without_times(&path),
+                _ => text(&path),
+            };
+            into.insert(name, content);
         }
     }
 }

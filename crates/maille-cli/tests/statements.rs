@@ -35,6 +35,7 @@ fn limits(design: &Design, l2: &[f64]) -> Map {
         design: design.clone(),
         parameters: serde_json::json!({ "method": "exact", "cells": ["1x1"] }),
         counters: Counters::of(&rows),
+        files: Default::default(),
     };
     Map::of(&NamedRecord { name: design.name.clone(), record: Record { run, rows, states: Vec::new() } }).unwrap()
 }

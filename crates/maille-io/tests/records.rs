@@ -233,6 +233,26 @@ fn files_of_others_are_never_replaced() {
 }
 
 #[test]
+fn a_table_that_was_edited_or_cut_where_a_line_ends_is_reported() {
+    let (rows, states) = two();
+    for name in ["limits.csv", "states.jsonl"] {
+        let dir = tempfile::tempdir().unwrap();
+        open(dir.path(), &json!({}), false).unwrap().0.write(&rows, &states).unwrap();
+        let path = dir.path().join(name);
+        let text = fs::read_to_string(&path).unwrap();
+        let cut = text[..text.trim_end().rfind('\n').unwrap() + 1].to_owned();
+        for wrong in [text.replacen("15.0", "15.5", 1), cut] {
+            assert_ne!(wrong, text);
+            fs::write(&path, wrong).unwrap();
+            for found in [message(Record::read(dir.path())), message(open(dir.path(), &json!({}), false))] {
+                assert!(found.contains(&format!("{name} was edited or cut off: its SHA-256 is ")), "{found}");
+            }
+        }
+        assert!(open(dir.path(), &json!({}), true).is_ok(), "{name}");
+    }
+}
+
+#[test]
 fn a_damaged_record_is_reported_and_can_be_replaced() {
     let (rows, states) = two();
     for (name, keep) in [("limits.csv", 250), ("states.jsonl", 300), ("run.json", 150)] {

@@ -124,6 +124,7 @@ pub fn record(error: &RecordError) -> PyErr {
     let name = match error {
         RecordError::Io { .. } => "RecordIOError",
         RecordError::Malformed { .. } => "MalformedRecordError",
+        RecordError::Edited { .. } => "EditedRecordError",
         RecordError::OtherInputs { .. } => "OtherInputsError",
         RecordError::NotARecord { .. } => "NotARecordError",
         RecordError::NotFinite { .. } => "NotFiniteError",
@@ -139,6 +140,11 @@ pub fn record(error: &RecordError) -> PyErr {
             RecordError::Malformed { file, line, .. } => {
                 to.set_item("file", file)?;
                 to.set_item("line", line)
+            }
+            RecordError::Edited { file, found, expected } => {
+                to.set_item("file", file)?;
+                to.set_item("found", found)?;
+                to.set_item("expected", expected)
             }
             RecordError::OtherInputs { folder, difference } => {
                 to.set_item("folder", folder)?;

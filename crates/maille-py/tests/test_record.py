@@ -165,7 +165,12 @@ def test_records_that_are_wrong(tmp_path, by_program):
     assert "directions_deg" in raised.value.difference and "overwrite=True" in str(raised.value)
     assert len(maille.characterize("1.1", [0, 90], [0], out=out, overwrite=True)) == 2
     limits = out / "limits.csv"
-    limits.write_text(limits.read_text().replace("global", "universal"))
+    text = limits.read_text()
+    limits.write_text(text.replace("2.07", "2.08", 1))
+    with pytest.raises(maille.errors.EditedRecordError) as raised:
+        maille.read_record(out)
+    assert raised.value.file.endswith("limits.csv") and raised.value.found != raised.value.expected
+    limits.write_text(text.replace("global", "universal"))
     with pytest.raises(maille.errors.MalformedRecordError) as raised:
         maille.read_record(out)
     assert raised.value.line == 2 and raised.value.file.endswith("limits.csv")

@@ -28,6 +28,17 @@ pub enum RecordError {
         /// Column and value, and what was expected.
         problem: String,
     },
+    /// A file of the record is not the one that was written.
+    #[error("{file} was edited or cut off: its SHA-256 is {found}, run.json has {expected}")]
+    #[diagnostic(help("restore the file, or compute the record again with --overwrite"))]
+    Edited {
+        /// Path of the file.
+        file: String,
+        /// What it is.
+        found: String,
+        /// What was written.
+        expected: String,
+    },
     /// The folder holds the record of another computation.
     #[error("{} holds a record of other inputs: {difference}", folder.display())]
     #[diagnostic(help("name another folder with --out, or replace this record with --overwrite"))]

@@ -7,14 +7,15 @@
 //! - A new record: `run.json` first, so that the folder is known as ours before anything else is in it.
 //! - A replaced record: `limits.csv` is removed first, then the states and plots, then `run.json` is replaced. Until that
 //!   last step the folder is the old record with fewer rows, never a mixture.
-//! - More rows: `states.jsonl`, then `limits.csv`, then `run.json` (only its counters change). A kill in between leaves
-//!   states without rows, which are ignored, or counters that lag until the next write.
+//! - More rows: `run.json` with the new counters and with two checksums for each file, the new one and that of the file which is
+//!   there; then `states.jsonl`, then `limits.csv`; then `run.json` with the new checksums alone. A kill in between leaves files
+//!   of which each has one of its two, states without rows, which are ignored, and counters that are ahead until the next write.
 //! - Each limit as it is found: a line at the end of `limits.journal`, in one write, until all files are written again. A kill
 //!   loses the limits in work and no other; a line that is cut off is not read.
 
 use super::error::RecordError;
 use super::limits::{read_limits, write_limits};
-use super::run::{Counters, RunRecord, read_run, write_run};
+use super::run::{Counters, RunRecord, read_run, sha256, write_run};
 use super::states::{read_states, write_states};
 use maille::design::Design;
 use maille::record::{LimitRow, StateRecord, Status};
@@ -56,16 +57,8 @@ impl Record {
             return Err(RecordError::NotARecord { folder: folder.into(), found: some_names(&names(folder)?) });
         };
         let run = read_run(&run.display().to_string(), &text)?;
-        let path = folder.join(LIMITS);
-        let rows = match read_if_there(&path)? {
-            Some(text) => read_limits(&path.display().to_string(), &text)?,
-            None => Vec::new(),
-        };
-        let path = folder.join(STATES);
-        let states = match read_if_there(&path)? {
-            Some(text) => read_states(&path.display().to_string(), &text)?,
-            None => Vec::new(),
-        };
+        let rows = read_checked(folder, LIMITS, &run, read_limits)?;
+        let states = read_checked(folder, STATES, &run, read_states)?;
         Ok(Self { run, rows, states })
     }
 
@@ -94,6 +87,8 @@ pub struct NamedRecord {
 pub struct RecordFolder {
     path: PathBuf,
     run: RunRecord,
+    /// Checksums of the files that are there.
+    there: BTreeMap<String, String>,
     /// The journal, once something is in it.
     journal: Option<fs::File>,
 }
@@ -122,13 +117,19 @@ impl RecordFolder {
         let mut found = names(path)?;
         found.retain(|name| !is_temporary(name));
         remove_temporary(path)?;
-        let mut folder = Self { path: path.to_owned(), run, journal: None };
+        let mut folder = Self { path: path.to_owned(), run, there: BTreeMap::new(), journal: None };
         if !found.is_empty() {
             if overwrite {
                 folder.may_replace(&found)?;
             } else {
                 let record = Record::read(path)?;
                 folder.same_inputs(&record.run)?;
+                for name in [LIMITS, STATES] {
+                    if let Some(text) = read_if_there(&path.join(name))? {
+                        folder.there.insert(name.to_owned(), sha256(text.as_bytes()));
+                    }
+                }
+                folder.run.files = record.run.files.clone();
                 let (mut rows, mut states) = record.finished();
                 if let Some(journal) = read_if_there(&path.join(JOURNAL))? {
                     for (row, state) in journal_lines(&journal) {
@@ -176,9 +177,12 @@ impl RecordFolder {
     /// Replaces rows and states by all those of the run so far.
     pub fn write(&mut self, rows: &[LimitRow], states: &[StateRecord]) -> Result<(), RecordError> {
         self.run.counters = Counters::of(rows);
-        for step in self.steps_to_write(rows, states)? {
+        let (steps, there) = self.steps_to_write(rows, states)?;
+        for step in steps {
             self.apply(step)?;
         }
+        self.run.files = alone(&there);
+        self.there = there;
         self.journal = None;
         self.apply(Step::Remove(JOURNAL))
     }
@@ -195,12 +199,23 @@ impl RecordFolder {
         steps
     }
 
-    fn steps_to_write(&self, rows: &[LimitRow], states: &[StateRecord]) -> Result<Vec<Step>, RecordError> {
-        Ok(vec![
-            Step::Write(STATES, write_states(states)?.into()),
-            Step::Write(LIMITS, write_limits(rows)?.into()),
-            Step::Write(RUN, write_run(&self.run).into()),
-        ])
+    /// The steps, and the checksums of the files after them.
+    fn steps_to_write(
+        &self,
+        rows: &[LimitRow],
+        states: &[StateRecord],
+    ) -> Result<(Vec<Step>, BTreeMap<String, String>), RecordError> {
+        let (limits, states) = (write_limits(rows)?, write_states(states)?);
+        let there: BTreeMap<String, String> =
+            [(LIMITS, &limits), (STATES, &states)].map(|(name, text)| (name.into(), sha256(text.as_bytes()))).into();
+        let mut both = alone(&there);
+        for (name, sums) in &mut both {
+            sums.extend(self.there.get(name).filter(|before| **before != sums[0]).cloned());
+        }
+        let run = |files| Step::Write(RUN, write_run(&RunRecord { files, ..self.run.clone() }).into());
+        let after = run(alone(&there));
+        let steps = vec![run(both), Step::Write(STATES, states.into()), Step::Write(LIMITS, limits.into()), after];
+        Ok((steps, there))
     }
 
     fn apply(&self, step: Step) -> Result<(), RecordError> {
@@ -292,6 +307,31 @@ fn short(value: &Value) -> String {
     match text.char_indices().nth(40) {
         Some((cut, _)) => format!("{}…", &text[..cut]),
         None => text,
+    }
+}
+
+/// Each checksum as the only one of its file.
+fn alone(sums: &BTreeMap<String, String>) -> BTreeMap<String, Vec<String>> {
+    sums.iter().map(|(name, sum)| (name.clone(), vec![sum.clone()])).collect()
+}
+
+/// The content of a file of the record, if it is the one that was written. What cannot be read at all is told with its line.
+fn read_checked<T>(
+    folder: &Path,
+    name: &'static str,
+    run: &RunRecord,
+    read: impl Fn(&str, &str) -> Result<Vec<T>, RecordError>,
+) -> Result<Vec<T>, RecordError> {
+    let path = folder.join(name);
+    let file = path.display().to_string();
+    let Some(text) = read_if_there(&path)? else { return Ok(Vec::new()) };
+    let content = read(&file, &text)?;
+    let found = sha256(text.as_bytes());
+    match run.files.get(name).map(Vec::as_slice) {
+        Some(sums @ [expected, ..]) if !sums.contains(&found) => {
+            Err(RecordError::Edited { file, found, expected: expected.clone() })
+        }
+        _ => Ok(content),
     }
 }
 
@@ -447,10 +487,10 @@ mod tests {
             folder.write(&old, &old_states).unwrap();
             folder
         };
-        let steps = |folder: &mut RecordFolder| folder.steps_to_write(&new, &new_states).unwrap();
+        let steps = |folder: &mut RecordFolder| folder.steps_to_write(&new, &new_states).unwrap().0;
         killed_anywhere(before, steps, |path, done| {
             let (_, rows, states) = RecordFolder::open(path, &design(), &inputs, "0.1.0", false).unwrap();
-            let expected = if done < 2 { 2 } else { 5 };
+            let expected = if done < 3 { 2 } else { 5 };
             assert_eq!((rows.len(), states.len()), (expected, expected));
             assert_eq!((&rows[..], &states[..]), (&new[..expected], &new_states[..expected]));
         });
@@ -468,10 +508,10 @@ mod tests {
             folder.write(&old, &old_states).unwrap();
             folder
         };
-        let steps = |folder: &mut RecordFolder| folder.steps_to_write(&new, &new_states).unwrap();
+        let steps = |folder: &mut RecordFolder| folder.steps_to_write(&new, &new_states).unwrap().0;
         killed_anywhere(before, steps, |path, done| {
             let (_, rows, _) = RecordFolder::open(path, &design(), &inputs, "0.1.0", false).unwrap();
-            assert_eq!(rows.len(), if done < 2 { 1 } else { 2 });
+            assert_eq!(rows.len(), if done < 3 { 1 } else { 2 });
         });
     }
 

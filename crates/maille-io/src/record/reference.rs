@@ -135,6 +135,7 @@ mod tests {
             design,
             parameters: Value::Null,
             counters: Counters::of(&rows),
+            files: Default::default(),
         };
         Record { run, rows, states: Vec::new() }
     }

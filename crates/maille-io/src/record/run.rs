@@ -8,7 +8,8 @@ use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 
-/// Enough to repeat a run. No time of day and no machine in it: the same run gives the same file.
+/// Enough to repeat a run. No time of day and no machine in it: the same run gives the same file, but for the checksum of
+/// `limits.csv`, which has wall times.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RunRecord {
@@ -24,6 +25,10 @@ pub struct RunRecord {
     pub parameters: Value,
     /// What was done.
     pub counters: Counters,
+    /// SHA-256 of `limits.csv` and `states.jsonl`; after it that of the file before, so that a run killed between two files
+    /// leaves a record that is known as whole. Empty in records older than it.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub files: BTreeMap<String, Vec<String>>,
 }
 
 impl RunRecord {
@@ -36,6 +41,7 @@ impl RunRecord {
             design: design.clone(),
             parameters: parameters.clone(),
             counters: Counters::default(),
+            files: BTreeMap::new(),
         }
     }
 }
@@ -70,7 +76,12 @@ pub fn input_hash(design: &Design, parameters: &Value) -> String {
     let inputs = serde_json::json!({ "schema": RECORD_SCHEMA, "design": design, "parameters": parameters });
     let mut text = String::new();
     canonical(&inputs, &mut text);
-    Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect()
+    sha256(text.as_bytes())
+}
+
+/// SHA-256 in hexadecimal.
+pub(super) fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 fn canonical(value: &Value, out: &mut String) {

@@ -40,6 +40,7 @@ pub fn record(name: &str, design: Design, rows: Vec<LimitRow>) -> NamedRecord {
         design,
         parameters: serde_json::json!({ "method": "energy", "options": { "tau": 0.01 } }),
         counters: Counters::of(&rows),
+        files: Default::default(),
     };
     NamedRecord { name: name.into(), record: Record { run, rows, states: Vec::new() } }
 }

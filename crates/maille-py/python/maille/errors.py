@@ -12,6 +12,7 @@ __all__ = [
     "ChainError",
     "DesignError",
     "DesignProblem",
+    "EditedRecordError",
     "MailleError",
     "MalformedRecordError",
     "NotARecordError",
@@ -145,6 +146,16 @@ class MalformedRecordError(RecordError):
         super().__init__(problem, remedy="restore the file, or compute the record again with overwrite=True")
         self.file = file
         self.line = line
+
+
+class EditedRecordError(RecordError):
+    """A file of the record is not the one that was written: its SHA-256 is `found`, `expected` stands in run.json."""
+
+    def __init__(self, problem: str, file: str, found: str, expected: str) -> None:
+        super().__init__(problem, remedy="restore the file, or compute the record again with overwrite=True")
+        self.file = file
+        self.found = found
+        self.expected = expected
 
 
 class OtherInputsError(RecordError):

@@ -1,0 +1,213 @@
+//! `maille verify`: records derived anew, by code that shares nothing with the solver.
+
+use crate::{
+    exit::{self, wrong},
+    map, output,
+    progress::Progress,
+    records,
+    source::is_record,
+};
+use maille_verify::{Check, Finding, RowReport, Texts, Verdict, Verifier};
+use miette::{IntoDiagnostic, Result, WrapErr};
+use rayon::prelude::*;
+use serde::Serialize;
+use std::{
+    fs,
+    io::ErrorKind,
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
+
+/// Derive each state of a record anew, by other means than it was found, and say what is proved
+///
+/// Of each row with a limit: its strains from its lattice; that no two rings overlap by more than 1e-9 R, by a bound
+/// on whole arcs; linking numbers by Gauss's integral; that the contact forces push and balance the pull to 1e-6, from
+/// differences of gaps; the chain bound. And that the files are whole, unedited, and fit together.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  maille verify 1.1                       maille-out/1.1
+  maille verify maille-out/*              many, with one line for each check
+  maille verify 1.1 --rows                a line for each row
+  maille verify 1.1 --json
+
+Not derived: that no small motion raises l1 to second order, link bounds, and what the search did (n_starts, wall_s …).
+docs/reliability.md has the method.
+
+Exit codes: 0 all certified rows are proved, 4 something is false or unreadable, 5 something could not be proved.")]
+pub struct Args {
+    /// Folders of records; NAME stands for maille-out/NAME
+    #[arg(required = true, value_name = "RECORD")]
+    records: Vec<PathBuf>,
+    /// A line for each row, not only for those that are not proved
+    #[arg(long, conflicts_with = "json")]
+    rows: bool,
+    /// All findings as one JSON document
+    #[arg(long)]
+    json: bool,
+    /// Threads [default: all cores]
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+    /// No progress
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+/// A record with all that was found.
+#[derive(Serialize)]
+struct Verified {
+    record: String,
+    design: String,
+    outcome: &'static str,
+    certified: usize,
+    proved: usize,
+    files: Vec<Finding>,
+    rows: Vec<RowReport>,
+}
+
+/// Rows that are named where not all are.
+const NAMED: usize = 20;
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<ExitCode> {
+    let pool = map::pool(args.threads)?;
+    let mut all = Vec::new();
+    for named in &args.records {
+        all.push(verified(&records::folder(named), &pool, args.quiet)?);
+    }
+    if args.json {
+        output::print_json(&serde_json::json!({ "records": all }))?;
+    } else {
+        all.iter().for_each(|record| tell(record, args.rows));
+    }
+    let worst = all.iter().map(Verified::code).max().unwrap_or(exit::DONE);
+    let refuted = all.iter().any(|record| record.code() == exit::RECORD);
+    Ok(ExitCode::from(if refuted { exit::RECORD } else { worst }))
+}
+
+fn verified(folder: &Path, pool: &rayon::ThreadPool, quiet: bool) -> Result<Verified> {
+    let name = folder.display().to_string();
+    is_record(folder)?;
+    let run = text(folder, "run.json")?.unwrap_or_default();
+    let (limits, states) = (text(folder, "limits.csv")?, text(folder, "states.jsonl")?);
+    let texts = Texts { run: &run, limits: limits.as_deref(), states: states.as_deref() };
+    let verifier = Verifier::new(&texts).map_err(|e| {
+        let help = "the file is damaged or was edited: restore it, or compute the record again with --overwrite";
+        wrong(exit::RECORD, format!("{}:{}: {}", folder.join(e.file).display(), e.line, e.problem), help)
+    })?;
+    let progress = Progress::new(verifier.len() as u64, quiet);
+    let row = |k: usize| {
+        let report = verifier.row(k);
+        progress.step(format!("{}°, l2 = {}", report.direction_deg, report.l2));
+        report
+    };
+    let rows: Vec<RowReport> = pool.install(|| (0..verifier.len()).into_par_iter().with_max_len(1).map(row).collect());
+    progress.finish();
+    let certified = rows.iter().filter(|row| row.certified).count();
+    let proved = rows.iter().filter(|row| row.certified && row.proved()).count();
+    let mut out = Verified {
+        record: name,
+        design: verifier.design().to_owned(),
+        outcome: "",
+        certified,
+        proved,
+        files: verifier.files().to_vec(),
+        rows,
+    };
+    out.outcome = match out.code() {
+        exit::DONE => "proved",
+        exit::RECORD => "false",
+        _ => "open",
+    };
+    Ok(out)
+}
+
+fn text(folder: &Path, name: &str) -> Result<Option<String>> {
+    let path = folder.join(name);
+    match fs::read_to_string(&path) {
+        Ok(text) => Ok(Some(text)),
+        Err(e) if e.kind() == ErrorKind::NotFound => Ok(None),
+        Err(e) if e.kind() == ErrorKind::InvalidData => {
+            let help = "the file is damaged or was edited: restore it, or compute the record again with --overwrite";
+            Err(wrong(exit::RECORD, format!("{} is no text", path.display()), help))
+        }
+        Err(e) => Err(e).into_diagnostic().wrap_err_with(|| format!("cannot read {}", path.display())),
+    }
+}
+
+impl Verified {
+    fn code(&self) -> u8 {
+        let of_files = self.files.iter().map(|f| f.verdict).max();
+        let of_rows = self.rows.iter().filter_map(RowReport::verdict).max();
+        match of_files.max(of_rows) {
+            Some(Verdict::False) => exit::RECORD,
+            Some(Verdict::Open) => exit::INCOMPLETE,
+            _ if self.proved < self.certified => exit::INCOMPLETE,
+            _ => exit::DONE,
+        }
+    }
+}
+
+fn tell(record: &Verified, all: bool) {
+    output::say!(
+        "{}: {} rows, {} of {} certified ones proved",
+        record.record,
+        record.rows.len(),
+        record.proved,
+        record.certified
+    );
+    for finding in &record.files {
+        output::say!("  {:<12} {}", "files", marked(finding));
+    }
+    for check in Check::ALL.into_iter().filter(|check| *check != Check::Files) {
+        let findings: Vec<&Finding> = record.rows.iter().filter_map(|row| row.finding(check)).collect();
+        if findings.is_empty() {
+            continue;
+        }
+        let verdicts = [
+            (Verdict::Proved, "proved"),
+            (Verdict::Consistent, "not derived, fits"),
+            (Verdict::Open, "could not be shown"),
+            (Verdict::False, "false"),
+        ];
+        let count = |verdict: Verdict| findings.iter().filter(|f| f.verdict == verdict).count();
+        let words = verdicts.iter().map(|(verdict, word)| (count(*verdict), word)).filter(|(n, _)| *n > 0);
+        let words: Vec<String> = words.map(|(n, word)| format!("{n} {word}")).collect();
+        output::say!("  {:<12} {}{}", check.name(), words.join(", "), extreme(check, &findings));
+    }
+    let told = |row: &&RowReport| all || row.findings.iter().any(|f| f.verdict >= Verdict::Open);
+    let rows: Vec<&RowReport> = record.rows.iter().filter(told).collect();
+    let most = if all { rows.len() } else { NAMED };
+    for row in rows.iter().take(most) {
+        output::say!("  {}°, l2 = {}, {}", row.direction_deg, row.l2, row.status);
+        for finding in row.findings.iter().filter(|f| all || f.verdict >= Verdict::Open) {
+            output::say!("    {:<12} {}", finding.check.name(), marked(finding));
+        }
+    }
+    if rows.len() > most {
+        output::say!("  {} more rows: --rows lists all", rows.len() - most);
+    }
+}
+
+fn marked(finding: &Finding) -> String {
+    let mark = match finding.verdict {
+        Verdict::Proved | Verdict::Consistent => "",
+        Verdict::Open => "could not be shown: ",
+        Verdict::False => "FALSE: ",
+    };
+    format!("{mark}{}", finding.words)
+}
+
+/// The figure of all proved rows that is nearest to its tolerance.
+fn extreme(check: Check, findings: &[&Finding]) -> String {
+    let figures = findings.iter().filter(|f| f.verdict == Verdict::Proved).filter_map(|f| f.figure);
+    match check {
+        Check::Deformation => format!("; largest difference {:.1e}", figures.fold(0.0, f64::max)),
+        Check::Overlap => {
+            let least = figures.fold(f64::INFINITY, f64::min);
+            if least.is_finite() { format!("; smallest gap {least:.1e} R") } else { String::new() }
+        }
+        Check::Balance => format!("; largest residual {:.1e}", figures.fold(0.0, f64::max)),
+        _ => String::new(),
+    }
+}

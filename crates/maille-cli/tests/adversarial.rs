@@ -1,0 +1,213 @@
+//! Designs at the edge of what a design can be: each has a stated answer, and what is certified is verified.
+
+use serde_json::Value;
+use std::{fmt::Write as _, fs, path::Path, process::Command};
+
+/// Direction, l2, status and l1 of the rows of a design in its own cell, at 0°, 45° and 90° with these l2; the exit codes of `characterize`
+/// and of `verify`.
+struct Answer {
+    rows: Vec<(f64, f64, String, Option<f64>)>,
+    codes: (i32, Option<i32>),
+    said: String,
+}
+
+fn maille(folder: &Path, line: &str) -> (i32, String, String) {
+    let words = line.split_whitespace();
+    let output = Command::new(env!("CARGO_BIN_EXE_maille")).args(words).current_dir(folder).output().unwrap();
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    (output.status.code().unwrap(), text(&output.stdout), text(&output.stderr))
+}
+
+fn answer(design: &str, l2: &str) -> Answer {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("design.toml"), design).unwrap();
+    let line = format!("characterize design.toml --directions 0,45,90 --l2={l2} --cell 1x1 --out record --quiet");
+    let (code, _, said) = maille(folder.path(), &line);
+    if !folder.path().join("record/limits.csv").exists() {
+        return Answer { rows: Vec::new(), codes: (code, None), said };
+    }
+    let table: Value = serde_json::from_str(&maille(folder.path(), "table record --format json").1).unwrap();
+    let number = |row: &Value, name: &str| row[name].as_f64();
+    let row = |row: &Value| {
+        let at = |name: &str| number(row, name).unwrap();
+        (at("direction_deg"), at("l2"), row["status"].as_str().unwrap().to_owned(), number(row, "l1"))
+    };
+    let rows = table["rows"].as_array().unwrap().iter().map(row).collect();
+    let (verified, said, _) = maille(folder.path(), "verify record --quiet");
+    Answer { rows, codes: (code, Some(verified)), said }
+}
+
+/// A ring as an element: centre, normal, major radius, and a minor radius of its own.
+type Single = ([f64; 3], [f64; 3], f64, Option<f64>);
+
+const X: [f64; 3] = [1.0, 0.0, 0.0];
+const Y: [f64; 3] = [0.0, 1.0, 0.0];
+const Z: [f64; 3] = [0.0, 0.0, 1.0];
+
+fn design(basis: [[f64; 3]; 2], minor_radius: f64, reference_radius: f64, rings: &[Single]) -> String {
+    let [a1, a2] = basis;
+    let mut out = format!(
+        "schema = 1\nname = \"edge\"\nminor_radius = {minor_radius:?}\nreference_radius = {reference_radius:?}\n\n[lattice]\na1 = {a1:?}\na2 = {a2:?}\n"
+    );
+    for (k, (center, normal, radius, own)) in rings.iter().enumerate() {
+        let own = own.map_or(String::new(), |r| format!(", minor_radius = {r:?}"));
+        write!(
+            out,
+            "\n[[elements]]\nname = \"e{k}\"\ncenter = {center:?}\nrings = [{{ major_radius = {radius:?}, normal = {normal:?}{own} }}]\n"
+        )
+        .unwrap();
+    }
+    out
+}
+
+/// 1.1 with spacing a, minor radius r, all times `scale`, moved by `by`, in a basis whose second vector is a2 + shear a1.
+fn grid(a: f64, r: f64, scale: f64, by: f64, shear: f64) -> String {
+    let at = |x: f64, y: f64| [scale * x + by, scale * y - by, by];
+    let basis = [[scale * a, 0.0, 0.0], [scale * a * shear, scale * a, 0.0]];
+    let rings =
+        [(at(0.0, 0.0), Z, scale, None), (at(a / 2.0, 0.0), Y, scale, None), (at(0.0, a / 2.0), X, scale, None)];
+    design(basis, r * scale, scale, &rings)
+}
+
+/// The closed form of the grid at 0° and 90°, and at 45°: a chain of length d = 4 − 4r for a, or for both axes at once.
+fn of_grid(a: f64, r: f64, direction_deg: f64, l2: f64) -> f64 {
+    let d = 4.0 - 4.0 * r;
+    if direction_deg == 45.0 {
+        let part = a / 2.0_f64.sqrt();
+        (d * d - ((1.0 + l2) * part).powi(2)).sqrt() / part - 1.0
+    } else {
+        d / a - 1.0
+    }
+}
+
+/// All rows are global with the closed form's l1, and proved.
+fn is_the_grid(answer: &Answer, a: f64, r: f64, within: f64) {
+    assert_eq!(answer.codes, (0, Some(0)), "{}", answer.said);
+    assert!(!answer.rows.is_empty());
+    for (direction_deg, l2, status, l1) in &answer.rows {
+        let expected = of_grid(a, r, *direction_deg, *l2);
+        assert_eq!(status, "global", "{direction_deg}° {l2}");
+        assert!((l1.unwrap() - expected).abs() < within, "{direction_deg}° {l2}: {l1:?}, {expected}");
+    }
+}
+
+fn all_are(answer: &Answer, status: &str) {
+    assert_eq!(answer.codes, (0, Some(0)), "{}", answer.said);
+    assert!(!answer.rows.is_empty() && answer.rows.iter().all(|row| row.2 == status && row.3.is_none()));
+}
+
+#[test]
+fn needles_have_the_closed_form() {
+    is_the_grid(&answer(&grid(2.5, 1e-4, 1.0, 0.0, 0.0), "-0.1,0"), 2.5, 1e-4, 1e-12);
+}
+
+#[test]
+fn lengths_of_a_million_and_of_a_millionth_change_nothing() {
+    for scale in [1e6, 1e-6] {
+        is_the_grid(&answer(&grid(2.5, 0.1, scale, 0.0, 0.0), "-0.1,0"), 2.5, 0.1, 1e-12);
+    }
+}
+
+#[test]
+fn lattice_vectors_at_one_degree_give_the_same_limits() {
+    // 57 a1 + a2 stands at 1.005° from a1.
+    is_the_grid(&answer(&grid(2.5, 0.1, 1.0, 0.0, 57.0), "0"), 2.5, 0.1, 1e-12);
+}
+
+/// A million radii from the origin 1e-9 R is lost to rounding: whatever is found, verify does not call it proved or false.
+#[test]
+fn a_million_radii_from_the_origin_nothing_is_called_proved() {
+    let answer = answer(&grid(2.5, 0.1, 1.0, 1e6, 0.0), "0");
+    assert_eq!(answer.codes.1, Some(5), "{}", answer.said);
+    for (direction_deg, l2, status, l1) in &answer.rows {
+        assert!(["global", "local", "uncertified"].contains(&status.as_str()), "{status}");
+        assert!(l1.is_none_or(|l1| (l1 - of_grid(2.5, 0.1, *direction_deg, *l2)).abs() < 1e-8));
+    }
+}
+
+#[test]
+fn a_design_that_is_locked_already_has_no_way_to_go() {
+    let answer = answer(&grid(3.6 - 1e-8, 0.1, 1.0, 0.0, 0.0), "0");
+    is_the_grid(&answer, 3.6 - 1e-8, 0.1, 1e-12);
+    assert!(answer.rows.iter().all(|row| row.3.unwrap() < 3e-8));
+}
+
+/// Rings of r/R = 0.49 hold two thin wires in their hole.
+#[test]
+fn fat_rings_hold_thin_ones() {
+    let a = 4.5;
+    let rings = [([0.0; 3], Z, 1.0, None), ([a / 2.0, 0.0, 0.0], Y, 2.0, Some(0.2))];
+    let answer = answer(&design([[a, 0.0, 0.0], [0.0, 9.0, 0.0]], 0.49, 1.0, &rings), "0");
+    assert_eq!(answer.codes, (0, Some(0)), "{}", answer.said);
+    let (_, _, status, l1) = &answer.rows[0];
+    assert_eq!(status, "global");
+    assert!((l1.unwrap() - (2.0 * (3.0 - 0.69) / a - 1.0)).abs() < 1e-12, "{l1:?}");
+}
+
+#[test]
+fn fat_rings_that_cannot_be_are_refused() {
+    let rings = [([0.0; 3], Z, 1.0, None), ([1.25, 0.0, 0.0], Y, 1.0, None)];
+    let answer = answer(&design([[2.5, 0.0, 0.0], [0.0, 2.5, 0.0]], 0.49, 1.0, &rings), "0");
+    assert_eq!(answer.codes, (3, None));
+    assert!(answer.said.contains("overlap by") && answer.said.contains("smaller minor_radius"), "{}", answer.said);
+}
+
+/// Rings of radius 1 joined by rings of 1e-4: feasible states are found, no certificate to 1e-12 R is claimed.
+#[test]
+fn radii_of_a_ratio_of_ten_thousand_are_never_wrongly_certified() {
+    let a = 2.0 + 0.5e-4;
+    let rings = [([0.0; 3], Z, 1.0, None), ([a / 2.0, 0.0, 0.0], Y, 1e-4, None), ([0.0, a / 2.0, 0.0], X, 1e-4, None)];
+    let answer = answer(&design([[a, 0.0, 0.0], [0.0, a, 0.0]], 1e-5, 1.0, &rings), "0");
+    let bound = 2.0 * (1.0 + 1e-4 - 2e-5) / a - 1.0;
+    assert!(answer.codes.1 == Some(0), "{}", answer.said);
+    for (direction_deg, _, status, l1) in &answer.rows {
+        assert!(["global", "local", "uncertified"].contains(&status.as_str()), "{status}");
+        assert!(*direction_deg == 45.0 || l1.is_none_or(|l1| l1 <= bound + 1e-9));
+    }
+}
+
+#[test]
+fn what_is_not_linked_is_unbounded() {
+    let square = |a: f64| [[a, 0.0, 0.0], [0.0, a, 0.0]];
+    let one = [([0.0; 3], Z, 1.0, None)];
+    let coplanar = [([0.0; 3], Z, 1.0, None), ([0.0; 3], Z, 0.5, None)];
+    let coaxial: Vec<Single> = (0..5).map(|k| ([0.0, 0.0, 0.25 * f64::from(k)], Z, 1.0, None)).collect();
+    // Pairs that are linked among themselves, of the fattest rings that can be.
+    let pairs = [([0.0; 3], Z, 1.0, None), ([1.0, 0.0, 0.0], Y, 1.0, None)];
+    for (a, r, rings) in [(4.0, 0.1, &one[..]), (2.5, 0.1, &coplanar), (2.5, 0.1, &coaxial), (6.0, 0.49, &pairs)] {
+        all_are(&answer(&design(square(a), r, 1.0, rings), "-0.1,0"), "unbounded");
+    }
+}
+
+#[test]
+fn a_chain_in_one_direction_binds_all_but_the_one_across() {
+    let rings = [([0.0; 3], Z, 1.0, None), ([1.25, 0.0, 0.0], Y, 1.0, None)];
+    let answer = answer(&design([[2.5, 0.0, 0.0], [0.0, 2.5, 0.0]], 0.1, 1.0, &rings), "0");
+    assert_eq!(answer.codes, (0, Some(0)), "{}", answer.said);
+    for (direction_deg, l2, status, l1) in &answer.rows {
+        if *direction_deg == 90.0 {
+            assert_eq!((status.as_str(), l1), ("unbounded", &None));
+        } else {
+            assert_eq!(status, "global");
+            assert!((l1.unwrap() - of_grid(2.5, 0.1, *direction_deg, *l2)).abs() < 1e-12);
+        }
+    }
+}
+
+/// Three elements of two rings each, across each other in the way of Borromean rings, no ring linked with another. No chain of
+/// links binds them: that is what `unbounded` says, whatever holds such elements together.
+#[test]
+fn elements_that_are_linked_in_no_pair_of_rings_are_unbounded() {
+    let mut text = design([[8.0, 0.0, 0.0], [0.0, 8.0, 0.0]], 0.1, 1.0, &[]);
+    for (name, along, normal) in [("a", X, Z), ("b", Y, X), ("c", Z, Y)] {
+        let offset = |side: f64| along.map(|x| 1.2 * side * x);
+        write!(
+            text,
+            "\n[[elements]]\nname = \"{name}\"\ncenter = [0.0, 0.0, 0.0]\nrings = [{{ major_radius = 1.0, normal = {normal:?}, offset = {:?} }}, {{ major_radius = 1.0, normal = {normal:?}, offset = {:?} }}]\n",
+            offset(-1.0),
+            offset(1.0)
+        )
+        .unwrap();
+    }
+    all_are(&answer(&text, "0"), "unbounded");
+}

@@ -1,0 +1,20 @@
+//! Independent verification of a record: each reported state is derived anew, by other means than it was found.
+//!
+//! Nothing is shared with the solver but the type of a circle: files are read anew as plain data, and distances, links, strains and
+//! balances have their own formulas here. What is proved and what is not stands in `docs/reliability.md`.
+
+mod apart;
+mod balance;
+mod chain;
+mod files;
+mod linking;
+mod record;
+mod report;
+mod sheet;
+mod strain;
+mod verifier;
+
+pub use balance::{COMPLEMENTARITY, RESIDUAL};
+pub use record::{Texts, Unreadable};
+pub use report::{Check, Finding, RowReport, Verdict};
+pub use verifier::{OVERLAP, Verifier};

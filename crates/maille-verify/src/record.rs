@@ -1,0 +1,261 @@
+//! The texts of a record as plain data: what is written, with no opinion on what it means.
+//!
+//! Only the fields that are verified are read; others may be there.
+
+use serde::{Deserialize, de::DeserializeOwned};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use thiserror::Error;
+
+/// The files of a record. What is not there is `None`.
+#[derive(Clone, Copy, Debug)]
+pub struct Texts<'a> {
+    /// `run.json`.
+    pub run: &'a str,
+    /// `limits.csv`.
+    pub limits: Option<&'a str>,
+    /// `states.jsonl`.
+    pub states: Option<&'a str>,
+}
+
+/// A file that cannot be read as what it should be.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[error("{file}:{line}: {problem}")]
+pub struct Unreadable {
+    /// Name of the file.
+    pub file: &'static str,
+    /// Line, from 1.
+    pub line: usize,
+    /// What is wrong.
+    pub problem: String,
+}
+
+pub(crate) const RUN: &str = "run.json";
+pub(crate) const LIMITS: &str = "limits.csv";
+pub(crate) const STATES: &str = "states.jsonl";
+
+#[derive(Clone, Debug, Deserialize)]
+pub(crate) struct Run {
+    pub schema: u64,
+    pub input_hash: String,
+    pub design: Design,
+    pub parameters: Value,
+    pub counters: Counters,
+    /// SHA-256 of each file; after it, while the files are replaced, that of the one before.
+    #[serde(default)]
+    pub files: BTreeMap<String, Vec<String>>,
+}
+
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+pub(crate) struct Counters {
+    pub rows: BTreeMap<String, u64>,
+    pub iterations: u64,
+    pub runs: u64,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+pub(crate) struct Design {
+    pub name: String,
+    pub minor_radius: Option<f64>,
+    pub reference_radius: f64,
+    pub lattice: Lattice,
+    pub elements: Vec<Element>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+pub(crate) struct Lattice {
+    pub a1: [f64; 3],
+    pub a2: [f64; 3],
+}
+
+#[derive(Clone, Debug, Deserialize)]
+pub(crate) struct Element {
+    pub name: String,
+    pub center: [f64; 3],
+    pub rings: Vec<Ring>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+pub(crate) struct Ring {
+    pub major_radius: f64,
+    pub normal: [f64; 3],
+    #[serde(default)]
+    pub offset: [f64; 3],
+    pub minor_radius: Option<f64>,
+}
+
+/// One row of `limits.csv`.
+#[derive(Clone, Debug, Default, Deserialize)]
+pub(crate) struct Row {
+    pub design: String,
+    pub minor_radius: Option<f64>,
+    pub direction_deg: f64,
+    pub l2: f64,
+    pub method: String,
+    pub cell: String,
+    pub status: String,
+    pub l1: Option<f64>,
+    pub lambda1: Option<f64>,
+    pub lambda2: Option<f64>,
+    pub stretch1: Option<f64>,
+    pub stretch2: Option<f64>,
+    pub max_overlap: Option<f64>,
+    pub min_gap: Option<f64>,
+    pub iterations: u64,
+    pub runs: u64,
+    pub bound_l1: Option<f64>,
+    pub bound_kind: Option<String>,
+    pub bound_gap: Option<f64>,
+    pub dual_residual: Option<f64>,
+    pub complementarity: Option<f64>,
+    pub min_multiplier: Option<f64>,
+    pub min_curvature: Option<f64>,
+    pub links_ok: Option<bool>,
+    pub own_image_force: Option<f64>,
+    pub l1_uncertified: Option<f64>,
+    #[serde(default)]
+    pub lateral: Option<String>,
+    #[serde(default)]
+    pub shear: Option<String>,
+    #[serde(default)]
+    pub l2_min: Option<f64>,
+    #[serde(default)]
+    pub l2_max: Option<f64>,
+    #[serde(default)]
+    pub shear_min: Option<f64>,
+    #[serde(default)]
+    pub shear_max: Option<f64>,
+    #[serde(default)]
+    pub a1_x: Option<f64>,
+    #[serde(default)]
+    pub a1_y: Option<f64>,
+    #[serde(default)]
+    pub a2_x: Option<f64>,
+    #[serde(default)]
+    pub a2_y: Option<f64>,
+    #[serde(default)]
+    pub end: Option<String>,
+}
+
+/// One line of `states.jsonl`, in the file's unit.
+#[derive(Clone, Debug, Deserialize)]
+pub(crate) struct State {
+    pub direction_deg: f64,
+    pub l2: f64,
+    pub status: String,
+    pub a1: [f64; 3],
+    pub a2: [f64; 3],
+    pub deformation_gradient: [[f64; 2]; 2],
+    pub poses: Vec<Pose>,
+    #[serde(default)]
+    pub contacts: Vec<Contact>,
+    #[serde(default)]
+    pub chain: Option<Chain>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+pub(crate) struct Pose {
+    pub element: String,
+    pub position: [f64; 3],
+    pub rotation: [f64; 4],
+}
+
+#[derive(Clone, Debug, Deserialize)]
+pub(crate) struct Contact {
+    pub ring_a: usize,
+    pub ring_b: usize,
+    pub shift: [i32; 2],
+    pub point_a: [f64; 3],
+    pub point_b: [f64; 3],
+    pub normal: [f64; 3],
+    pub force: f64,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+pub(crate) struct Chain {
+    pub vector: [i32; 2],
+    pub length: f64,
+    pub rings: Vec<(usize, [i32; 2])>,
+}
+
+/// A text file ends with a newline; otherwise its last line may have lost its end.
+fn complete(file: &'static str, text: &str) -> Result<(), Unreadable> {
+    if text.is_empty() || text.ends_with('\n') {
+        return Ok(());
+    }
+    let line = text.matches('\n').count() + 1;
+    Err(Unreadable { file, line, problem: "the file ends within this line: it was cut off".into() })
+}
+
+fn json<T: DeserializeOwned>(file: &'static str, line: usize, text: &str) -> Result<T, Unreadable> {
+    serde_json::from_str(text).map_err(|e| Unreadable {
+        file,
+        line: if line == 0 { e.line() } else { line },
+        problem: e.to_string(),
+    })
+}
+
+pub(crate) fn read_run(text: &str) -> Result<Run, Unreadable> {
+    complete(RUN, text)?;
+    json(RUN, 0, text)
+}
+
+pub(crate) fn read_states(text: &str) -> Result<Vec<State>, Unreadable> {
+    complete(STATES, text)?;
+    text.lines().enumerate().map(|(k, line)| json(STATES, k + 1, line)).collect()
+}
+
+pub(crate) fn read_rows(text: &str) -> Result<Vec<Row>, Unreadable> {
+    complete(LIMITS, text)?;
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let rows = reader.deserialize::<Row>().enumerate();
+    let rows = rows.map(|(k, row)| {
+        let wrong = |problem: String| Unreadable { file: LIMITS, line: k + 2, problem };
+        let row = row.map_err(|e| wrong(e.to_string()))?;
+        if row.numbers().iter().flatten().all(|x| x.is_finite()) {
+            Ok(row)
+        } else {
+            Err(wrong("a number is not finite".into()))
+        }
+    });
+    rows.collect()
+}
+
+impl Row {
+    /// Every number that a row can have.
+    fn numbers(&self) -> [Option<f64>; 26] {
+        let r = self;
+        [
+            r.minor_radius,
+            Some(r.direction_deg),
+            Some(r.l2),
+            r.l1,
+            r.lambda1,
+            r.lambda2,
+            r.stretch1,
+            r.stretch2,
+            r.max_overlap,
+            r.min_gap,
+            r.bound_l1,
+            r.bound_gap,
+            r.dual_residual,
+            r.complementarity,
+            r.min_multiplier,
+            r.min_curvature,
+            r.own_image_force,
+            r.l1_uncertified,
+            r.l2_min,
+            r.l2_max,
+            r.shear_min,
+            r.shear_max,
+            r.a1_x,
+            r.a1_y,
+            r.a2_x,
+            r.a2_y,
+        ]
+    }
+
+    pub(crate) fn certified(&self) -> bool {
+        matches!(self.status.as_str(), "global" | "local")
+    }
+}

@@ -1,0 +1,106 @@
+//! What came of a verification, as data.
+
+use serde::Serialize;
+
+/// What is asked of a record and of each of its rows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Check {
+    /// The files are whole, unedited, and fit together.
+    Files,
+    /// The lattice of the state gives the numbers of the row.
+    Deformation,
+    /// Rings of different elements keep their distance.
+    Overlap,
+    /// Linking numbers are those of the design.
+    Links,
+    /// Contact forces are pushes, of closed contacts, and balance the pull.
+    Balance,
+    /// The row is not above its bound, and attains it where it says so.
+    Bound,
+}
+
+impl Check {
+    /// All of them, in the order in which they are told.
+    pub const ALL: [Check; 6] =
+        [Check::Files, Check::Deformation, Check::Overlap, Check::Links, Check::Balance, Check::Bound];
+
+    /// Its name, as in JSON.
+    pub fn name(self) -> &'static str {
+        match self {
+            Check::Files => "files",
+            Check::Deformation => "deformation",
+            Check::Overlap => "overlap",
+            Check::Links => "links",
+            Check::Balance => "balance",
+            Check::Bound => "bound",
+        }
+    }
+}
+
+/// What a check came to, best first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// Derived anew, and it holds.
+    Proved,
+    /// Fits the other figures of the record, but was not derived anew.
+    Consistent,
+    /// It may hold; it could not be shown.
+    Open,
+    /// It does not hold.
+    False,
+}
+
+/// A check with its outcome.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Finding {
+    /// What was asked.
+    pub check: Check,
+    /// What came of it.
+    pub verdict: Verdict,
+    /// The figure that decided, in the unit that `words` name.
+    pub figure: Option<f64>,
+    /// One sentence.
+    pub words: String,
+}
+
+impl Finding {
+    pub(crate) fn new(check: Check, verdict: Verdict, figure: Option<f64>, words: impl Into<String>) -> Self {
+        Finding { check, verdict, figure, words: words.into() }
+    }
+}
+
+/// What is known of one row.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RowReport {
+    /// Direction of the row.
+    pub direction_deg: f64,
+    /// l2 of the row.
+    pub l2: f64,
+    /// Status of the row.
+    pub status: String,
+    /// Whether the row claims a certificate: `global` or `local`.
+    pub certified: bool,
+    /// The checks; a row without a limit has none to pass.
+    pub findings: Vec<Finding>,
+}
+
+impl RowReport {
+    /// The worst verdict; none where nothing was claimed.
+    pub fn verdict(&self) -> Option<Verdict> {
+        self.findings.iter().map(|f| f.verdict).max()
+    }
+
+    /// Whether deformation, overlap, links and balance are proved, and nothing else is in doubt.
+    pub fn proved(&self) -> bool {
+        let derived = [Check::Deformation, Check::Overlap, Check::Links, Check::Balance];
+        derived.iter().all(|check| self.finding(*check).is_some_and(|f| f.verdict == Verdict::Proved))
+            && self.verdict().is_some_and(|worst| worst < Verdict::Open)
+    }
+
+    /// The finding of a check.
+    pub fn finding(&self, check: Check) -> Option<&Finding> {
+        self.findings.iter().find(|f| f.check == check)
+    }
+}
