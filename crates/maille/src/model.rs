@@ -65,6 +65,9 @@ pub struct Model {
     pub largest_radius: f64,
 }
 
+/// Images of an element that are looked for, and cells that it may lie from the first one.
+const MOST_IMAGES: f64 = 1e5;
+
 impl Model {
     /// Compiles `design` for `cell`, or returns everything that is wrong with it.
     pub fn compile(design: &Design, cell: Cell) -> Result<Model, Vec<InvalidInput>> {
@@ -119,6 +122,9 @@ impl Model {
         let links = Vec::new();
         let mut model =
             Model { name, cell, periodic, unit, elements, rings, start, reference_inverse, links, largest_radius };
+        if periodic {
+            model.check_extent(design)?;
+        }
         let pairs = topology::close_pairs(&model, &model.start, 0.0);
         let overlaps = model.overlaps(&pairs, design);
         if !overlaps.is_empty() {
@@ -126,6 +132,39 @@ impl Model {
         }
         model.links = topology::links(&model, &model.start, &pairs);
         Ok(model)
+    }
+
+    /// Refuses elements that lie or reach over so many cells that their images cannot be listed.
+    fn check_extent(&self, design: &Design) -> Result<(), Vec<InvalidInput>> {
+        let inverse = self.reference_inverse;
+        let mut out = Vec::new();
+        for (k, spec) in design.elements.iter().enumerate() {
+            let away = (inverse * (self.start.poses[k].position - self.start.poses[0].position).xy()).amax();
+            // As `lattice::shifts_within` lists them; rows of the inverse are the dual vectors.
+            let reach = 2.0 * self.elements[k].reach;
+            let images = (0..2).map(|row| 2.0 * reach * inverse.row(row).norm() + 1.0).product::<f64>();
+            // Numbers that have overflowed are refused, too.
+            if images.is_nan() || images > MOST_IMAGES {
+                out.push(InvalidInput::new(
+                    format!("elements[{k}].rings"),
+                    format!(
+                        "the rings of \"{}\" reach over some {images:.1e} cells; at most {MOST_IMAGES:.0e} are tried",
+                        spec.name
+                    ),
+                    "bring the rings nearer to the element's center, or take longer lattice vectors",
+                ));
+            } else if away.is_nan() || away > MOST_IMAGES {
+                out.push(InvalidInput::new(
+                    format!("elements[{k}].center"),
+                    format!(
+                        "\"{}\" lies {away:.1e} cells from the first element; at most {MOST_IMAGES:.0e} are tried",
+                        spec.name
+                    ),
+                    "move it by whole lattice vectors into the cell",
+                ));
+            }
+        }
+        if out.is_empty() { Ok(()) } else { Err(out) }
     }
 
     /// The design's own cell of a periodic model.

@@ -57,4 +57,6 @@ class Results:
     def to_pandas(self) -> pandas.DataFrame:
         """All rows without the states, a `pandas.DataFrame`."""
         dataset = self.dataset()
-        return dataset.to_table(columns=[name for name in dataset.schema.names if name != "state"]).to_pandas()
+        names = [name for name in dataset.schema.names if name != "state"]
+        frame: pandas.DataFrame = dataset.to_table(columns=names).to_pandas()
+        return frame
