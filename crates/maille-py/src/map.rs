@@ -138,7 +138,7 @@ pub fn characterize(
     let open = map.open(&design.design, models).map_err(|e| error::record(&e))?;
     let run = wait(py, threads, progress.as_ref(), |cancel, tell| {
         tell(Step::More(open.left()));
-        open.run(cancel, &|_| tell(Step::Done))
+        open.run(cancel, &|_, _| tell(Step::Done))
     })?;
     let record = run.map_err(|e| error::map(&e))?;
     Ok(Record { name: design.design.name.clone(), record })

@@ -117,13 +117,17 @@ impl OpenMap<'_> {
         self.map.out.as_deref()
     }
 
-    /// Asks for the limits that are left, on the current thread pool, writes the record, and gives it. `found` hears of
-    /// each limit; after `cancel` what is finished is written.
-    pub fn run(self, cancel: &AtomicBool, found: &(dyn Fn(&LimitRow) + Sync)) -> Result<Record, MapError> {
+    /// Asks for the limits that are left, on the current thread pool, writes the record, and gives it. `found` is shown
+    /// each limit with its state; after `cancel` what is finished is written.
+    pub fn run(
+        self,
+        cancel: &AtomicBool,
+        found: &(dyn Fn(&LimitRow, &StateRecord) + Sync),
+    ) -> Result<Record, MapError> {
         let OpenMap { map, design, models, parameters, folder, all, rows, open } = self;
         let collected = Mutex::new(Collected { folder, rows, written: Instant::now(), failure: None });
         let receive = |finished: Finished| {
-            found(&finished.row);
+            found(&finished.row, &finished.state);
             let mut collected = collected.lock().unwrap_or_else(|e| e.into_inner());
             let Some(k) = place(&all, &finished.row) else { return };
             if let Err(error) = collected.keep(k, finished) {
