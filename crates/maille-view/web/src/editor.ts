@@ -152,13 +152,14 @@ export class Editor {
     this.gutter.replaceChildren(
       ...Array.from({ length: count }, (_, k) => h("span", { class: wrong.has(k + 1) ? "wrong" : "" }, String(k + 1))),
     );
-    const list = side.problems.map((p) =>
+    const list = side.problems.map((p, k) =>
       h(
         "button",
         { type: "button", class: "problem", onclick: () => this.go(p.line, p.column) },
         h("b", {}, p.line === null ? "" : `line ${p.line}: `),
         `${p.field ? `${p.field}: ` : ""}${p.problem}`,
-        h("span", { class: "help" }, p.help ?? ""),
+        // What helps several is said once.
+        p.help === side.problems[k + 1]?.help ? null : h("span", { class: "help" }, p.help ?? ""),
       ),
     );
     const lost = side.problems.length ? [] : side.lost;

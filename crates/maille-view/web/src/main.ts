@@ -64,6 +64,9 @@ class Page {
   private exporting = h("span", { class: "said", role: "status" });
   private panel = h("aside", { class: "panel" });
   private tabs: HTMLButtonElement[] = [];
+  private designs = h("select", { "aria-label": "Design", class: "design" });
+  /** What was opened and is no built-in design. */
+  private other = h("option", { value: "" });
   private compared: HTMLElement;
 
   constructor(private start: Start) {
@@ -108,14 +111,10 @@ class Page {
     const names: Listed[] = start.designs;
     const opened = start.opened;
     const options = names.map((d) => h("option", { value: d.name }, `${d.name}  ${d.title}`));
-    const own = !names.some((d) => d.name === opened.name);
-    const select = h(
-      "select",
-      { "aria-label": "Design", class: "design", onchange: () => void this.open(select.value) },
-      own ? h("option", { value: "" }, opened.name) : null,
-      ...options,
-    );
-    if (!own) select.value = opened.name;
+    this.other.textContent = opened.name;
+    const select = this.designs;
+    select.append(this.other, ...options);
+    select.addEventListener("change", () => void this.open(select.value));
     const tab = (mode: Mode, label: string) => {
       const button = h("button", { type: "button", role: "tab", onclick: () => this.setMode(mode) }, label);
       button.dataset["mode"] = mode;
@@ -220,6 +219,7 @@ class Page {
     this.picked = null;
     this.t = 0;
     await this.a.open(name === "" ? this.start.opened : { ...(await api.builtin(name)), file: null, map: null });
+    this.draw();
   }
 
   private each(work: (side: Side) => Promise<void>): Promise<unknown> {
@@ -237,8 +237,7 @@ class Page {
       this.stages.b = new Stage(this.boxes.b, this.start.palette, "The second sheet in 3D", () => {});
       void this.same();
     }
-    if (mode === "edit") this.move(0, false);
-    this.draw();
+    this.move(mode !== "edit" && this.a.locked ? 1 : 0, false);
   }
 
   private choose(direction: number, l2: number | null): void {
@@ -316,6 +315,10 @@ class Page {
       });
     }
     document.title = `${a.own.name} – maille`;
+    const known = this.start.designs.some((d) => d.name === a.name);
+    if (!known) this.other.textContent = a.name;
+    this.other.hidden = known && this.start.designs.some((d) => d.name === this.start.opened.name);
+    this.designs.value = known ? a.name : "";
     this.title.textContent = a.own.name;
     this.subtitle.textContent = a.own.title;
     this.drawMap();
@@ -375,7 +378,7 @@ class Page {
       const value = reached(limit);
       const facts: [string, string][] = [
         ["status", row.status],
-        ["proven bound", row.bound_l1 === null ? "none" : `${row.bound_l1}${row.bound_kind ? ` (${row.bound_kind})` : ""}`],
+        ["proven bound", row.bound_l1 === null ? "none" : `${short(row.bound_l1, 9)}${row.bound_kind ? ` (${row.bound_kind})` : ""}`],
         ["cell", row.cell],
         ["contacts that carry force", String(limit.state.contacts?.length ?? 0)],
       ];

@@ -172,7 +172,7 @@ export class Side {
   /** Chooses a direction; a limit that is not known is asked for. */
   async choose(direction: number, l2: number | null): Promise<void> {
     direction = ((direction % 180) + 180) % 180;
-    this.choice = { direction, l2: l2 ?? (this.free ? 0 : this.l2) };
+    this.choice = { direction, l2: l2 ?? this.choice?.l2 ?? (this.free ? 0 : this.l2) };
     this.changed();
     if (this.chosen || this.source !== null || this.problems.length) return;
     this.asking?.abort();

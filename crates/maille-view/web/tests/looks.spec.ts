@@ -22,7 +22,7 @@ test("contrast and names pass WCAG AA", async ({ page, program }) => {
   await clickMap(page, 45, 0.6);
   await expect(page.locator("data.l1")).toBeVisible();
   await accessible(page, "explore");
-  await page.getByLabel("Wire radius").fill("0.3");
+  await page.getByLabel("Wire radius", { exact: true }).fill("0.3");
   await expect(page.locator(".notice")).toBeVisible();
   await page.getByRole("tab", { name: "Edit" }).click();
   await expect(page.locator(".problem")).not.toHaveCount(0);
