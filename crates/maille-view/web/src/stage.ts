@@ -13,7 +13,7 @@ import {
   InstancedMesh,
   Matrix4,
   MeshBasicMaterial,
-  MeshStandardMaterial,
+  MeshPhongMaterial,
   PerspectiveCamera,
   Quaternion,
   Raycaster,
@@ -194,17 +194,17 @@ export class Stage {
     for (const { mesh } of this.shapes) {
       this.world.remove(mesh);
       mesh.geometry.dispose();
-      (mesh.material as MeshStandardMaterial).dispose();
+      (mesh.material as MeshPhongMaterial).dispose();
       mesh.dispose();
     }
     const cells = this.cells[0] * this.cells[1];
     const count = shown.sheet.rings.length * cells;
-    const [around, across] = count > 2500 ? [22, 6] : count > 800 ? [32, 8] : count > 250 ? [44, 10] : [72, 16];
+    const [around, across] = count > 2500 ? [20, 5] : count > 800 ? [30, 7] : count > 100 ? [44, 9] : [72, 14];
     this.shapes = [...new Set(radii)].map((pair) => {
       const rings = radii.flatMap((other, ring) => (other === pair ? [ring] : []));
       const { major_radius, minor_radius } = shown.sheet.rings[rings[0]!]!;
       const geometry = new TorusGeometry(major_radius, minor_radius, across, around);
-      const material = new MeshStandardMaterial({ roughness: 0.42, metalness: 0.12 });
+      const material = new MeshPhongMaterial({ shininess: 55, specular: "#4a4a4a" });
       const mesh = new InstancedMesh(geometry, material, rings.length * cells);
       mesh.instanceMatrix.setUsage(DynamicDrawUsage);
       mesh.frustumCulled = false;

@@ -67,7 +67,7 @@ test("the wire radius changes the map, and drags leave nothing behind", async ({
   expect(await value()).toBeCloseTo(0.44, 9);
   const before = await page.locator(".map .curve").first().getAttribute("d");
   const wire = page.getByLabel("Wire radius", { exact: true });
-  for (let k = 0; k < 25; k++) await wire.fill(String(0.1 + 0.002 * k));
+  for (let k = 0; k < 12; k++) await wire.fill(String(0.1 + 0.004 * k));
   await wire.fill("0.15");
   await solved(page);
   await expect.poll(value).toBeCloseTo((4 * (1 - 0.15)) / 2.5 - 1, 9);
