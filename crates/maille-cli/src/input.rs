@@ -60,6 +60,12 @@ impl Input {
         Input { design, source: self.source.clone(), changed: (!words.is_empty()).then(|| words.join(", ")) }
     }
 
+    /// The design file.
+    #[cfg(feature = "view")]
+    pub fn text(&self) -> &str {
+        self.source.text()
+    }
+
     /// A design that is no file.
     pub fn of(design: Design) -> Input {
         let source = DesignSource::new(format!("{} (made by the program)", design.name), write_design(&design));
@@ -121,17 +127,5 @@ pub fn problems(report: &Report) -> Value {
         let help = report.help().map(|h| h.to_string());
         return json!([{ "field": null, "problem": report.to_string(), "help": help, "line": null, "column": null }]);
     };
-    let one = |p: &maille_io::DesignProblem| {
-        let place = error.line_column(p);
-        let text = p.to_string();
-        let problem = text.strip_prefix(&format!("{}: ", p.field())).unwrap_or(&text);
-        json!({
-            "field": Some(p.field()).filter(|f| !f.is_empty()),
-            "problem": problem,
-            "help": p.help_text(),
-            "line": place.map(|(line, _)| line),
-            "column": place.map(|(_, column)| column),
-        })
-    };
-    error.problems().iter().map(one).collect()
+    json!(error.list())
 }

@@ -6,7 +6,7 @@ use crate::{
     numbers::{parse_cell, positive},
     output,
     source::tolerant,
-    units::{millimetres, parse_density},
+    units::parse_density,
     watch::watch,
 };
 use maille::{
@@ -16,6 +16,7 @@ use maille::{
     model::Model,
     topology,
 };
+use maille_io::mesh::millimetres;
 use miette::Result;
 use serde::Serialize;
 use std::{f64::consts::TAU, process::ExitCode};

@@ -34,6 +34,7 @@ mod sweep;
 mod table;
 mod units;
 mod verify;
+mod view;
 mod watch;
 
 use clap::{Parser, Subcommand};
@@ -58,6 +59,7 @@ Examples:
   maille simulate 1.1 --fix left --pull right=5,0,0    a finite sheet
   maille new shirt --weave european-4-in-1 --wire 16swg --id 5/16in
   maille check my-weave.toml              is the file right, do rings overlap?
+  maille view 1.1                         see it lock, in the browser
 
 Exit codes:
     0  done
@@ -94,6 +96,7 @@ enum Command {
     Render(render::Args),
     Plot(plot::Args),
     Table(table::Args),
+    View(view::Args),
     Schema(schema::Args),
     Completions(completions::CompletionsArgs),
     Man(completions::ManArgs),
@@ -125,6 +128,7 @@ fn main() -> ExitCode {
         Command::Man(args) => done(completions::man(&args)),
         Command::Plot(args) => done(plot::run(&args)),
         Command::Table(args) => done(table::run(&args)),
+        Command::View(args) => done(view::run(&args)),
     };
     ended.unwrap_or_else(|report| {
         eprintln!("{report:?}");

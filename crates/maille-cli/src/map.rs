@@ -45,7 +45,7 @@ pub fn run(open: OpenMap, cancel: &AtomicBool, found: &(dyn Fn(&LimitRow) + Sync
             MapError::Plot(error) => Err::<(), _>(error).into_diagnostic().unwrap_err().wrap_err(words),
         }
     };
-    open.run(cancel, found).map(|record| record.rows).map_err(failed)
+    open.run(cancel, &|row, _| found(row)).map(|record| record.rows).map_err(failed)
 }
 
 /// Runs maps side by side, so that no thread waits for the last limit of a map, and gives the rows of each.

@@ -1,9 +1,10 @@
 //! Where results go: a file, whole or not at all, or standard output.
 
+use maille_io::files::{self, is_temporary};
 use miette::{IntoDiagnostic, Result, WrapErr};
 use std::{
     fmt, fs,
-    io::{BufWriter, Write},
+    io::{self, BufWriter, Write},
     path::Path,
 };
 
@@ -12,15 +13,11 @@ pub fn is_standard(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-const TEMPORARY: (&str, &str) = (".maille-", ".tmp");
-
 /// Removes what a killed run left half written in a folder, if there is one.
 pub fn remove_leftovers(folder: &Path) -> Result<()> {
     let Ok(entries) = fs::read_dir(folder) else { return Ok(()) };
     for entry in entries.flatten() {
-        let name = entry.file_name();
-        let name = name.to_string_lossy();
-        if name.starts_with(TEMPORARY.0) && name.ends_with(TEMPORARY.1) {
+        if is_temporary(&entry.file_name().to_string_lossy()) {
             let path = entry.path();
             fs::remove_file(&path).into_diagnostic().wrap_err_with(|| format!("cannot remove {}", path.display()))?;
         }
@@ -42,17 +39,18 @@ pub fn replace(path: &Path, write: impl FnOnce(&mut BufWriter<&mut fs::File>) ->
     fs::create_dir_all(folder)
         .into_diagnostic()
         .wrap_err_with(|| format!("cannot create the folder {}; name another", folder.display()))?;
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(TEMPORARY.0).suffix(TEMPORARY.1);
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666)); // the umask applies, as to any new file
-    let mut file = builder.tempfile_in(folder).into_diagnostic().wrap_err_with(context)?;
-    let mut out = BufWriter::with_capacity(1 << 18, file.as_file_mut());
-    write(&mut out).wrap_err_with(context)?;
-    out.flush().into_diagnostic().wrap_err_with(context)?;
-    drop(out);
-    file.persist(path).into_diagnostic().wrap_err_with(context)?;
-    Ok(())
+    let mut failure = None;
+    let done = files::replace(path, |out| {
+        write(out).map_err(|report| {
+            failure = Some(report);
+            io::Error::other("not written")
+        })
+    });
+    match failure {
+        Some(report) => Err(report),
+        None => done.into_diagnostic(),
+    }
+    .wrap_err_with(context)
 }
 
 /// Writes to the file, or to standard output for `-`.

@@ -356,10 +356,10 @@ impl Source {
             return (0..count).map(frame).collect();
         }
         let Some((record, state)) = &self.locked else {
-            let place = self.extreme.as_ref().map_or("starting state", |(_, words)| words);
+            let place = self.extreme.as_ref().map_or_else(|| mesh::state_words(None), |(_, words)| words.clone());
             return vec![one(&self.model.start, 0.0, format!("{title}; {place}"))];
         };
-        let place = format!("direction {}°, l2 {}, {}", record.direction_deg, record.l2, record.status.name());
+        let place = mesh::state_words(Some(record));
         let Some(count) = count else {
             return vec![one(state, 1.0, format!("{title}; {place}"))];
         };

@@ -1,17 +1,6 @@
 //! Lengths and densities as people write them: units, fractions of an inch, wire gauges.
 
-/// Millimetres of a unit that people write in a design.
-pub fn millimetres(unit: &str) -> Option<f64> {
-    Some(match unit.trim().to_lowercase().as_str() {
-        "mm" | "millimetre" | "millimetres" | "millimeter" | "millimeters" => 1.0,
-        "cm" | "centimetre" | "centimetres" | "centimeter" | "centimeters" => 10.0,
-        "m" | "metre" | "metres" | "meter" | "meters" => 1000.0,
-        "um" | "µm" | "μm" | "micron" | "microns" | "micrometre" | "micrometer" => 0.001,
-        "in" | "inch" | "inches" | "\"" => 25.4,
-        "ft" | "foot" | "feet" => 304.8,
-        _ => return None,
-    })
-}
+use maille_io::mesh::millimetres;
 
 /// Diameters of the British Standard Wire Gauge, numbers 0 to 40, in thousandths of an inch.
 const SWG_MIL: [f64; 41] = [

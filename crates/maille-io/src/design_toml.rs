@@ -7,10 +7,10 @@ mod read;
 mod syntax;
 mod write;
 
-pub use problem::{DesignError, DesignProblem};
+pub use problem::{DesignError, DesignProblem, ListedProblem};
 pub use write::write_design;
 
-use index::Index;
+use index::{Index, Place};
 use maille::design::Design;
 use maille::error::InvalidInput;
 use std::sync::Arc;
@@ -54,6 +54,26 @@ impl DesignSource {
         match design {
             Some(design) if problems.is_empty() => Ok(design),
             _ => Err(self.error(problems)),
+        }
+    }
+
+    /// The text itself.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The text with the value of `field` replaced by `value`, which is TOML; all else, comments too, stays as it is. None
+    /// where the file does not contain the field.
+    ///
+    /// ```
+    /// let source = maille_io::DesignSource::new("a", "name = \"a\" # mine\nminor_radius = 0.1");
+    /// assert_eq!(source.with_value("minor_radius", "0.2").unwrap(), "name = \"a\" # mine\nminor_radius = 0.2");
+    /// ```
+    pub fn with_value(&self, field: &str, value: &str) -> Option<String> {
+        let table = DeTable::parse(&self.text).ok()?;
+        match Index::new(table.get_ref(), &self.text).find(field) {
+            Place::Exact(span) => Some([&self.text[..span.start], value, &self.text[span.end..]].concat()),
+            _ => None,
         }
     }
 

@@ -7,6 +7,7 @@ pub mod answer;
 pub mod boundary;
 pub mod builtin;
 pub mod design_toml;
+pub mod files;
 pub mod mesh;
 mod nearest;
 pub mod numbers;
@@ -20,5 +21,7 @@ pub mod table;
 pub mod weave;
 
 pub use builtin::{Builtin, builtin, builtin_designs, nearest_builtin};
-pub use design_toml::{DESIGN_JSON_SCHEMA, DesignError, DesignProblem, DesignSource, read_design, write_design};
+pub use design_toml::{
+    DESIGN_JSON_SCHEMA, DesignError, DesignProblem, DesignSource, ListedProblem, read_design, write_design,
+};
 pub use palette::{film, with_palette};

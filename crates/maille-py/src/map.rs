@@ -159,7 +159,7 @@ pub fn characterize(
     let open = asked.open(design, out, overwrite)?;
     let run = wait(py, threads, progress.as_ref(), |cancel, tell| {
         tell(Step::More(open.left()));
-        open.run(cancel, &|_| tell(Step::Done))
+        open.run(cancel, &|_, _| tell(Step::Done))
     })?;
     let record = run.map_err(|e| error::map(&e))?;
     Ok(Record { name: design.design.name.clone(), record })

@@ -16,7 +16,8 @@ const CRATES: &[&[&str]] = &[
     &["maille-geometry"],
     &["maille", "maille-verify"],
     &["maille-io"],
-    &["maille-cli", "maille-py", "maille-view"],
+    &["maille-view", "maille-fuzz"],
+    &["maille-cli", "maille-py"],
     &["xtask"],
 ];
 
@@ -300,7 +301,11 @@ mod tests {
         assert_eq!(lines("maille", "[dependencies.io]\npackage = \"maille-io\"\n"), [2]);
         assert_eq!(lines("maille", "[dependencies]\nio = { package = \"maille-io\", path = \"x\" }\n"), [2]);
         assert_eq!(lines("maille", "[target.'cfg(unix)'.build-dependencies]\n\"maille-cli\" = \"1\"\n"), [2]);
-        assert_eq!(lines("maille-cli", "[dependencies]\nmaille-view.workspace = true\n"), [2]);
+        assert_eq!(
+            lines("maille-cli", "[dependencies]\nmaille-view = { workspace = true, optional = true }\n"),
+            [] as [usize; 0]
+        );
+        assert_eq!(lines("maille-view", "[dependencies]\nmaille-cli.workspace = true\n"), [2]);
         assert_eq!(lines("maille-shear", ""), [0]);
     }
 

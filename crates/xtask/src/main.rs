@@ -9,6 +9,7 @@ mod paths;
 mod steps;
 mod tokens;
 mod uses;
+mod view;
 mod wheel;
 
 use std::{
@@ -21,6 +22,7 @@ const HELP: &str = "\
 cargo xtask COMMAND
 
   test     every test there is, documentation examples and those of the Python package included
+  view     build the viewer's page, and the program with it (target/release/maille); needs Node.js
   wheel    build the Python package, install it into a new environment below target, run its examples
   ci       format, clippy, layers, paths, rustdoc, then test
   layers   no `use` points backward in the order of crates and modules
@@ -44,6 +46,7 @@ fn main() -> ExitCode {
     };
     let done = match words[..] {
         ["test"] => steps::test(&root),
+        ["view"] => steps::view(&root),
         ["wheel"] => steps::wheel(&root),
         ["ci"] => steps::ci(&root),
         ["layers"] => steps::layers(&root),

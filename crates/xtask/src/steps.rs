@@ -1,6 +1,6 @@
 //! The steps of `ci`, each announced and timed.
 
-use crate::{Finding, bench, gallery, layers, paths, wheel::Environment};
+use crate::{Finding, bench, gallery, layers, paths, view, wheel::Environment};
 use std::{
     path::Path,
     process::{Command, Stdio},
@@ -24,11 +24,14 @@ pub fn ci(root: &Path) -> Result<(), Failed> {
 /// Every test there is. The runner's own summary is the last thing printed, so nothing is timed after it.
 pub fn test(root: &Path) -> Result<(), Failed> {
     let python = timed("Python package", || failed(Environment::new(root, false).and_then(|python| python.test())));
+    let viewer = timed("viewer", || failed(view::test(root)));
     let tests = rust_tests(root);
-    if python.is_err() {
-        eprintln!("\nxtask: the tests of the Python package failed, see above");
+    for (of, done) in [("the Python package", &python), ("the viewer", &viewer)] {
+        if done.is_err() {
+            eprintln!("\nxtask: the tests of {of} failed, see above");
+        }
     }
-    python.and(tests)
+    python.and(viewer).and(tests)
 }
 
 fn rust_tests(root: &Path) -> Result<(), Failed> {
@@ -45,6 +48,11 @@ fn rust_tests(root: &Path) -> Result<(), Failed> {
         eprintln!("\nxtask: documentation examples failed, see above");
     }
     examples.and(tests)
+}
+
+/// The viewer's page, and the program with it.
+pub fn view(root: &Path) -> Result<(), Failed> {
+    timed("viewer", || failed(view::build(root)))
 }
 
 /// The Python package from its wheel, in a new environment.

@@ -6,6 +6,7 @@ use crate::{
     output,
     source::Source,
 };
+use clap::ValueEnum;
 use maille_io::mesh::Format;
 use miette::Result;
 use std::path::{Path, PathBuf};
@@ -42,15 +43,8 @@ impl FormatArg {
 
     /// The format whose files end so.
     pub fn of_extension(path: &Path) -> Option<FormatArg> {
-        match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
-            "3mf" => Some(FormatArg::ThreeMf),
-            "stl" => Some(FormatArg::Stl),
-            "obj" => Some(FormatArg::Obj),
-            "glb" => Some(FormatArg::Glb),
-            "vtp" => Some(FormatArg::Vtk),
-            "ply" => Some(FormatArg::Ply),
-            _ => None,
-        }
+        let format = Format::of_ending(&path.extension()?.to_str()?.to_ascii_lowercase())?;
+        FormatArg::value_variants().iter().copied().find(|arg| arg.format() == format)
     }
 }
 

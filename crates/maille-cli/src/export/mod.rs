@@ -7,7 +7,6 @@ use crate::{
     numbers::positive,
     output,
     source::{Frame, Source, SourceArgs, Wanted},
-    units::millimetres,
 };
 use advice::{fuse, size, summary};
 use destination::{Destination, FormatArg, destination, with_ending};
@@ -141,7 +140,7 @@ pub fn run(args: &Args) -> Result<()> {
             note("the design names no unit: one unit of the file becomes 1 mm (change it with --scale)".into());
             1.0
         }
-        (None, Some(unit)) => millimetres(unit).unwrap_or_else(|| {
+        (None, Some(unit)) => mesh::millimetres(unit).unwrap_or_else(|| {
             note(format!("the unit \"{unit}\" is not known: one becomes 1 mm (change it with --scale)"));
             1.0
         }),

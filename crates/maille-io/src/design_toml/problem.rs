@@ -4,6 +4,7 @@ use super::index::{Index, Place};
 use super::syntax;
 use maille::error::InvalidInput;
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
+use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
@@ -92,6 +93,21 @@ impl Diagnostic for DesignProblem {
     }
 }
 
+/// A problem as a list names it: for scripts and for editors.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ListedProblem {
+    /// Path of the field, as `elements[2].rings[0].normal`; none where the file is no TOML.
+    pub field: Option<String>,
+    /// What is wrong.
+    pub problem: String,
+    /// What would be right.
+    pub help: Option<String>,
+    /// Line, from 1, where the file has a place for it.
+    pub line: Option<usize>,
+    /// Character in the line, from 1.
+    pub column: Option<usize>,
+}
+
 /// Everything that is wrong with a design file.
 ///
 /// Shown by miette: with one problem as that problem, with several as a list.
@@ -116,6 +132,21 @@ impl DesignError {
         let before = self.source.inner().get(..problem.span.as_ref()?.start)?;
         let line = before.rsplit('\n').next().unwrap_or_default();
         Some((before.matches('\n').count() + 1, line.chars().count() + 1))
+    }
+
+    /// The problems as a list, in the order of the file.
+    pub fn list(&self) -> Vec<ListedProblem> {
+        let one = |p: &DesignProblem| {
+            let place = self.line_column(p);
+            ListedProblem {
+                field: Some(p.field.clone()).filter(|field| !field.is_empty()),
+                problem: p.problem.clone(),
+                help: Some(p.help.clone()),
+                line: place.map(|(line, _)| line),
+                column: place.map(|(_, column)| column),
+            }
+        };
+        self.problems.iter().map(one).collect()
     }
 
     fn only(&self) -> Option<&DesignProblem> {

@@ -25,7 +25,9 @@ mod torus;
 mod vtk;
 
 pub use clearance::{TooClose, too_close};
-pub use scene::{Kind, KindRing, Placed, PlacedContact, PlacedRing, Scene, Tile, between, state_of};
+pub use scene::{
+    Kind, KindRing, Placed, PlacedContact, PlacedRing, Scene, Tile, between, millimetres, state_of, state_words,
+};
 pub use torus::{Fineness, Segments, TorusMesh};
 pub use vtk::write_pvd;
 
@@ -97,6 +99,19 @@ pub enum Format {
 }
 
 impl Format {
+    /// The format of files that end so, in small letters and without the dot.
+    pub fn of_ending(ending: &str) -> Option<Format> {
+        match ending {
+            "3mf" => Some(Format::ThreeMf),
+            "stl" => Some(Format::Stl),
+            "obj" => Some(Format::Obj),
+            "glb" => Some(Format::Glb),
+            "vtp" => Some(Format::Vtk),
+            "ply" => Some(Format::Ply),
+            _ => None,
+        }
+    }
+
     /// The files that this format writes for `scene`.
     pub fn files(self, scene: &Scene) -> Vec<MeshFile> {
         match self {

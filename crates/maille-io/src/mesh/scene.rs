@@ -40,6 +40,19 @@ impl Tile {
     }
 }
 
+/// Millimetres of a unit that people write in a design.
+pub fn millimetres(unit: &str) -> Option<f64> {
+    Some(match unit.trim().to_lowercase().as_str() {
+        "mm" | "millimetre" | "millimetres" | "millimeter" | "millimeters" => 1.0,
+        "cm" | "centimetre" | "centimetres" | "centimeter" | "centimeters" => 10.0,
+        "m" | "metre" | "metres" | "meter" | "meters" => 1000.0,
+        "um" | "µm" | "μm" | "micron" | "microns" | "micrometre" | "micrometer" => 0.001,
+        "in" | "inch" | "inches" | "\"" => 25.4,
+        "ft" | "foot" | "feet" => 304.8,
+        _ => return None,
+    })
+}
+
 /// Most rings of one export.
 const MOST_RINGS: usize = 5_000_000;
 
@@ -296,6 +309,14 @@ pub fn state_of(model: &Model, record: &StateRecord) -> Result<State, MeshError>
         Pose { position: length(p.position), rotation }
     };
     Ok(State { poses: record.poses.iter().map(pose).collect(), a1: length(record.a1), a2: length(record.a2) })
+}
+
+/// A state of a record in words, or the start.
+pub fn state_words(record: Option<&StateRecord>) -> String {
+    match record {
+        None => "starting state".into(),
+        Some(r) => format!("direction {}°, l2 {}, {}", r.direction_deg, r.l2, r.status.name()),
+    }
 }
 
 /// The state a part `t` (0 to 1) of the way from `start` to `end`.

@@ -17,6 +17,7 @@ use super::error::RecordError;
 use super::limits::{read_limits, write_limits};
 use super::run::{Counters, RunRecord, read_run, sha256, write_run};
 use super::states::{read_states, write_states};
+use crate::files::{self, is_temporary};
 use maille::design::Design;
 use maille::record::{LimitRow, StateRecord, Status};
 use serde_json::Value;
@@ -31,7 +32,6 @@ const STATES: &str = "states.jsonl";
 const SVG: &str = "polar.svg";
 const PNG: &str = "polar.png";
 const JOURNAL: &str = "limits.journal";
-const TEMPORARY: (&str, &str) = (".maille-", ".tmp");
 
 /// A design's name as a file or folder: path separators and other odd characters become underscores.
 pub fn file_name(name: &str) -> String {
@@ -233,20 +233,12 @@ impl RecordFolder {
 
     fn write_file(&self, name: &str, bytes: &[u8]) -> Result<(), RecordError> {
         let path = self.path.join(name);
-        let write = || {
-            let mut builder = tempfile::Builder::new();
-            builder.prefix(TEMPORARY.0).suffix(TEMPORARY.1);
-            #[cfg(unix)]
-            let mode = std::os::unix::fs::PermissionsExt::from_mode(0o666); // the umask applies, as to any new file
-            #[cfg(unix)]
-            builder.permissions(mode);
-            let mut file = builder.tempfile_in(&self.path)?;
-            file.write_all(bytes)?;
-            file.as_file().sync_all()?;
-            file.persist(&path)?;
-            Ok(())
-        };
-        write().map_err(RecordError::io("write", &path))
+        let done = files::replace(&path, |out| {
+            out.write_all(bytes)?;
+            out.flush()?;
+            out.get_ref().sync_all()
+        });
+        done.map_err(RecordError::io("write", &path))
     }
 
     fn same_inputs(&self, old: &RunRecord) -> Result<(), RecordError> {
@@ -365,10 +357,6 @@ fn some_names(names: &[String]) -> String {
         few if few.len() <= 3 => few.join(", "),
         many => format!("{}, … {} files", many[..3].join(", "), many.len()),
     }
-}
-
-fn is_temporary(name: &str) -> bool {
-    name.starts_with(TEMPORARY.0) && name.ends_with(TEMPORARY.1)
 }
 
 /// Removes what a killed run left half written.

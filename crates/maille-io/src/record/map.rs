@@ -152,13 +152,17 @@ impl OpenMap {
         }
     }
 
-    /// Asks for the limits that are left, on the current thread pool, writes the record, and gives it. `found` hears of
-    /// each limit; after `cancel` what is finished is written.
-    pub fn run(mut self, cancel: &AtomicBool, found: &(dyn Fn(&LimitRow) + Sync)) -> Result<Record, MapError> {
+    /// Asks for the limits that are left, on the current thread pool, writes the record, and gives it. `found` is shown
+    /// each limit with its state; after `cancel` what is finished is written.
+    pub fn run(
+        mut self,
+        cancel: &AtomicBool,
+        found: &(dyn Fn(&LimitRow, &StateRecord) + Sync),
+    ) -> Result<Record, MapError> {
         let open: Vec<Task> = self.open().collect();
         let collected = Mutex::new(&mut self.collected);
         let receive = |finished: Finished| {
-            found(&finished.row);
+            found(&finished.row, &finished.state);
             let mut collected = collected.lock().unwrap_or_else(|e| e.into_inner());
             let Some(k) = place(&self.all, &finished.row) else { return };
             if let Err(error) = collected.keep(k, finished) {

@@ -6,19 +6,19 @@ use maille_geometry::Vec3;
 pub(super) type Light = Vec3;
 
 /// Kinds of elements, apart for colour-blind readers and in grey print.
-const KINDS: [u32; 8] = [0x2f77b4, 0xf0a830, 0x2fa084, 0xcf6f9c, 0x7fc4ea, 0xd4602a, 0xe8dc6a, 0x8d8d8d];
+pub const KINDS: [u32; 8] = [0x2f77b4, 0xf0a830, 0x2fa084, 0xcf6f9c, 0x7fc4ea, 0xd4602a, 0xe8dc6a, 0x8d8d8d];
 
 /// Every element alike.
 pub(super) const PLAIN: u32 = 0xb4bac2;
 
 /// An element that carries no load.
-pub(super) const UNLOADED: u32 = 0xd2d4d8;
+pub const UNLOADED: u32 = 0xd2d4d8;
 
 /// Load from little to most: a ramp that darkens evenly.
-pub(super) const LOADS: [u32; 5] = [0xf6d98a, 0xf0a45a, 0xd9604f, 0x9c2f6a, 0x4b1d63];
+pub const LOADS: [u32; 5] = [0xf6d98a, 0xf0a45a, 0xd9604f, 0x9c2f6a, 0x4b1d63];
 
 /// Arrows of forces.
-pub(super) const FORCE: u32 = 0xd81b43;
+pub const FORCE: u32 = 0xd81b43;
 
 /// Colour of the kind `k`.
 pub(super) fn kind(k: usize) -> Light {

@@ -20,7 +20,8 @@ mod shade;
 mod torus;
 
 pub use camera::View;
-pub use scene::Subject;
+pub use color::{FORCE, KINDS, LOADS, UNLOADED};
+pub use scene::{Subject, kinds};
 pub use torus::{Ray, first_hit};
 
 use crate::plot::svg_to_png;

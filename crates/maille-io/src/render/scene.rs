@@ -183,7 +183,7 @@ fn colors_of_elements(model: &Model, contacts: &[ContactRecord], by: ColorBy) ->
 
 /// Kind of each element, from 0: elements are of one kind if the starting state has them in the same orientation, with
 /// the same rings in the same order (translates of each other).
-pub(super) fn kinds(model: &Model) -> Vec<usize> {
+pub fn kinds(model: &Model) -> Vec<usize> {
     let same = |a: usize, b: usize| {
         let rings = |e: usize| model.elements[e].rings.clone().map(|ring| &model.rings[ring]);
         let alike = |(a, b): (&maille::model::Ring, &maille::model::Ring)| {

@@ -1,0 +1,76 @@
+// The server, or the data of a bundle.
+
+import type { Edit, Export, Judged, New, Refused, Save, Solve, SolveEvent, Start, Subject, Text } from "./types";
+
+/** What the server refused. */
+export class Refusal extends Error {
+  constructor(
+    readonly status: number,
+    readonly refused: Refused,
+  ) {
+    super(refused.problem);
+  }
+}
+
+async function ask(path: string, body: unknown, signal?: AbortSignal): Promise<Response> {
+  const init: RequestInit = body === undefined ? {} : { method: "POST", body: JSON.stringify(body) };
+  if (signal) init.signal = signal;
+  let answer: Response;
+  try {
+    answer = await fetch(path, init);
+  } catch (error) {
+    if (signal?.aborted) throw error;
+    throw new Refusal(0, { problem: "the server does not answer", help: "is `maille view` still running?", problems: [] });
+  }
+  if (answer.ok) return answer;
+  const text = await answer.text();
+  let refused: Refused = { problem: `${answer.status} ${text}`.trim(), help: "", problems: [] };
+  try {
+    refused = JSON.parse(text) as Refused;
+  } catch {
+    // No JSON: the text itself says what is wrong.
+  }
+  throw new Refusal(answer.status, refused);
+}
+
+/** What the page starts with. */
+export async function start(): Promise<Start> {
+  const inside = document.getElementById("maille-data")?.textContent;
+  return inside ? (JSON.parse(inside) as Start) : ((await (await ask("/api/start", undefined)).json()) as Start);
+}
+
+export async function builtin(name: string): Promise<Text> {
+  return (await ask(`/api/builtin/${encodeURIComponent(name)}`, undefined)).json();
+}
+export async function judge(subject: Subject, signal: AbortSignal): Promise<Judged> {
+  return (await ask("/api/judge", subject, signal)).json();
+}
+export async function edit(request: Edit): Promise<Text> {
+  return (await ask("/api/edit", request)).json();
+}
+export async function weave(request: New): Promise<Text> {
+  return (await ask("/api/new", request)).json();
+}
+export async function save(request: Save): Promise<Text> {
+  return (await ask("/api/save", request)).json();
+}
+export async function exported(request: Export): Promise<Blob> {
+  return (await ask("/api/export", request)).blob();
+}
+
+/** Limits as they are found. The server stops when `signal` is aborted, for then the socket closes. */
+export async function solve(request: Solve, signal: AbortSignal, hear: (event: SolveEvent) => void): Promise<void> {
+  const body = (await ask("/api/solve", request, signal)).body;
+  if (!body) return;
+  const reader = body.pipeThrough(new TextDecoderStream()).getReader();
+  let rest = "";
+  for (;;) {
+    const { done, value } = await reader.read();
+    if (done) return;
+    const events = (rest + value).split("\n\n");
+    rest = events.pop() ?? "";
+    for (const event of events) {
+      if (event.startsWith("data: ") && !signal.aborted) hear(JSON.parse(event.slice(6)) as SolveEvent);
+    }
+  }
+}
