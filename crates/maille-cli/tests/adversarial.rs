@@ -211,3 +211,17 @@ fn elements_that_are_linked_in_no_pair_of_rings_are_unbounded() {
     }
     all_are(&answer(&text, "0"), "unbounded");
 }
+
+/// The images of such elements once had all memory.
+#[test]
+fn elements_over_more_cells_than_can_be_listed_are_refused() {
+    let wide = answer(&design([[3.0, 0.0, 0.0], [0.0, 3.0, 0.0]], 0.1, 1.0, &[([0.0; 3], Z, 1e11, Some(0.1))]), "0");
+    assert_eq!(wide.codes, (3, None));
+    assert!(wide.said.contains("the rings of \"e0\" reach over some 1.8e22 cells"), "{}", wide.said);
+    let narrow = answer(&grid(1e-9, 1e-10, 1.0, 0.0, 0.0), "0");
+    assert_eq!(narrow.codes, (3, None), "{}", narrow.said);
+    let away = [([0.0; 3], Z, 1.0, None), ([3e9, 0.0, 0.0], X, 1.0, None)];
+    let away = answer(&design([[3.0, 0.0, 0.0], [0.0, 3.0, 0.0]], 0.1, 1.0, &away), "0");
+    assert_eq!(away.codes, (3, None));
+    assert!(away.said.contains("\"e1\" lies 1.0e9 cells from the first element"), "{}", away.said);
+}

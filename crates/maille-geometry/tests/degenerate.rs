@@ -3,7 +3,9 @@
 mod common;
 
 use common::{circle, direction, moved, oracle, rng, rotation, sample_angles, scale, villarceau};
-use maille_geometry::{Circle, Minima, PairKind, circle_distance_minima, linking_number};
+use maille_geometry::{
+    Approaches, Circle, Minima, PairKind, circle_distance_approaches, circle_distance_minima, linking_number,
+};
 use nalgebra::UnitVector3;
 
 /// Distance of circles in parallel planes `height` apart, their axes `offset` apart.
@@ -173,5 +175,35 @@ fn leaving_a_villarceau_pair() {
         // Along the offset the distance grows by size/2 on one side and falls on the other, to first order.
         let found = minima.closest().distance;
         assert!((found - 0.5).abs() < size, "{size:e}: {found}");
+    }
+}
+
+/// The search once never ended on such numbers.
+#[test]
+fn numbers_that_make_no_circle_have_no_distance() {
+    let sound = circle([0.3, 0.2, 0.1], [0.0, 1.0, 1.0], 1.0);
+    let with = |change: fn(&mut Circle)| {
+        let mut c = circle([1.0, 0.0, 0.5], [1.0, 0.2, 0.0], 0.8);
+        change(&mut c);
+        c
+    };
+    let none = [
+        with(|c| c.center.x = f64::NAN),
+        with(|c| c.center.y = f64::INFINITY),
+        with(|c| c.radius = f64::NAN),
+        with(|c| c.radius = -1.0),
+        with(|c| c.radius = 0.0),
+        with(|c| c.radius = f64::MAX),
+        with(|c| c.radius = 5e-324),
+        with(|c| c.normal = UnitVector3::new_unchecked(c.center * f64::NAN)),
+        with(|c| c.normal = UnitVector3::new_unchecked(c.center * 0.0)),
+    ];
+    for c in &none {
+        for minima in in_both_orders(&sound, c) {
+            assert!(minima.as_slice().len() == 1 && minima.closest().distance.is_nan(), "{c:?}: {minima:?}");
+        }
+        let mut batch = [Approaches::NONE; 2];
+        circle_distance_approaches(&[(sound, *c), (*c, sound)], &[f64::INFINITY; 2], &mut batch);
+        assert!(batch.iter().all(|found| found.as_slice()[0].distance.is_nan()), "{c:?}: {batch:?}");
     }
 }
