@@ -225,3 +225,32 @@ fn elements_over_more_cells_than_can_be_listed_are_refused() {
     assert_eq!(away.codes, (3, None));
     assert!(away.said.contains("\"e1\" lies 1.0e9 cells from the first element"), "{}", away.said);
 }
+
+/// Its link bound once asked for 5 GB and many minutes.
+#[test]
+fn thousands_of_rings_in_a_cell_are_read_and_bounded() {
+    let (n, a) = (32, 2.5);
+    let mut rings: Vec<Single> = Vec::new();
+    for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (f64::from(i) * a, f64::from(j) * a))) {
+        rings.extend([
+            ([i, j, 0.0], Z, 1.0, None),
+            ([i + a / 2.0, j, 0.0], Y, 1.0, None),
+            ([i, j + a / 2.0, 0.0], X, 1.0, None),
+        ]);
+    }
+    let side = f64::from(n) * a;
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("design.toml"), design([[side, 0.0, 0.0], [0.0, side, 0.0]], 0.1, 1.0, &rings))
+        .unwrap();
+    let (code, out, said) = maille(folder.path(), "inspect design.toml --json");
+    assert_eq!(code, 0, "{said}");
+    let found: Value = serde_json::from_str(&out).unwrap();
+    assert_eq!(found["rings"].as_u64(), Some(3072));
+    assert!(
+        found["bounds"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .any(|bound| (bound["l1"].as_f64().unwrap_or(9.0) - 0.44).abs() < 1e-9)
+    );
+}

@@ -74,9 +74,15 @@ pub struct LinkBound {
     chain: ChainBound,
 }
 
+/// Cells with more elements get the bound of the chains alone: the program is dense, and grows with the cube of their number.
+const MOST_ELEMENTS: usize = 400;
+
 impl LinkBound {
     /// Prepares the program of `model`; its chain bound is used to charge rounding and to recognise free directions.
     pub fn new(model: &Model, chain: &ChainBound) -> Self {
+        if model.elements.len() > MOST_ELEMENTS {
+            return Self::of_chains(chain);
+        }
         let references: Vec<Vec3> = model
             .elements
             .iter()
