@@ -234,7 +234,11 @@ class Page {
     this.boxes.b.hidden = !two;
     this.compared.hidden = !two;
     if (two && !this.stages.b) {
-      this.stages.b = new Stage(this.boxes.b, this.start.palette, "The second sheet in 3D", () => {});
+      const { a } = this.stages;
+      const b = (this.stages.b = new Stage(this.boxes.b, this.start.palette, "The second sheet in 3D", () => {}));
+      // Both are seen from one side.
+      a.onTurn = () => b.follow(a);
+      b.onTurn = () => a.follow(b);
       void this.same();
     }
     this.move(mode !== "edit" && this.a.locked ? 1 : 0, false);

@@ -81,7 +81,10 @@ test("the wire radius changes the map, and drags leave nothing behind", async ({
   await solved(page);
   await page.getByLabel("width free").check();
   await expect(page.locator(".where")).toHaveText(/width free/);
-  await solved(page);
+  // These take longer: they are cancelled, and what was found stays.
+  await page.getByRole("button", { name: "Cancel" }).click();
+  await expect(page.locator(".progress")).toHaveText(/^\d+ limits$/);
+  await expect.poll(async () => (await (await page.request.get(`${address}api/activity`)).json()).solves).toBe(0);
 });
 
 test("a broken design says what is wrong, at its line", async ({ page, program }) => {
