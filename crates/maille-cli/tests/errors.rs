@@ -92,6 +92,8 @@ fn wrong_input_says_what_to_do_next() {
     let cases = repository().join("tests/errors/cli");
     let mut names: Vec<PathBuf> = fs::read_dir(&cases).unwrap().map(|e| e.unwrap().path()).collect();
     names.sort();
+    // With the viewer, its command serves until it is stopped.
+    names.retain(|path| !(cfg!(feature = "view") && path.ends_with("view-without-viewer.txt")));
     assert!(names.len() >= 40, "{}", names.len());
     let mut wrong = Vec::new();
     for path in &names {

@@ -16,8 +16,8 @@ const MOVE_MS = 900;
 const calmly = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
 
 class Page {
-  private a = new Side("a", () => this.later());
-  private b = new Side("b", () => this.later());
+  private a: Side;
+  private b: Side;
   private mode: Mode = "explore";
   private t = 0;
   private tile: [number, number] = [8, 8];
@@ -70,6 +70,8 @@ class Page {
   private compared: HTMLElement;
 
   constructor(private start: Start) {
+    this.a = new Side("a", start.bundle, () => this.later());
+    this.b = new Side("b", start.bundle, () => this.later());
     this.editor = new Editor(this.a, start.weaves);
     this.compared = this.compareControls();
     const root = document.getElementById("app")!;
@@ -234,7 +236,11 @@ class Page {
     this.boxes.b.hidden = !two;
     this.compared.hidden = !two;
     if (two && !this.stages.b) {
-      this.stages.b = new Stage(this.boxes.b, this.start.palette, "The second sheet in 3D", () => {});
+      const { a } = this.stages;
+      const b = (this.stages.b = new Stage(this.boxes.b, this.start.palette, "The second sheet in 3D", () => {}));
+      // Both are seen from one side.
+      a.onTurn = () => b.follow(a);
+      b.onTurn = () => a.follow(b);
       void this.same();
     }
     this.move(mode !== "edit" && this.a.locked ? 1 : 0, false);

@@ -48,6 +48,8 @@ export class Side {
 
   constructor(
     readonly id: string,
+    /** Whether there is no server. */
+    private alone: boolean,
     private changed: () => void,
   ) {}
 
@@ -60,6 +62,8 @@ export class Side {
     if (shown.map) {
       this.take(shown.map.source, shown.map.sheets, shown.map.limits);
       this.changed();
+      // What the sliders start from; a bundle has none.
+      if (!this.alone) await this.judge();
       return;
     }
     if (await this.judge()) this.later();

@@ -88,8 +88,8 @@ export function slack(sheet: Sheet, pairs: Pair[]): number[] {
 
 export class Stage {
   readonly canvas: HTMLCanvasElement;
-  /** Time the last frame took on the CPU, ms. */
-  frameMs = 0;
+  /** Called when the user has turned the view. */
+  onTurn: () => void = () => {};
   private renderer: WebGLRenderer;
   private scene = new Scene();
   private camera = new PerspectiveCamera(30, 1, 0.1, 5000);
@@ -101,6 +101,7 @@ export class Stage {
   private fitted = "";
   private shown: Shown | null = null;
   private waiting = false;
+  private turning = false;
   private cells: [number, number] = [1, 1];
   private raycaster = new Raycaster();
 
@@ -125,7 +126,12 @@ export class Stage {
     this.world.add(this.extras);
     this.camera.up.copy(Z);
     this.controls = new OrbitControls(this.camera, this.canvas);
-    this.controls.addEventListener("change", () => this.draw());
+    this.controls.addEventListener("change", () => {
+      this.draw();
+      if (this.turning) this.onTurn();
+    });
+    this.controls.addEventListener("start", () => (this.turning = true));
+    this.controls.addEventListener("end", () => (this.turning = false));
     this.canvas.addEventListener("keydown", (event) => this.key_(event));
     let down = new Vector2();
     this.canvas.addEventListener("pointerdown", (e) => (down = new Vector2(e.clientX, e.clientY)));
@@ -164,6 +170,7 @@ export class Stage {
     this.camera.position.copy(this.controls.target).add(arm);
     this.controls.update();
     this.draw();
+    this.onTurn();
   }
 
   /** Shows something else; what has not changed is kept. */
@@ -386,7 +393,7 @@ export class Stage {
 
   /** The whole tile in view, from the direction of the program's pictures. */
   private fit(shown: Shown): void {
-    const distance = this.distance(shown.own.a1, shown.own.a2, shown.tile, shown.own.reference_radius);
+    const distance = Math.max(this.distance(shown.own.a1, shown.own.a2, shown.tile, shown.own.reference_radius), this.room(shown));
     const [azimuth, elevation] = [(16 * Math.PI) / 180, (56 * Math.PI) / 180];
     const arm = new Vector3(-Math.sin(azimuth) * Math.cos(elevation), -Math.cos(azimuth) * Math.cos(elevation), Math.sin(elevation));
     this.controls.target.set(0, 0, 0);
@@ -405,15 +412,26 @@ export class Stage {
     return (0.92 * (Math.max(...corners) / 2 + R)) / Math.sin(fov / 2) / Math.min(1, this.camera.aspect);
   }
 
+  /** The distance that a locked state needs. */
+  private room({ limit, sheet }: Shown): number {
+    return limit ? 0.9 * this.distance(limit.state.a1, limit.state.a2, this.cells, sheet.reference_radius) : 0;
+  }
+
   /** Goes back as far as a locked state needs; nobody is brought nearer. */
-  private makeRoom({ limit, sheet }: Shown): void {
-    if (!limit) return;
-    const { a1, a2 } = limit.state;
-    const needed = 0.9 * this.distance(a1, a2, this.cells, sheet.reference_radius);
+  private makeRoom(shown: Shown): void {
     const arm = this.camera.position.clone().sub(this.controls.target);
+    const needed = this.room(shown);
     if (arm.length() >= needed) return;
     this.camera.position.copy(this.controls.target).add(arm.setLength(needed));
     this.controls.update();
+  }
+
+  /** Looks from where `other` looks. */
+  follow(other: Stage): void {
+    this.camera.position.copy(other.camera.position);
+    this.controls.target.copy(other.controls.target);
+    this.controls.update();
+    this.draw();
   }
 
   private pick(event: PointerEvent): number | null {
@@ -454,9 +472,7 @@ export class Stage {
     this.waiting = true;
     requestAnimationFrame(() => {
       this.waiting = false;
-      const begun = performance.now();
       this.renderer.render(this.scene, this.camera);
-      this.frameMs = performance.now() - begun;
       if (this.shown && !performance.getEntriesByName("maille-first-picture").length) performance.mark("maille-first-picture");
     });
   }

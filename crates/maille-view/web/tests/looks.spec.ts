@@ -75,6 +75,8 @@ for (const width of [1440, 1024, 390]) {
     const shot = (name: string) => page.screenshot({ path: `test-results/${name}-${width}.png`, fullPage: width === 390 });
     await page.waitForTimeout(300);
     await shot("explore");
+    // The picture of the guide's page on the viewer.
+    if (width === 1440) await page.screenshot({ path: "test-results/guide-view.jpg", quality: 86 });
     // Nothing sticks out sideways.
     expect(await page.evaluate(() => document.documentElement.scrollWidth - innerWidth)).toBeLessThanOrEqual(0);
     await page.getByRole("tab", { name: "Edit" }).click();

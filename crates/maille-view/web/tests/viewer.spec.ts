@@ -51,6 +51,7 @@ test("a record is shown as it is", async ({ page, program }) => {
   program.run("characterize", "1.1", "--directions", "0:180:45", "--l2", "-0.125,0", "--out", "record", "--quiet");
   await page.goto(await program.view("record"));
   await expect(page.locator(".progress")).toHaveText("10 limits of record");
+  await expect(page.getByLabel("Wire radius", { exact: true })).toBeEnabled();
   await page.getByRole("button", { name: "l₂ −0.125" }).click();
   await page.getByLabel("Direction of pull").fill("45");
   const row = program.run("table", "record", "--format", "csv", "--columns", "l1", "--where", "direction_deg=45", "--where", "l2=-0.125");
@@ -81,7 +82,10 @@ test("the wire radius changes the map, and drags leave nothing behind", async ({
   await solved(page);
   await page.getByLabel("width free").check();
   await expect(page.locator(".where")).toHaveText(/width free/);
-  await solved(page);
+  // These take longer: they are cancelled, and what was found stays.
+  await page.getByRole("button", { name: "Cancel" }).click();
+  await expect(page.locator(".progress")).toHaveText(/^\d+ limits$/);
+  await expect.poll(async () => (await (await page.request.get(`${address}api/activity`)).json()).solves).toBe(0);
 });
 
 test("a broken design says what is wrong, at its line", async ({ page, program }) => {
