@@ -17,6 +17,7 @@ use maille::{
 use maille_io::{
     boundary::{BoundaryHead, boundary_csv, boundary_obj, boundary_ply, journal_head, journal_line, read_journal},
     plot::{boundary_svg, svg_to_png},
+    record::FolderLock,
 };
 use miette::{IntoDiagnostic, Result, WrapErr};
 use std::{
@@ -86,7 +87,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let usual = || PathBuf::from("maille-out").join(format!("{}-boundary", file_name(&input.design.name)));
     let out = args.run.out.clone().unwrap_or_else(usual);
     let head = BoundaryHead::new(&input.design, args.cell, &options);
-    let (known, journal) = open(&out, &head, args.run.overwrite)?;
+    let (_lock, known, journal) = open(&out, &head, args.run.overwrite)?;
     if !known.is_empty() && !args.quiet {
         eprintln!("{} rays are in {} already", known.len(), out.display());
     }
@@ -96,6 +97,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let journal = Mutex::new((journal, None));
     let found = |vertex: &BoundaryVertex| {
         let mut journal = journal.lock().unwrap_or_else(|e| e.into_inner());
+        if journal.1.is_some() {
+            return; // The journal may end within a line: what came behind it could not be read.
+        }
         if let Err(error) = journal.0.write_all(journal_line(vertex).as_bytes()) {
             journal.1.get_or_insert(error);
             cancel.store(true, Ordering::Relaxed);
@@ -126,15 +130,16 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     }))
 }
 
-/// The vertices of an earlier run, and the journal to go on with.
-fn open(out: &Path, head: &BoundaryHead, overwrite: bool) -> Result<(Vec<BoundaryVertex>, fs::File)> {
+/// The folder for this run alone, the vertices of an earlier run, and the journal to go on with.
+fn open(out: &Path, head: &BoundaryHead, overwrite: bool) -> Result<(FolderLock, Vec<BoundaryVertex>, fs::File)> {
     let path = out.join(JOURNAL);
     if out.is_file() {
         let problem = format!("{} is a file; the surface is a folder", out.display());
         return Err(wrong(exit::USAGE, problem, "name another folder with --out"));
     }
     let context = || format!("cannot write {}", path.display());
-    fs::create_dir_all(out).into_diagnostic().wrap_err_with(context)?;
+    let lock = FolderLock::take(out)?;
+    output::remove_leftovers(out)?;
     let mut known = Vec::new();
     match fs::read_to_string(&path) {
         Ok(text) if !overwrite => match read_journal(&text) {
@@ -161,7 +166,7 @@ fn open(out: &Path, head: &BoundaryHead, overwrite: bool) -> Result<(Vec<Boundar
     let lines: String = known.iter().map(journal_line).collect();
     output::write(&path, (journal_head(head) + &lines).as_bytes())?;
     let journal = fs::OpenOptions::new().append(true).open(&path).into_diagnostic().wrap_err_with(context)?;
-    Ok((known, journal))
+    Ok((lock, known, journal))
 }
 
 fn write(out: &Path, input: &Input, surface: &Boundary, options: &BoundaryOptions) -> Result<()> {

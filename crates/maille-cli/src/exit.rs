@@ -12,7 +12,7 @@ pub const FAILED: u8 = 1;
 pub const USAGE: u8 = 2;
 /// A design file is wrong, or there is none of that name.
 pub const DESIGN: u8 = 3;
-/// A record is missing, damaged or another one.
+/// A record is missing, damaged, another one, or another run is writing to it.
 pub const RECORD: u8 = 4;
 /// The record is written, but some limits were not found; in `replay`: some rows came out otherwise.
 pub const INCOMPLETE: u8 = 5;

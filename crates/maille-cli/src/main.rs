@@ -66,7 +66,7 @@ Exit codes:
     1  a file cannot be read or written, or maille is at fault
     2  the arguments are wrong
     3  a design file is wrong, or there is none of that name
-    4  a record is missing, damaged, or of other inputs; verify: something in it is false
+    4  a record is missing, damaged, of other inputs, or in use by another run; verify: something in it is false
     5  done, but some limits were not found; replay: some rows came out otherwise; verify: not all could be proved
   130  interrupted
 

@@ -20,7 +20,7 @@ use maille::{
 use maille_io::{
     DesignSource, builtin,
     plot::Quantity,
-    record::{Map, NamedRecord},
+    record::{FolderLock, Map, NamedRecord},
     report::{self, SCALED, Sheet, Verdict, figures, page, sheet_png, statements},
 };
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
@@ -106,6 +106,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         return Err(wrong(exit::USAGE, format!("{} is a file; a folder is written", out.display()), help));
     }
     let plan = plan(&chosen, args.quick, &out)?;
+    let _lock = FolderLock::take(&out)?;
     let open = plan.iter().map(|p| Ok((p.name.as_str(), map::open(&p.map, &p.input)?))).collect::<Result<Vec<_>>>()?;
     let (left, total) = open.iter().fold((0, 0), |(l, t), (_, map)| (l + map.left(), t + map.total()));
     if !args.quiet && left < total {

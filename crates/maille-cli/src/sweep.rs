@@ -11,7 +11,7 @@ use crate::{
 };
 use maille_io::{
     builtin,
-    record::{Map, OpenMap},
+    record::{FolderLock, Map, OpenMap},
     study::{Study, StudyDesign, Variant},
     table::{Field, Table},
 };
@@ -92,6 +92,12 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     let out = args.run.out.clone().unwrap_or_else(|| Path::new("maille-out").join(file_name(&stem)));
     let plan = plan(&study, path.parent().unwrap_or(Path::new("")), &out, args.run.overwrite)?;
+    if out.is_file() {
+        let help = "name another folder with --out";
+        return Err(wrong(exit::USAGE, format!("{} is a file; a folder is written", out.display()), help));
+    }
+    let _lock = FolderLock::take(&out)?;
+    output::remove_leftovers(&out)?;
     let mut open: Vec<(&str, OpenMap)> = Vec::new();
     let mut unused = Vec::new();
     for planned in &plan {

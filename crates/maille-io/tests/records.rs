@@ -173,6 +173,7 @@ fn a_run_is_continued_with_the_same_inputs_only() {
     assert!(found.is_empty());
     folder.write(&rows, &states).unwrap();
     folder.write_polar("<svg/>", b"png").unwrap();
+    drop(folder);
 
     let (_, found, found_states) = open(&out, &inputs, false).unwrap();
     assert_eq!((&found, &found_states), (&rows, &states));
@@ -182,10 +183,12 @@ fn a_run_is_continued_with_the_same_inputs_only() {
     assert_eq!(record.run, read_run("run.json", &fs::read_to_string(out.join("run.json")).unwrap()).unwrap());
 
     // Interrupted rows, and rows that lost their state, are computed again.
+    let (mut folder, ..) = open(&out, &inputs, false).unwrap();
     rows.push(row(30.0, Status::Interrupted));
     states.push(state(30.0, Status::Interrupted));
     rows.push(row(45.0, Status::ThresholdReached));
     folder.write(&rows, &states).unwrap();
+    drop(folder);
     let (_, found, _) = open(&out, &inputs, false).unwrap();
     assert_eq!(found, rows[..2]);
 
@@ -202,7 +205,7 @@ fn a_run_is_continued_with_the_same_inputs_only() {
     let mut names: Vec<_> =
         fs::read_dir(&out).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
     names.sort();
-    assert_eq!(names, ["notes.txt", "run.json"]);
+    assert_eq!(names, [".maille.lock", "notes.txt", "run.json"]);
 }
 
 #[test]

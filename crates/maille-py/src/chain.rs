@@ -83,6 +83,11 @@ impl OpenMap {
         py.detach(keep).map_err(|e| error::record(&e))?.ok_or_else(closed)
     }
 
+    /// Gives the folder back and writes nothing.
+    fn close(&self) {
+        self.lock().take();
+    }
+
     /// Writes the record with what was found.
     fn finish(&self, py: Python<'_>) -> PyResult<Record> {
         let open = self.lock().take().ok_or_else(closed)?;

@@ -127,6 +127,7 @@ pub fn record(error: &RecordError) -> PyErr {
         RecordError::Edited { .. } => "EditedRecordError",
         RecordError::OtherInputs { .. } => "OtherInputsError",
         RecordError::NotARecord { .. } => "NotARecordError",
+        RecordError::InUse { .. } => "RecordInUseError",
         RecordError::NotFinite { .. } => "NotFiniteError",
     };
     exception(name, |_, to| {
@@ -154,6 +155,7 @@ pub fn record(error: &RecordError) -> PyErr {
                 to.set_item("folder", folder)?;
                 to.set_item("found", found)
             }
+            RecordError::InUse { folder } => to.set_item("folder", folder),
             RecordError::NotFinite { direction_deg, l2, field, value } => {
                 to.set_item("direction_deg", direction_deg)?;
                 to.set_item("l2", l2)?;

@@ -27,6 +27,8 @@ const PACKAGES: &[&str] = &[
 ];
 /// Folder of the package.
 const PACKAGE: &str = "crates/maille-py";
+/// Their versions, and those of what they need.
+const CONSTRAINTS: &str = "crates/maille-py/constraints.txt";
 /// Programs that may be a Python of 3.10 or later.
 const PYTHONS: &[&str] = &["python3", "python", "python3.13", "python3.12", "python3.11", "python3.10"];
 const OLD_ENOUGH: &str = "import sys, venv; sys.exit(sys.version_info < (3, 10))";
@@ -45,10 +47,13 @@ impl Environment {
         let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), |path| root.join(path));
         let out = Environment { root: root.to_owned(), folder: target.join("python"), target };
         let ready = out.folder.join("ready");
-        if clean || std::fs::read_to_string(&ready).ok().as_deref() != Some(&PACKAGES.join("\n")) {
+        let constraints = root.join(CONSTRAINTS);
+        let versions =
+            std::fs::read_to_string(&constraints).map_err(|e| format!("cannot read {}: {e}", constraints.display()))?;
+        let wanted = [&PACKAGES.join("\n"), "", &versions].join("\n");
+        if clean || std::fs::read_to_string(&ready).ok().as_deref() != Some(&wanted) {
             out.create()?;
-            std::fs::write(&ready, PACKAGES.join("\n"))
-                .map_err(|e| format!("cannot write {}: {e}", ready.display()))?;
+            std::fs::write(&ready, wanted).map_err(|e| format!("cannot write {}: {e}", ready.display()))?;
         }
         let wheels = out.folder.join("wheels");
         if wheels.is_dir() {
@@ -76,8 +81,9 @@ impl Environment {
                 .into());
         };
         self.run(Command::new(python).args(["-m", "venv", "--clear"]).arg(&self.folder), "make an environment")?;
-        let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
-        let done = self.run(self.python().args(install).args(PACKAGES), "install packages");
+        let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--constraint"];
+        let constraints = self.root.join(CONSTRAINTS);
+        let done = self.run(self.python().args(install).arg(constraints).args(PACKAGES), "install packages");
         done.map_err(|e| {
             format!(
                 "{e}\npip must reach a package index, or find wheels by PIP_FIND_LINKS; wanted: {}",

@@ -10,7 +10,7 @@ pub enum RecordError {
     /// The file system refused.
     #[error("cannot {action} {}", path.display())]
     Io {
-        /// What was tried: `read`, `write`, `create`, `remove`.
+        /// What was tried: `read`, `write`, `create`, `remove`, `lock`.
         action: &'static str,
         /// On what.
         path: PathBuf,
@@ -56,6 +56,13 @@ pub enum RecordError {
         folder: PathBuf,
         /// Some names in it.
         found: String,
+    },
+    /// Another run writes to the folder.
+    #[error("another run is writing to {}", folder.display())]
+    #[diagnostic(help("wait until it has ended, or name another folder with --out"))]
+    InUse {
+        /// The folder.
+        folder: PathBuf,
     },
     /// A number that JSON and the table's readers cannot hold.
     #[error("direction {direction_deg}°, l2 {l2}: {field} is {value}")]

@@ -12,9 +12,12 @@
 //!   of which each has one of its two, states without rows, which are ignored, and counters that are ahead until the next write.
 //! - Each limit as it is found: a line at the end of `limits.journal`, in one write, until all files are written again. A kill
 //!   loses the limits in work and no other; a line that is cut off is not read.
+//!
+//! One run at a time has a folder ([`FolderLock`]). Readers may come at any time.
 
 use super::error::RecordError;
 use super::limits::{read_limits, write_limits};
+use super::lock::{FolderLock, LOCK};
 use super::run::{Counters, RunRecord, read_run, sha256, write_run};
 use super::states::{read_states, write_states};
 use crate::files::{self, is_temporary};
@@ -52,11 +55,25 @@ pub struct Record {
 impl Record {
     /// Reads a folder. A record that has no table or no states yet has no rows or states.
     pub fn read(folder: &Path) -> Result<Self, RecordError> {
-        let run = folder.join(RUN);
-        let Some(text) = read_if_there(&run)? else {
+        let path = folder.join(RUN);
+        let Some(mut text) = read_if_there(&path)? else {
             return Err(RecordError::NotARecord { folder: folder.into(), found: some_names(&names(folder)?) });
         };
-        let run = read_run(&run.display().to_string(), &text)?;
+        loop {
+            let found = Self::read_as(folder, &path, &text);
+            if !matches!(found, Err(RecordError::Edited { .. })) {
+                return found;
+            }
+            // A run may have written between the files: then run.json is another one now.
+            match read_if_there(&path)? {
+                Some(now) if now != text => text = now,
+                _ => return found,
+            }
+        }
+    }
+
+    fn read_as(folder: &Path, path: &Path, text: &str) -> Result<Self, RecordError> {
+        let run = read_run(&path.display().to_string(), text)?;
         let rows = read_checked(folder, LIMITS, &run, read_limits)?;
         let states = read_checked(folder, STATES, &run, read_states)?;
         Ok(Self { run, rows, states })
@@ -91,6 +108,8 @@ pub struct RecordFolder {
     there: BTreeMap<String, String>,
     /// The journal, once something is in it.
     journal: Option<fs::File>,
+    /// No other run writes here meanwhile.
+    _lock: FolderLock,
 }
 
 /// One change of the folder that happens wholly or not at all.
@@ -104,7 +123,8 @@ impl RecordFolder {
     /// Opens or creates the folder for a run with these inputs; gives the finished rows of an earlier run and their states.
     ///
     /// A missing or empty folder becomes a new record. A record of the same inputs and program version is continued; any
-    /// other is an error, or replaced with `overwrite`. A folder with other files and no record is always an error.
+    /// other is an error, or replaced with `overwrite`. A folder with other files and no record is always an error, and so
+    /// is one that another run has open.
     pub fn open(
         path: &Path,
         design: &Design,
@@ -114,10 +134,14 @@ impl RecordFolder {
     ) -> Result<(Self, Vec<LimitRow>, Vec<StateRecord>), RecordError> {
         let run = RunRecord::new(design, parameters, program_version);
         fs::create_dir_all(path).map_err(RecordError::io("create", path))?;
-        let mut found = names(path)?;
-        found.retain(|name| !is_temporary(name));
+        let found = names(path)?;
+        if !found.is_empty() && !found.iter().any(|name| name == RUN) {
+            return Err(RecordError::NotARecord { folder: path.into(), found: some_names(&found) });
+        }
+        let lock = FolderLock::take(path)?;
         remove_temporary(path)?;
-        let mut folder = Self { path: path.to_owned(), run, there: BTreeMap::new(), journal: None };
+        let found = names(path)?;
+        let mut folder = Self { path: path.to_owned(), run, there: BTreeMap::new(), journal: None, _lock: lock };
         if !found.is_empty() {
             if overwrite {
                 folder.may_replace(&found)?;
@@ -341,7 +365,14 @@ fn journal_lines(text: &str) -> impl Iterator<Item = (LimitRow, StateRecord)> {
     whole.filter(|(row, _): &(LimitRow, StateRecord)| row.status != Status::Interrupted)
 }
 
+/// What is in a folder, but for what a run needs while it writes.
 fn names(folder: &Path) -> Result<Vec<String>, RecordError> {
+    let mut names = all_names(folder)?;
+    names.retain(|name| name != LOCK && !is_temporary(name));
+    Ok(names)
+}
+
+fn all_names(folder: &Path) -> Result<Vec<String>, RecordError> {
     let read = || -> std::io::Result<Vec<String>> {
         let names = fs::read_dir(folder)?.map(|e| Ok(e?.file_name().to_string_lossy().into_owned()));
         let mut names = names.collect::<std::io::Result<Vec<_>>>()?;
@@ -361,7 +392,7 @@ fn some_names(names: &[String]) -> String {
 
 /// Removes what a killed run left half written.
 fn remove_temporary(folder: &Path) -> Result<(), RecordError> {
-    for name in names(folder)?.iter().filter(|name| is_temporary(name)) {
+    for name in all_names(folder)?.iter().filter(|name| is_temporary(name)) {
         let path = folder.join(name);
         fs::remove_file(&path).map_err(RecordError::io("remove", path))?;
     }
@@ -437,6 +468,7 @@ mod tests {
             for step in steps(&mut folder).into_iter().take(done) {
                 folder.apply(step).unwrap();
             }
+            drop(folder);
             fs::write(dir.path().join(".maille-x1.tmp"), "half a fi").unwrap();
             check(dir.path(), done);
         }
@@ -529,6 +561,25 @@ mod tests {
             assert_eq!(fs::read_to_string(path.join("notes.txt")).unwrap(), "mine");
             assert!(!path.join(SVG).exists());
         });
+    }
+
+    #[test]
+    fn one_run_at_a_time_has_the_folder() {
+        let dir = tempfile::tempdir().unwrap();
+        let open = |overwrite| RecordFolder::open(dir.path(), &design(), &json!({}), "0.1.0", overwrite);
+        let (mut first, ..) = open(false).unwrap();
+        // The other one must not take this for what a killed run has left.
+        fs::write(dir.path().join(".maille-x1.tmp"), "in work").unwrap();
+        for overwrite in [false, true] {
+            assert!(matches!(open(overwrite), Err(RecordError::InUse { folder }) if folder == dir.path()));
+        }
+        assert!(dir.path().join(".maille-x1.tmp").exists());
+        let (all, states) = rows(2);
+        first.write(&all, &states).unwrap();
+        assert_eq!(Record::read(dir.path()).unwrap().rows, all);
+        drop(first);
+        assert_eq!(open(false).unwrap().1, all);
+        assert!(open(true).unwrap().1.is_empty());
     }
 
     #[test]

@@ -73,6 +73,10 @@ impl Counters {
 
 /// SHA-256, in hexadecimal, of the record's schema, the design and the parameters as JSON with sorted keys.
 pub fn input_hash(design: &Design, parameters: &Value) -> String {
+    hash(&serde_json::json!(design), parameters)
+}
+
+fn hash(design: &Value, parameters: &Value) -> String {
     let inputs = serde_json::json!({ "schema": RECORD_SCHEMA, "design": design, "parameters": parameters });
     let mut text = String::new();
     canonical(&inputs, &mut text);
@@ -118,16 +122,25 @@ pub fn write_run(run: &RunRecord) -> String {
     serde_json::to_string_pretty(run).expect("a run has no map with odd keys") + "\n"
 }
 
-/// Reads the file; `file` is the name to show in errors.
+/// Reads the file; `file` is the name to show in errors. Design and parameters must have their hash.
 pub fn read_run(file: &str, text: &str) -> Result<RunRecord, RecordError> {
     let bad = |e: serde_json::Error| {
         let reason = e.to_string();
         let reason = reason.split(" at line ").next().unwrap_or_default();
         RecordError::malformed(file, e.line().max(1), format!("{reason} (character {})", e.column()))
     };
-    let schema = serde_json::from_str::<Value>(text).map_err(bad)?.get("schema").cloned();
-    match schema.as_ref().and_then(Value::as_u64) {
-        Some(known) if known == u64::from(RECORD_SCHEMA) => serde_json::from_str(text).map_err(bad),
+    let value: Value = serde_json::from_str(text).map_err(bad)?;
+    match value.get("schema").and_then(Value::as_u64) {
+        Some(known) if known == u64::from(RECORD_SCHEMA) => {
+            let run: RunRecord = serde_json::from_str(text).map_err(bad)?;
+            let found = hash(&value["design"], &value["parameters"]);
+            if found != run.input_hash {
+                let problem =
+                    format!("design or parameters were edited: their hash is {found}, not {}", run.input_hash);
+                return Err(RecordError::malformed(file, 1, problem));
+            }
+            Ok(run)
+        }
         Some(other) => {
             Err(RecordError::malformed(file, 1, format!("schema {other}; this program reads schema {RECORD_SCHEMA}")))
         }

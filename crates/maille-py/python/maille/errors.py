@@ -20,6 +20,7 @@ __all__ = [
     "OtherInputsError",
     "RecordError",
     "RecordIOError",
+    "RecordInUseError",
     "ShapeError",
     "StudyError",
     "UnknownDesignError",
@@ -174,6 +175,14 @@ class NotARecordError(RecordError):
         super().__init__(problem, remedy="name the folder of a record, or a new or empty one to write to")
         self.folder = folder
         self.found = found
+
+
+class RecordInUseError(RecordError):
+    """Another run, or an open map of this one, writes to the `folder`."""
+
+    def __init__(self, problem: str, folder: os.PathLike[str]) -> None:
+        super().__init__(problem, remedy="wait until it has ended, or name another folder")
+        self.folder = folder
 
 
 class NotFiniteError(RecordError):

@@ -91,6 +91,9 @@ def run(
                 raise design
             maps[name] = _Map.open(folder, name, design, asked, overwrite)
         except RecordError:
+            # No other run gets a folder as long as a map has it open, and the traceback keeps the maps.
+            for map in maps.values():
+                map.native.close()
             raise
         except MailleError as error:
             failures.append(Failure(name, None, error))
@@ -158,17 +161,21 @@ class _Map:
             _Chain(direction, left, hash, folder / f"{direction:g}-{hash[:32]}.parquet")
             for direction, left, hash in native.chains()
         ]
-        folder.mkdir(parents=True, exist_ok=True)
-        _clear(folder, {chain.file.name for chain in chains}, overwrite)
         map = cls(name, design, native, len(chains))
-        for chain in chains:
-            if chain.left > 0:
-                found = read_limits(chain.file)
-                if found is None or native.keep(str(chain.file), found) < chain.left:
-                    map.left[chain.hash] = chain
-            elif not chain.file.exists():
-                # The program has solved it.
-                write_whole(chain.file, native.chain(chain.direction_deg).parquet(True))
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            _clear(folder, {chain.file.name for chain in chains}, overwrite)
+            for chain in chains:
+                if chain.left > 0:
+                    found = read_limits(chain.file)
+                    if found is None or native.keep(str(chain.file), found) < chain.left:
+                        map.left[chain.hash] = chain
+                elif not chain.file.exists():
+                    # The program has solved it.
+                    write_whole(chain.file, native.chain(chain.direction_deg).parquet(True))
+        except BaseException:
+            native.close()
+            raise
         return map
 
     def take(self, chain: _Chain, found: Solved) -> None:

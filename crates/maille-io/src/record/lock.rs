@@ -1,0 +1,36 @@
+//! One run at a time in a folder.
+
+use super::error::RecordError;
+use std::{
+    fs::{self, File, OpenOptions, TryLockError},
+    io::ErrorKind,
+    path::Path,
+};
+
+/// The file that is locked; it stays, empty, and means nothing by itself.
+pub(super) const LOCK: &str = ".maille.lock";
+
+/// The right to write to a folder, as long as it lives.
+///
+/// The operating system keeps it and takes it back when the process ends, however it ends: no lock is left behind by a kill.
+/// Readers need none. A file system without locks gives the right to everyone.
+#[derive(Debug)]
+pub struct FolderLock {
+    _file: File,
+}
+
+impl FolderLock {
+    /// Takes the right to write to a folder, which is created if it is not there; [`RecordError::InUse`] if another run has it.
+    pub fn take(folder: &Path) -> Result<Self, RecordError> {
+        fs::create_dir_all(folder).map_err(RecordError::io("create", folder))?;
+        let path = folder.join(LOCK);
+        let open = OpenOptions::new().create(true).truncate(false).write(true).open(&path);
+        let file = open.map_err(RecordError::io("write", &path))?;
+        match file.try_lock() {
+            Ok(()) => Ok(Self { _file: file }),
+            Err(TryLockError::Error(e)) if e.kind() == ErrorKind::Unsupported => Ok(Self { _file: file }),
+            Err(TryLockError::Error(e)) => Err(RecordError::io("lock", path)(e)),
+            Err(TryLockError::WouldBlock) => Err(RecordError::InUse { folder: folder.into() }),
+        }
+    }
+}
