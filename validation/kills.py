@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Kills maille at random moments, lets it go on, and compares with a run that nobody disturbed.
 
-    python3 validation/kills.py target/debug/maille --kills 45 --seed 1
+    python3 validation/kills.py target/debug/maille --kills 46 --seed 1
     python3 validation/kills.py maille --only dask --python .venv/bin/python --kills 20
 
 A trial is a fresh folder. The command is started in it and killed (SIGKILL to its process group) at a moment between 2 ms and the
@@ -236,7 +236,7 @@ def contents(out: Path) -> dict[str, object]:
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", help="the program maille")
-    parser.add_argument("--kills", type=int, default=45, help="kills of each command [default: 45]")
+    parser.add_argument("--kills", type=int, default=46, help="kills of each command [default: 46]")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", choices=COMMANDS, action="append", help="this command; dask needs the Python package")
     parser.add_argument("--python", default=sys.executable, help="the Python that has the package")
