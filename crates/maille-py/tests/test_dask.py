@@ -15,6 +15,8 @@ import numpy as np
 import pyarrow.dataset
 import pytest
 
+from records import content, table
+
 import maille
 from maille.errors import ChainError, OtherInputsError, StudyError
 
@@ -60,15 +62,6 @@ def by_program(program, study, tmp_path_factory) -> Path:
     return out
 
 
-def table(file: Path) -> list[dict[str, str]]:
-    with open(file, newline="") as text:
-        rows = list(csv.DictReader(text))
-    for row in rows:
-        del row["wall_s"]  # the time that a row took
-        row["record"] = Path(row.get("record", "")).name
-    return rows
-
-
 def same_run(mine: Path, its: Path) -> None:
     assert table(mine / "limits.csv") == table(its / "limits.csv")
     assert sorted(os.listdir(mine / "records")) == sorted(os.listdir(its / "records"))
@@ -77,7 +70,7 @@ def same_run(mine: Path, its: Path) -> None:
         assert sorted(os.listdir(a)) == sorted(os.listdir(b))
         assert table(a / "limits.csv") == table(b / "limits.csv")
         for file in ("states.jsonl", "run.json", "polar.svg", "polar.png"):
-            assert (a / file).read_bytes() == (b / file).read_bytes(), (name, file)
+            assert content(a / file) == content(b / file), (name, file)
 
 
 def executed(client) -> int:
