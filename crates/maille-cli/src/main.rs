@@ -1,5 +1,7 @@
 //! The `maille` program: arguments, progress and exit codes. The mechanics are in the `maille` crate.
 
+#[cfg(test)]
+mod any_arguments;
 mod at;
 mod boundary;
 mod certificate;
