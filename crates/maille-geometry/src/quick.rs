@@ -58,7 +58,7 @@ pub(crate) fn roots<T: Lane, const N: usize>(
         }
     }
     for k in 0..used {
-        good[k] = T::pick(brackets[k].contains(at[k]), good[k] - open[k], zero);
+        good[k] = T::pick(brackets[k].contains(at[k]), good[k] * (one - open[k]), zero);
     }
     (at, good)
 }

@@ -8,7 +8,7 @@ mod common;
 use common::{
     Along, Family, Oracle, Pair, Rng, degenerate, direction, oracle, rng, sample_angles, scale, uniform, unit,
 };
-use maille_geometry::{Circle, Minima, Minimum, Vec3, circle_distance_minima};
+use maille_geometry::{Approaches, Circle, Minima, Minimum, Vec3, circle_distance_approaches, circle_distance_minima};
 use nalgebra::UnitVector3;
 use rand::RngExt;
 use std::{fmt::Write as _, io::Write as _};
@@ -160,6 +160,13 @@ fn no_adversarial_pair_has_a_wrong_or_missed_minimum() {
             let minima = circle_distance_minima(a, b);
             let (along, unit) = (Along::new(a, b), scale(a, b));
             let allowed = 1e-9 * unit + rounding(&pair);
+            let mut batch = [Approaches::NONE];
+            circle_distance_approaches(&[pair], &[f64::INFINITY], &mut batch);
+            let batched = batch[0].as_slice().iter().map(|approach| approach.distance).fold(f64::INFINITY, f64::min);
+            if (batched - minima.closest().distance).abs() > allowed {
+                wrong += 1;
+                println!("{name} {index}: the batch has {batched}, not {:?}", minima.closest());
+            }
             let mut lowest = f64::INFINITY;
             for expected in oracle(a, b, &angles) {
                 lowest = lowest.min(expected.distance);

@@ -4,8 +4,10 @@ mod common;
 
 use common::{FAMILIES, Pair, degenerate, oracle, rng, sample_angles, scale};
 use maille_geometry::{
-    Approaches, Instructions, circle_distance_approaches, circle_distance_approaches_with, circle_distance_minima,
+    Approaches, Circle, Instructions, Vec3, circle_distance_approaches, circle_distance_approaches_with,
+    circle_distance_minima,
 };
+use nalgebra::UnitVector3;
 
 fn pairs() -> Vec<(&'static str, Vec<Pair>)> {
     let mut families = FAMILIES.to_vec();
@@ -113,4 +115,26 @@ fn what_is_out_of_reach_has_no_minima_and_nothing_else_is_lost() {
         }
     }
     assert!(left_out > 2_000, "{left_out}");
+}
+
+/// Neither of two slots was good, and the product of their marks said that both were: off by 5e-9.
+#[test]
+fn a_pair_near_an_axis_is_left_to_the_single_kernel() {
+    let normal = |x, y, z| UnitVector3::new_normalize(Vec3::new(x, y, z));
+    let a = Circle::new(Vec3::repeat(7.556001431015456), normal(1.0, 0.0, 0.0), 7.555436039954612);
+    let center = Vec3::new(7.527053408706127, 0.0, 7.556001422354441);
+    let b = Circle::new(
+        center,
+        normal(7.728488108867381e-10, 7.556001431123296e-10, -3.2451625575085826),
+        7.556001503874342,
+    );
+    // With 50 digits.
+    let exact = 7.5270479606943944;
+    for set in Instructions::available() {
+        let found = batch(set, &[(a, b)]);
+        assert!(
+            found[0].as_slice().len() == 1 && (found[0].as_slice()[0].distance - exact).abs() < 1e-13,
+            "{set:?} {found:?}"
+        );
+    }
 }
