@@ -19,7 +19,9 @@ pub fn circles(bytes: &[u8]) {
         *number = f64::from_le_bytes(eight);
     }
     let circle = |x: &[f64]| {
-        let normal = UnitVector3::new_normalize(Vec3::new(x[3], x[4], x[5]));
+        // Squares of tiny numbers have few digits: the largest is made 1 first, as for designs.
+        let normal = Vec3::new(x[3], x[4], x[5]);
+        let normal = UnitVector3::new_normalize(normal / normal.amax());
         Circle { center: Vec3::new(x[0], x[1], x[2]), normal, radius: x[6] }
     };
     let (a, b) = (circle(&numbers[..7]), circle(&numbers[7..]));
