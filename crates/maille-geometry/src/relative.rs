@@ -80,8 +80,8 @@ impl<'a> Relative<'a> {
         let (n, m) = (&*base.normal, &*moving.normal);
         let cross = m.cross(n);
         // At small tilts the rounding of the cross product is a large part of it. Projected once more on the base
-        // plane its rest along `m` is that part times the tilt: rounding again.
-        let y = (cross - n * n.dot(&cross)).try_normalize(1e-300).unwrap_or_else(|| base.frame().1);
+        // plane its rest along `m` is that part times the tilt: rounding again. Smaller tilts have squares without digits.
+        let y = (cross - n * n.dot(&cross)).try_normalize(1e-150).unwrap_or_else(|| base.frame().1);
         let x = y.cross(n);
         let tilt_cos = n.dot(m);
         let tilt_sin = y.dot(&cross);

@@ -4,7 +4,7 @@ mod common;
 
 use common::{circle, direction, moved, oracle, rng, rotation, sample_angles, scale, villarceau};
 use maille_geometry::{
-    Approaches, Circle, Minima, PairKind, circle_distance_approaches, circle_distance_minima, linking_number,
+    Approaches, Circle, Minima, PairKind, Vec3, circle_distance_approaches, circle_distance_minima, linking_number,
 };
 use nalgebra::UnitVector3;
 
@@ -205,5 +205,25 @@ fn numbers_that_make_no_circle_have_no_distance() {
         let mut batch = [Approaches::NONE; 2];
         circle_distance_approaches(&[(sound, *c), (*c, sound)], &[f64::INFINITY; 2], &mut batch);
         assert!(batch.iter().all(|found| found.as_slice()[0].distance.is_nan()), "{c:?}: {batch:?}");
+    }
+}
+
+/// The square of such a tilt has no digits: the points were off by a hundredth.
+#[test]
+fn a_tilt_too_small_for_its_square_is_none() {
+    for tilt in [1e-12, 1e-100, 1e-149, 1e-151, 4.5e-162, 1e-200, 5e-324] {
+        let a = circle([1.0, 0.0, 0.0], [0.0, 0.0, -1.0], 0.99);
+        let b = Circle::new(
+            a.center + Vec3::new(0.0, 0.98, 0.004),
+            UnitVector3::new_unchecked(Vec3::new(-tilt, 0.0, 1.0)),
+            1.0,
+        );
+        for minima in in_both_orders(&a, &b) {
+            for m in minima.as_slice() {
+                assert!((m.distance - 0.004).abs() < 1e-11, "{tilt:e}: {m:?}");
+                assert!(((m.point_a - m.point_b).norm() - m.distance).abs() < 1e-14, "{tilt:e}: {m:?}");
+                assert!((m.direction_b[0].hypot(m.direction_b[1]) - 1.0).abs() < 1e-14, "{tilt:e}: {m:?}");
+            }
+        }
     }
 }
