@@ -81,7 +81,7 @@ class Campaign:
 
     def run(self, folder: Path, kill_s: float | None) -> int | None:
         """Runs to the end, or is killed after a time: None."""
-        (folder / "study.toml").write_text(STUDY)
+        self.study(folder)
         run = subprocess.Popen(self.start, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, start_new_session=True)
         try:
             _, said = run.communicate(timeout=kill_s)
@@ -92,6 +92,10 @@ class Campaign:
         if run.returncode not in (0, 5):
             print(said.decode(errors="replace"), file=sys.stderr)
         return run.returncode
+
+    @staticmethod
+    def study(folder: Path) -> None:
+        (folder / "study.toml").write_text(STUDY)
 
     def differs(self, words: str) -> None:
         self.figures.differences += 1
@@ -112,15 +116,21 @@ class Campaign:
                 figures.lost += len(before.keys() - there.keys())
                 before = there
             figures.kept += len(before)
-            code = self.run(Path(folder), None)
-            figures.resumed += 1
-            if code != self.code:
-                self.differs(f"went on to exit code {code}, not {self.code}")
-            found = contents(out)
-            figures.lost += len(before.keys() - rows(out).keys())
-            for name in sorted(found.keys() | self.files.keys()):
-                if found.get(name) != self.files.get(name):
-                    self.differs(f"{name} differs" if name in found and name in self.files else f"{name} is there, or is not")
+            self.goes_on(Path(folder))
+
+    def goes_on(self, folder: Path) -> None:
+        """The same command ends as it should, with the files of the undisturbed run and no row less."""
+        out = folder / "out"
+        before = rows(out)
+        code = self.run(folder, None)
+        self.figures.resumed += 1
+        if code != self.code:
+            self.differs(f"went on to exit code {code}, not {self.code}")
+        found = contents(out)
+        self.figures.lost += len(before.keys() - rows(out).keys())
+        for name in sorted(found.keys() | self.files.keys()):
+            if found.get(name) != self.files.get(name):
+                self.differs(f"{name} differs" if name in found and name in self.files else f"{name} is there, or is not")
 
     def check(self, out: Path) -> dict[tuple[str, ...], tuple[str, ...]]:
         """What must hold after a kill; gives the rows that are there."""
@@ -203,7 +213,7 @@ def rows(out: Path) -> dict[tuple[str, ...], tuple[str, ...]]:
                 if status != "interrupted":
                     found[below, repr(float(direction)), repr(float(l2))] = (status, l1 and repr(float(l1)))
         elif path.name == "limits.journal":
-            for row, _ in map(json.loads, path.read_text().split("\n")[:-1]):
+            for row in (json.loads(line)["row"] for line in path.read_text().split("\n")[:-1]):
                 l1 = "" if row["l1"] is None else repr(float(row["l1"]))
                 if row["status"] != "interrupted":
                     found[below, repr(float(row["direction_deg"])), repr(float(row["l2"]))] = (row["status"], l1)

@@ -15,14 +15,11 @@ use maille::{
     record::Status,
 };
 use maille_io::{
-    boundary::{BoundaryHead, boundary_csv, boundary_obj, boundary_ply, journal_head, journal_line, read_journal},
+    boundary::{BoundaryHead, SurfaceFolder, boundary_csv, boundary_obj, boundary_ply},
     plot::{boundary_svg, svg_to_png},
-    record::FolderLock,
 };
 use miette::{IntoDiagnostic, Result, WrapErr};
 use std::{
-    fs,
-    io::Write,
     path::{Path, PathBuf},
     process::ExitCode,
     sync::{Mutex, atomic::Ordering},
@@ -72,8 +69,6 @@ pub struct Args {
     quiet: bool,
 }
 
-const JOURNAL: &str = "boundary.jsonl";
-
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let input = Input::read(&args.design, args.minor_radius)?;
@@ -87,21 +82,24 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let usual = || PathBuf::from("maille-out").join(format!("{}-boundary", file_name(&input.design.name)));
     let out = args.run.out.clone().unwrap_or_else(usual);
     let head = BoundaryHead::new(&input.design, args.cell, &options);
-    let (_lock, known, journal) = open(&out, &head, args.run.overwrite)?;
+    if out.is_file() {
+        let problem = format!("{} is a file; the surface is a folder", out.display());
+        return Err(wrong(exit::USAGE, problem, "name another folder with --out"));
+    }
+    let (folder, known) = SurfaceFolder::open(&out, &head, args.run.overwrite)?;
     if !known.is_empty() && !args.quiet {
         eprintln!("{} rays are in {} already", known.len(), out.display());
     }
     let cancel = interrupt::flag()?;
     let begun = Instant::now();
     let progress = Progress::new(0, args.quiet);
-    let journal = Mutex::new((journal, None));
+    let kept = Mutex::new((folder, None));
     let found = |vertex: &BoundaryVertex| {
-        let mut journal = journal.lock().unwrap_or_else(|e| e.into_inner());
-        if journal.1.is_some() {
-            return; // The journal may end within a line: what came behind it could not be read.
-        }
-        if let Err(error) = journal.0.write_all(journal_line(vertex).as_bytes()) {
-            journal.1.get_or_insert(error);
+        let mut kept = kept.lock().unwrap_or_else(|e| e.into_inner());
+        if kept.1.is_none()
+            && let Err(error) = kept.0.keep(std::slice::from_ref(vertex))
+        {
+            kept.1 = Some(error);
             cancel.store(true, Ordering::Relaxed);
         }
         let [x, y, z] = vertex.direction;
@@ -111,8 +109,10 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let mut planned = |rays: usize| progress.more(rays as u64);
     let surface = pool.install(|| boundary(&model, &options, &known, &cancel, &mut planned, &found));
     progress.finish();
-    if let Some(error) = journal.into_inner().unwrap_or_else(|e| e.into_inner()).1 {
-        return Err(error).into_diagnostic().wrap_err_with(|| format!("cannot write {}", out.join(JOURNAL).display()));
+    // The folder is this run's alone until all is written.
+    let (_folder, failure) = kept.into_inner().unwrap_or_else(|e| e.into_inner());
+    if let Some(error) = failure {
+        return Err(error.into());
     }
     write(&out, &input, &surface, &options)?;
     if !args.quiet {
@@ -128,45 +128,6 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         () if !surface.vertices.iter().all(certified) => exit::INCOMPLETE,
         () => exit::DONE,
     }))
-}
-
-/// The folder for this run alone, the vertices of an earlier run, and the journal to go on with.
-fn open(out: &Path, head: &BoundaryHead, overwrite: bool) -> Result<(FolderLock, Vec<BoundaryVertex>, fs::File)> {
-    let path = out.join(JOURNAL);
-    if out.is_file() {
-        let problem = format!("{} is a file; the surface is a folder", out.display());
-        return Err(wrong(exit::USAGE, problem, "name another folder with --out"));
-    }
-    let context = || format!("cannot write {}", path.display());
-    let lock = FolderLock::take(out)?;
-    output::remove_leftovers(out)?;
-    let mut known = Vec::new();
-    match fs::read_to_string(&path) {
-        Ok(text) if !overwrite => match read_journal(&text) {
-            Some((old, vertices)) if old == *head => known = vertices,
-            Some(_) => {
-                let problem = format!("{} holds a surface of other inputs", out.display());
-                return Err(wrong(
-                    exit::RECORD,
-                    problem,
-                    "name another folder with --out, or replace it with --overwrite",
-                ));
-            }
-            None => {
-                let problem = format!("{} is damaged", path.display());
-                return Err(wrong(exit::RECORD, problem, "compute it again with --overwrite"));
-            }
-        },
-        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-            return Err(error).into_diagnostic().wrap_err_with(|| format!("cannot read {}", path.display()));
-        }
-        _ => {}
-    }
-    // Written anew, so that a line that was cut off does not stay.
-    let lines: String = known.iter().map(journal_line).collect();
-    output::write(&path, (journal_head(head) + &lines).as_bytes())?;
-    let journal = fs::OpenOptions::new().append(true).open(&path).into_diagnostic().wrap_err_with(context)?;
-    Ok((lock, known, journal))
 }
 
 fn write(out: &Path, input: &Input, surface: &Boundary, options: &BoundaryOptions) -> Result<()> {

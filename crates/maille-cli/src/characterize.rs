@@ -299,7 +299,7 @@ fn once(args: &Args) -> Result<ExitCode> {
     let open = map::open(&map, &input)?;
     if !args.quiet {
         if open.is_unbounded() {
-            eprintln!("warning: no chain of links joins the cells of this design; every limit is unbounded");
+            eprintln!("warning: no chain of links joins the cells of this design; no pull has a bound");
         }
         if open.left() < open.total() {
             eprintln!("{} of {} limits are in {} already", open.total() - open.left(), open.total(), out.display());

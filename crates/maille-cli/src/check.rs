@@ -98,7 +98,7 @@ fn words(found: &Value) -> String {
     let unit = found["unit"].as_str().map_or(String::new(), |u| format!(" {u}"));
     let free = match found["bound"].as_bool() {
         Some(true) => "",
-        _ => "; no chain of links joins the cells: every limit is unbounded",
+        _ => "; no chain of links joins the cells: no pull has a bound",
     };
     format!("right; {} rings, {} links a cell{gap}{unit}{free}", found["rings"], found["links"])
 }

@@ -299,7 +299,7 @@ impl Inspection {
             line(format!("weight {weight:.3} kg a square metre"));
         }
         if self.binding_vectors.is_empty() {
-            line("warning: no chain of links joins the cells; every limit is unbounded".into());
+            line("warning: no chain of links joins the cells; no pull has a bound".into());
             return out;
         }
         let list: Vec<String> = self.binding_vectors.iter().map(|[p, q]| format!("({p}, {q})")).collect();
@@ -313,7 +313,7 @@ impl Inspection {
             line(match (l1, kind) {
                 (Some(l1), Some(kind)) => format!("  {direction_deg:>4}°  {l1:>12.9}  {kind}"),
                 (None, Some(_)) => format!("  {direction_deg:>4}°  l2 = 0 is unreachable"),
-                (_, None) => format!("  {direction_deg:>4}°  unbounded"),
+                (_, None) => format!("  {direction_deg:>4}°  none: no chain of links"),
             });
         }
         out

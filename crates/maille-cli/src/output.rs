@@ -1,7 +1,7 @@
 //! Where results go: a file, whole or not at all, or standard output.
 
-use maille_io::files::{self, is_temporary};
-use miette::{IntoDiagnostic, Result, WrapErr};
+use maille_io::files;
+use miette::{IntoDiagnostic, Report, Result, WrapErr};
 use std::{
     fmt, fs,
     io::{self, BufWriter, Write},
@@ -15,14 +15,8 @@ pub fn is_standard(path: &Path) -> bool {
 
 /// Removes what a killed run left half written in a folder, if there is one.
 pub fn remove_leftovers(folder: &Path) -> Result<()> {
-    let Ok(entries) = fs::read_dir(folder) else { return Ok(()) };
-    for entry in entries.flatten() {
-        if is_temporary(&entry.file_name().to_string_lossy()) {
-            let path = entry.path();
-            fs::remove_file(&path).into_diagnostic().wrap_err_with(|| format!("cannot remove {}", path.display()))?;
-        }
-    }
-    Ok(())
+    let removed = files::remove_leftovers(folder);
+    removed.map_err(|(path, e)| Report::msg(e).wrap_err(format!("cannot remove {}", path.display())))
 }
 
 /// Writes under a temporary name in the same folder and renames: whatever happens, a file of this name is whole.

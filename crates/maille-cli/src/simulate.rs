@@ -19,7 +19,7 @@ use maille::{
 use maille_geometry::Vec3;
 use maille_io::{
     mesh::Tile,
-    record::{LoadedPlace, PulledPlace, SIMULATION, SheetPlan, SimulationRecord, write_frames, write_simulation},
+    record::{LoadedPlace, PulledPlace, SheetPlan, SimulationRecord, save_simulation},
 };
 use miette::{Report, Result};
 use serde_json::json;
@@ -206,9 +206,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     // A run that failed at once has reached nothing: its last state is shown.
     let last = || FrameRecord { run: 0, share: end.share, energy: end.energy, poses: pose_records(&model, &end.state) };
     let rests = if end.path.is_empty() { vec![last()] } else { end.path.clone() };
-    write(&out, &record, &rests)?;
+    save_simulation(&out, record.clone(), &rests)?;
     if let Some(folder) = &args.frames {
-        write(folder, &record, &all)?;
+        save_simulation(folder, record.clone(), &all)?;
     }
     let wall_s = begun.elapsed().as_secs_f64();
     if args.json {
@@ -253,12 +253,6 @@ fn plan(args: &Args) -> Result<SheetPlan> {
         ));
     }
     Ok(plan)
-}
-
-/// Frames first: a folder with simulation.json is whole.
-fn write(folder: &Path, record: &SimulationRecord, frames: &[FrameRecord]) -> Result<()> {
-    output::write(&folder.join(SIMULATION[1]), write_frames(frames).as_bytes())?;
-    output::write(&folder.join(SIMULATION[0]), write_simulation(record).as_bytes())
 }
 
 fn summary(args: &Args, model: &Model, end: &Simulation, out: &Path, frames: usize, wall_s: f64) {

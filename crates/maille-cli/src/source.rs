@@ -18,7 +18,7 @@ use maille::{
 };
 use maille_io::{
     mesh,
-    record::{Record, SIMULATION, read_frames, read_simulation},
+    record::{Record, SIMULATION, open_simulation},
 };
 use miette::{Report, Result};
 use std::path::{Path, PathBuf};
@@ -132,15 +132,7 @@ impl SourceArgs {
     }
 
     fn of_simulation(&self, at: Option<At>, folder: &Path) -> Result<Source> {
-        let read = |name: &str| {
-            let path = folder.join(name);
-            let text = std::fs::read_to_string(&path).map_err(|e| {
-                wrong(exit::RECORD, format!("cannot read {}: {e}", path.display()), "simulate it again")
-            })?;
-            Ok::<_, Report>((path.display().to_string(), text))
-        };
-        let ((file, text), (frames_file, frames)) = (read(SIMULATION[0])?, read(SIMULATION[1])?);
-        let record = read_simulation(&file, &text)?;
+        let (record, frames) = open_simulation(folder)?;
         let unusable = |problem: String| {
             let help = "its files were edited or do not belong together: simulate it again";
             wrong(exit::RECORD, format!("the simulation {} cannot be used: {problem}", folder.display()), help)
@@ -153,7 +145,7 @@ impl SourceArgs {
             mesh::state_of(&model, &StateRecord { poses: frame.poses, a1, a2, ..StateRecord::default() })
         };
         let states: Vec<State> =
-            read_frames(&frames_file, &frames)?.into_iter().map(state).collect::<Result<_, _>>()?;
+            frames.into_iter().map(state).collect::<Result<_, _>>()?;
         let last = states.len().checked_sub(1).ok_or_else(|| unusable("it has no frames".into()))?;
         let shown = match (at.unwrap_or_default().frame, at) {
             (Some(frame), _) if frame <= last => frame,

@@ -112,12 +112,14 @@ fn whatever_is_killed_goes_on_to_the_same_files() {
 #[test]
 fn two_runs_do_not_share_a_folder() {
     let reproduce = "reproduce --quick --designs 1.1 --out out --quiet";
-    for line in COMMANDS.into_iter().chain([reproduce]) {
+    let simulate = "simulate 1.1 --tile 1x1 --gravity 0,0,-1 --floor -3 --out out --quiet";
+    for line in COMMANDS.into_iter().chain([reproduce, simulate]) {
         let folder = tempfile::tempdir().unwrap();
         fs::create_dir(folder.path().join("out")).unwrap();
         let lock = fs::File::create(folder.path().join("out/.maille.lock")).unwrap();
         lock.try_lock().unwrap();
-        for overwrite in ["", " --overwrite"].into_iter().take(if line == reproduce { 1 } else { 2 }) {
+        let once = line == reproduce || line == simulate;
+        for overwrite in ["", " --overwrite"].into_iter().take(if once { 1 } else { 2 }) {
             let (code, text) = said(&maille(folder.path(), &format!("{line}{overwrite}")));
             assert_eq!(code, 4, "{line}: {text}");
             assert!(
@@ -233,6 +235,77 @@ fn a_record_that_was_cut_or_edited_is_refused_with_file_and_remedy() {
         }
         fs::write(&path, &text).unwrap();
         assert_eq!(said(&maille(folder, "verify out --quiet")).0, 0);
+    }
+}
+
+/// Changes each digit of a text that stands at one of some places, one at a time.
+fn digits_changed(text: &str, places: usize) -> impl Iterator<Item = String> {
+    let digits: Vec<usize> = text.bytes().enumerate().filter(|(_, b)| b.is_ascii_digit()).map(|(at, _)| at).collect();
+    let chosen: Vec<usize> = (0..places).map(|k| digits[k * digits.len() / places]).collect();
+    chosen.into_iter().map(move |at| {
+        let other = if text.as_bytes()[at] == b'7' { "8" } else { "7" };
+        [&text[..at], other, &text[at + 1..]].concat()
+    })
+}
+
+#[test]
+fn a_surface_that_was_edited_is_refused_and_one_that_was_cut_goes_on() {
+    let line = COMMANDS[2];
+    let whole = whole(line);
+    let folder = tempfile::tempdir().unwrap();
+    assert!([0, 5].contains(&said(&maille(folder.path(), line)).0));
+    let path = folder.path().join("out/boundary.jsonl");
+    let text = fs::read_to_string(&path).unwrap();
+    for edited in digits_changed(&text, 12) {
+        fs::write(&path, edited).unwrap();
+        let (code, text) = said(&maille(folder.path(), line));
+        assert_eq!(code, 4, "{text}");
+        assert!(text.contains("boundary.jsonl:") && text.contains("checksum") && text.contains("--overwrite"), "{text}");
+    }
+    for end in [0, 10, text.len() / 3, text.len() - 2] {
+        fs::write(&path, &text[..end]).unwrap();
+        let (code, text) = said(&maille(folder.path(), line));
+        if end <= 10 {
+            // Not even the first line: nothing says whose it is.
+            assert_eq!((code, text.contains("no head of a surface")), (4, true), "{text}");
+        } else {
+            assert!([0, 5].contains(&code), "{text}");
+            same(&all(folder.path()), &whole, line);
+        }
+    }
+}
+
+#[test]
+fn a_simulation_that_was_cut_or_edited_is_refused_and_none_is_a_mixture() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let simulate = "simulate 1.1 --tile 2x2 --fix left --pull right=3,0,0 --steps 4 --out out --quiet";
+    assert_eq!(said(&maille(folder, simulate)).0, 0);
+    let read = "export --from out --out sheet.obj";
+    assert_eq!(said(&maille(folder, read)).0, 0);
+    for name in ["simulation.json", "frames.jsonl"] {
+        let path = folder.join("out").join(name);
+        let text = fs::read_to_string(&path).unwrap();
+        let first = text[..text.len() - 1].rfind('\n').map_or(0, |at| at + 1);
+        let cut = [&text[..text.len() - 2], &text[..text.len() / 2], &text[..first]].map(str::to_owned);
+        for (k, wrong) in digits_changed(&text, 12).chain(cut).enumerate() {
+            fs::write(&path, &wrong).unwrap();
+            let (code, text) = said(&maille(folder, read));
+            assert_eq!(code, 4, "{name}, {k}: {text}");
+            assert!(text.contains(name), "{name}, {k}: {text}");
+        }
+        fs::write(&path, &text).unwrap();
+        assert_eq!(said(&maille(folder, read)).0, 0);
+    }
+    // Another simulation into the folder, killed at any time: the old one, none, or the new one.
+    let other = simulate.replace("--steps 4", "--steps 3");
+    for wait in [5, 20, 40, 80] {
+        let mut run = command(folder, &other).spawn().unwrap();
+        sleep(Duration::from_millis(wait));
+        run.kill().unwrap();
+        run.wait().unwrap();
+        let (code, text) = said(&maille(folder, read));
+        assert!([0, 4].contains(&code) && !text.contains("was edited"), "{text}");
     }
 }
 

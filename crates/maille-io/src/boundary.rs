@@ -2,56 +2,15 @@
 //!
 //! Meshes have E_xx, E_yy and E_xy as coordinates. The colours of the PLY file tell the status.
 
-use crate::record::input_hash;
+mod journal;
+
+pub use self::journal::{BoundaryHead, JOURNAL, SurfaceFolder};
+
 use maille::{
-    design::Design,
-    lattice::Cell,
-    limit::boundary::{Boundary, BoundaryOptions, BoundaryVertex},
+    limit::boundary::{Boundary, BoundaryVertex},
     record::Status,
 };
-use serde::{Deserialize, Serialize};
-use serde_json::json;
 use std::fmt::Write;
-
-/// First line of a journal.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct BoundaryHead {
-    /// Version of the program.
-    pub program_version: String,
-    /// Hash of design and parameters.
-    pub input_hash: String,
-    /// Name of the design.
-    pub design: String,
-}
-
-impl BoundaryHead {
-    /// That of a surface of `design`. Tolerance and number of vertices say which rays there are, not where one ends.
-    pub fn new(design: &Design, cell: Cell, options: &BoundaryOptions) -> Self {
-        let parameters = json!({ "starts": options.starts, "seed": options.seed, "cell": cell.to_string() });
-        BoundaryHead {
-            program_version: env!("CARGO_PKG_VERSION").into(),
-            input_hash: input_hash(design, &parameters),
-            design: design.name.clone(),
-        }
-    }
-}
-
-/// The first line.
-pub fn journal_head(head: &BoundaryHead) -> String {
-    serde_json::to_string(head).unwrap_or_default() + "\n"
-}
-
-/// The line of a vertex.
-pub fn journal_line(vertex: &BoundaryVertex) -> String {
-    serde_json::to_string(vertex).unwrap_or_default() + "\n"
-}
-
-/// What a journal holds; a line that was cut off is left out. `None` where the first line is no head.
-pub fn read_journal(text: &str) -> Option<(BoundaryHead, Vec<BoundaryVertex>)> {
-    let mut lines = text.split_inclusive('\n').filter_map(|line| line.strip_suffix('\n'));
-    let head = serde_json::from_str(lines.next()?).ok()?;
-    Some((head, lines.map_while(|line| serde_json::from_str(line).ok()).collect()))
-}
 
 /// A vertex's point; none where nothing was found.
 pub(crate) fn point(vertex: &BoundaryVertex) -> Option<[f64; 3]> {

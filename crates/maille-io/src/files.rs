@@ -1,16 +1,25 @@
 //! Files that are whole or not there: written under a temporary name in the same folder, then renamed.
 
 use std::{
-    fs::File,
+    fs::{self, File},
     io::{self, BufWriter, Write},
-    path::Path,
+    path::{Path, PathBuf},
 };
 
 const TEMPORARY: (&str, &str) = (".maille-", ".tmp");
 
 /// Whether a file of this name is what a killed run left half written.
-pub fn is_temporary(name: &str) -> bool {
+pub(crate) fn is_temporary(name: &str) -> bool {
     name.starts_with(TEMPORARY.0) && name.ends_with(TEMPORARY.1)
+}
+
+/// Removes what a killed run left half written in a folder, if there is one; the path that could not be removed.
+pub fn remove_leftovers(folder: &Path) -> Result<(), (PathBuf, io::Error)> {
+    let Ok(entries) = fs::read_dir(folder) else { return Ok(()) };
+    for entry in entries.flatten().filter(|entry| is_temporary(&entry.file_name().to_string_lossy())) {
+        fs::remove_file(entry.path()).map_err(|e| (entry.path(), e))?;
+    }
+    Ok(())
 }
 
 /// Writes a file: whatever happens, one of this name is whole. Its folder must be there.

@@ -15,6 +15,7 @@
 mod columns;
 mod error;
 mod folder;
+pub(crate) mod journal;
 mod limits;
 mod lock;
 mod map;
@@ -33,7 +34,7 @@ pub use map::{Chain, Map, MapError, OpenMap};
 pub use reference::{Reference, ReferenceCell};
 pub use run::{Counters, RunRecord, input_hash, read_run, write_run};
 pub use simulation::{
-    LoadedPlace, PulledPlace, SIMULATION, SheetPlan, SimulationOutcome, SimulationRecord, read_frames, read_simulation,
-    write_frames, write_simulation,
+    LoadedPlace, PulledPlace, SIMULATION, SheetPlan, SimulationOutcome, SimulationRecord, open_simulation, read_frames,
+    read_simulation, save_simulation, write_frames, write_simulation,
 };
 pub use states::{read_states, write_states};

@@ -142,7 +142,7 @@ pub fn record(error: &RecordError) -> PyErr {
                 to.set_item("file", file)?;
                 to.set_item("line", line)
             }
-            RecordError::Edited { file, found, expected } => {
+            RecordError::Edited { file, found, expected, .. } => {
                 to.set_item("file", file)?;
                 to.set_item("found", found)?;
                 to.set_item("expected", expected)

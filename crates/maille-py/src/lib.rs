@@ -30,11 +30,11 @@ mod _native {
     #[pymodule_export]
     use crate::question::{extreme, limit};
     #[pymodule_export]
-    use crate::simulate::{read_simulation, simulate};
+    use crate::simulate::{open_simulation, save_simulation, simulate};
     #[pymodule_export]
     use crate::study::{folder_name, study};
     #[pymodule_export]
-    use crate::surface::{boundary, boundary_by, boundary_head, solve_rays};
+    use crate::surface::{SurfaceFolder, boundary, boundary_by, solve_rays};
     #[pymodule_export]
     use crate::view::Sheet;
 

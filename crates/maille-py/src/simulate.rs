@@ -12,9 +12,10 @@ use maille::{
 };
 use maille_io::{
     mesh::Tile,
-    record::{SheetPlan, SimulationRecord, write_frames, write_simulation},
+    record::{SIMULATION, SheetPlan, SimulationRecord, read_frames, read_simulation, write_frames, write_simulation},
 };
 use pyo3::prelude::*;
+use std::path::PathBuf;
 
 /// What `maille simulate` writes: `simulation.json` and `frames.jsonl`. `plan` is a document with the fields of
 /// [`SheetPlan`].
@@ -52,14 +53,21 @@ pub fn simulate(
     let end = end.map_err(|e| error::invalid(&e))?;
     let last = || FrameRecord { run: 0, share: end.share, energy: end.energy, poses: pose_records(&model, &end.state) };
     let frames = if end.path.is_empty() { vec![last()] } else { end.path.clone() };
-    let record = SimulationRecord::new(&design.design, Tile(tile), plan, &model, &end);
+    let record = SimulationRecord::new(&design.design, Tile(tile), plan, &model, &end).sealed(&frames);
     Ok((write_simulation(&record), write_frames(&frames)))
 }
 
-/// Reads `simulation.json` and `frames.jsonl`, and gives them as they would be written now.
+/// Reads the folder of `maille simulate`: `simulation.json` and `frames.jsonl` as they would be written now.
 #[pyfunction]
-pub fn read_simulation(names: [String; 2], texts: [String; 2]) -> PyResult<(String, String)> {
-    let record = maille_io::record::read_simulation(&names[0], &texts[0]).map_err(|e| error::record(&e))?;
-    let frames = maille_io::record::read_frames(&names[1], &texts[1]).map_err(|e| error::record(&e))?;
+pub fn open_simulation(folder: PathBuf) -> PyResult<(String, String)> {
+    let (record, frames) = maille_io::record::open_simulation(&folder).map_err(|e| error::record(&e))?;
     Ok((write_simulation(&record), write_frames(&frames)))
+}
+
+/// Writes that folder.
+#[pyfunction]
+pub fn save_simulation(folder: PathBuf, record: &str, frames: &str) -> PyResult<()> {
+    let record = read_simulation(SIMULATION[0], record).map_err(|e| error::record(&e))?;
+    let frames = read_frames(SIMULATION[1], frames).map_err(|e| error::record(&e))?;
+    maille_io::record::save_simulation(&folder, record, &frames).map_err(|e| error::record(&e))
 }

@@ -9,12 +9,16 @@ use maille::{
     lattice::Cell,
     limit::boundary::{BoundaryOptions, BoundaryVertex, Ray, RaySolver, boundary_by as boundary_by_rays},
 };
-use maille_io::boundary::{BoundaryHead, journal_head};
+use maille_io::boundary::BoundaryHead;
 use pyo3::prelude::*;
 use serde::de::DeserializeOwned;
 use std::{
     cell::RefCell,
-    sync::atomic::{AtomicBool, Ordering},
+    path::PathBuf,
+    sync::{
+        Mutex,
+        atomic::{AtomicBool, Ordering},
+    },
 };
 
 /// Vertices as JSON documents, corners of the triangles, the largest expected distance from them.
@@ -68,11 +72,43 @@ pub fn boundary(
     Ok(surface(found))
 }
 
-/// The first line of the journal of `maille boundary`.
-#[pyfunction]
-pub fn boundary_head(design: &Design, starts: usize, cell: &str, seed: u64) -> PyResult<String> {
-    let options = BoundaryOptions { starts: starts.max(1), seed, ..BoundaryOptions::default() };
-    Ok(journal_head(&BoundaryHead::new(&design.design, cell_of(cell)?, &options)))
+/// The folder of a surface with its journal, which no other run writes to until it is closed.
+#[pyclass(frozen, module = "maille._native")]
+pub struct SurfaceFolder {
+    open: Mutex<Option<maille_io::boundary::SurfaceFolder>>,
+}
+
+#[pymethods]
+impl SurfaceFolder {
+    /// Opens the folder of `maille boundary`; with the rays of an earlier run as JSON.
+    #[staticmethod]
+    fn open(
+        design: &Design,
+        starts: usize,
+        cell: &str,
+        seed: u64,
+        folder: PathBuf,
+        overwrite: bool,
+    ) -> PyResult<(Self, Vec<String>)> {
+        let options = BoundaryOptions { starts: starts.max(1), seed, ..BoundaryOptions::default() };
+        let head = BoundaryHead::new(&design.design, cell_of(cell)?, &options);
+        let opened = maille_io::boundary::SurfaceFolder::open(&folder, &head, overwrite);
+        let (open, known) = opened.map_err(|e| error::record(&e))?;
+        Ok((Self { open: Mutex::new(Some(open)) }, known.iter().map(json).collect()))
+    }
+
+    /// Keeps the ends of rays, each as JSON.
+    fn keep(&self, vertices: Vec<String>) -> PyResult<()> {
+        let vertices = read::<BoundaryVertex>(&vertices)?;
+        let mut open = self.open.lock().unwrap_or_else(|e| e.into_inner());
+        let open = open.as_mut().ok_or_else(|| error::other("the folder is closed"))?;
+        open.keep(&vertices).map_err(|e| error::record(&e))
+    }
+
+    /// Gives the folder back.
+    fn close(&self) {
+        self.open.lock().unwrap_or_else(|e| e.into_inner()).take();
+    }
 }
 
 /// Ends of rays, on this thread: JSON in and out.

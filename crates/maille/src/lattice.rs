@@ -178,6 +178,26 @@ pub fn shifts_within(offset: &Vec3, a1: &Vec3, a2: &Vec3, reach: f64) -> Vec<Shi
     out
 }
 
+/// The shortest basis of the plane lattice of a1 and a2 (Gauss's reduction), as a cell of one copy. A basis that is short
+/// already is kept as it is.
+pub fn short_basis(a1: Vec3, a2: Vec3) -> Cell {
+    let (mut rows, mut basis) = ([[1, 0], [0, 1]], [a1, a2]);
+    // Each round shortens a vector; a nearly flat cell may run out of digits or of integers first, which does no harm.
+    for _ in 0..100 {
+        let k = usize::from(basis[0].norm_squared() < basis[1].norm_squared());
+        let times = (basis[0].dot(&basis[1]) / basis[1 - k].norm_squared()).round();
+        // Ties are kept: a hexagonal basis is short with either sign.
+        let shorter = basis[k] - times * basis[1 - k];
+        if times == 0.0 || times.abs() > 1e6 || shorter.norm_squared() >= basis[k].norm_squared() * (1.0 - 1e-9) {
+            break;
+        }
+        let entry = |j: usize| i32::checked_sub(rows[k][j], i32::checked_mul(times as i32, rows[1 - k][j])?);
+        let Some(row) = entry(0).zip(entry(1)) else { break };
+        (basis[k], rows[k]) = (shorter, [row.0, row.1]);
+    }
+    Cell { rows }
+}
+
 /// The unit vector at `direction_deg`, exact at multiples of 90°.
 pub fn direction(direction_deg: f64) -> Vector2<f64> {
     let turn = direction_deg.rem_euclid(360.0);
@@ -211,6 +231,26 @@ mod tests {
             let cosets = cell.cosets();
             assert_eq!(cosets.len(), n, "{text}: {cosets:?}");
             assert_eq!(cosets[0], [0, 0]);
+        }
+    }
+
+    #[test]
+    fn short_basis_of_a_sheared_lattice() {
+        let (a1, a2) = (Vec3::new(2.5, 0.0, 0.0), Vec3::new(0.3, 2.6, 0.0));
+        assert_eq!(short_basis(a1, a2), Cell::PRIMITIVE);
+        for cell in ["1,0;57,1", "1,0;-3,1", "5,2;7,3", "21,-13;34,-21"] {
+            let cell: Cell = cell.parse().unwrap();
+            let [b1, b2] = cell.vectors(a1, a2);
+            let short = short_basis(b1, b2);
+            assert_eq!(short.copies(), 1);
+            let mut lengths = short.vectors(b1, b2).map(|b| b.norm());
+            lengths.sort_by(f64::total_cmp);
+            assert!((lengths[0] - a1.norm()).abs() < 1e-12 && (lengths[1] - a2.norm()).abs() < 1e-12, "{cell}: {short}");
+        }
+        // A hexagonal basis, and its other one.
+        let half = 0.75_f64.sqrt();
+        for x in [0.5, -0.5] {
+            assert_eq!(short_basis(Vec3::x(), Vec3::new(x, half, 0.0)), Cell::PRIMITIVE);
         }
     }
 

@@ -3,7 +3,7 @@
 use crate::{
     design::Design,
     error::InvalidInput,
-    lattice::{Cell, Shift},
+    lattice::{self, Cell, Shift},
     state::{Pose, State},
     topology::{self, Link},
 };
@@ -51,6 +51,9 @@ pub struct Model {
     pub periodic: bool,
     /// Length of one unit of the model, in the file's unit: the reference radius R.
     pub unit: f64,
+    /// Where the file has the model's origin, in the file's unit: its own origin, or the first element's centre where that
+    /// lies more than [`FAR`] from it, so that positions keep their digits.
+    pub origin: Vec3,
     /// Elements of the cell.
     pub elements: Vec<Element>,
     /// Rings of all elements.
@@ -63,8 +66,15 @@ pub struct Model {
     pub links: Vec<Link>,
     /// Largest major radius.
     pub largest_radius: f64,
+    /// A short basis of the design's lattice, as a cell of one copy.
+    pub short_basis: Cell,
 }
 
+/// A design whose first element lies further than this from the origin is moved there, in units of R.
+pub const FAR: f64 = 1e3;
+/// Elements further than this from the first one, and rings from their element's centre, are refused, in units of R: rounding
+/// hides their gaps.
+const FARTHEST: f64 = 1e4;
 /// Images of an element that are looked for, and cells that it may lie from the first one.
 const MOST_IMAGES: f64 = 1e5;
 
@@ -88,6 +98,8 @@ impl Model {
         let vector = |x: [f64; 3]| Vec3::from(x) / unit;
         let (p1, p2) = (vector(design.lattice.a1), vector(design.lattice.a2));
         let [a1, a2] = cell.vectors(p1, p2);
+        let first = Vec3::from(design.elements[0].center);
+        let origin = if first.norm() > FAR * unit { first } else { Vec3::zeros() };
         let reference_inverse = Matrix2::new(a1.x, a2.x, a1.y, a2.y).try_inverse().ok_or_else(|| {
             vec![InvalidInput::new("lattice.a2", "is parallel to a1", "give two independent translations")]
         })?;
@@ -113,18 +125,29 @@ impl Model {
                     format!("{}@{},{}", spec.name, coset[0], coset[1])
                 };
                 elements.push(Element { name, rings: first..rings.len(), reach, anchor });
-                poses.push(Pose { position: vector(spec.center) + shift, rotation: UnitQuaternion::identity() });
+                let position = (Vec3::from(spec.center) - origin) / unit + shift;
+                poses.push(Pose { position, rotation: UnitQuaternion::identity() });
             }
         }
         let largest_radius = rings.iter().map(|r| r.major_radius).fold(0.0, f64::max);
         let start = State { poses, a1, a2 };
         let name = design.name.clone();
         let links = Vec::new();
-        let mut model =
-            Model { name, cell, periodic, unit, elements, rings, start, reference_inverse, links, largest_radius };
-        if periodic {
-            model.check_extent(design)?;
-        }
+        let mut model = Model {
+            name,
+            cell,
+            periodic,
+            unit,
+            origin,
+            elements,
+            rings,
+            start,
+            reference_inverse,
+            links,
+            largest_radius,
+            short_basis: lattice::short_basis(p1, p2),
+        };
+        model.check_extent(design)?;
         let pairs = topology::close_pairs(&model, &model.start, 0.0);
         let overlaps = model.overlaps(&pairs, design);
         if !overlaps.is_empty() {
@@ -134,34 +157,31 @@ impl Model {
         Ok(model)
     }
 
-    /// Refuses elements that lie or reach over so many cells that their images cannot be listed.
+    /// Refuses elements that lie or reach so far that gaps there are lost to rounding, and those of a periodic sheet that do so
+    /// over so many cells that their images cannot be listed. Numbers that have overflowed are refused, too.
     fn check_extent(&self, design: &Design) -> Result<(), Vec<InvalidInput>> {
         let inverse = self.reference_inverse;
+        let beyond = |x: f64, most: f64| x.is_nan() || x > most;
         let mut out = Vec::new();
         for (k, spec) in design.elements.iter().enumerate() {
-            let away = (inverse * (self.start.poses[k].position - self.start.poses[0].position).xy()).amax();
+            let (name, reach) = (&spec.name, self.elements[k].reach);
+            let from_first = self.start.poses[k].position - self.start.poses[0].position;
             // As `lattice::shifts_within` lists them; rows of the inverse are the dual vectors.
-            let reach = 2.0 * self.elements[k].reach;
-            let images = (0..2).map(|row| 2.0 * reach * inverse.row(row).norm() + 1.0).product::<f64>();
-            // Numbers that have overflowed are refused, too.
-            if images.is_nan() || images > MOST_IMAGES {
-                out.push(InvalidInput::new(
-                    format!("elements[{k}].rings"),
-                    format!(
-                        "the rings of \"{}\" reach over some {images:.1e} cells; at most {MOST_IMAGES:.0e} are tried",
-                        spec.name
-                    ),
-                    "bring the rings nearer to the element's center, or take longer lattice vectors",
-                ));
-            } else if away.is_nan() || away > MOST_IMAGES {
-                out.push(InvalidInput::new(
-                    format!("elements[{k}].center"),
-                    format!(
-                        "\"{}\" lies {away:.1e} cells from the first element; at most {MOST_IMAGES:.0e} are tried",
-                        spec.name
-                    ),
-                    "move it by whole lattice vectors into the cell",
-                ));
+            let images = (0..2).map(|row| 4.0 * reach * inverse.row(row).norm() + 1.0).product::<f64>();
+            let cells = (inverse * from_first.xy()).amax();
+            let mut refuse = |field: &str, problem: String, remedy: &str| {
+                out.push(InvalidInput::new(format!("elements[{k}].{field}"), problem, remedy));
+            };
+            let nearer = "bring the rings nearer to the element's center, or take longer lattice vectors";
+            let inwards = "move it by whole lattice vectors into the cell";
+            if beyond(reach, FARTHEST) {
+                refuse("rings", format!("the rings of \"{name}\" reach {reach:.1e} R from its center; at most {FARTHEST:.0e} can be solved"), nearer);
+            } else if self.periodic && beyond(images, MOST_IMAGES) {
+                refuse("rings", format!("the rings of \"{name}\" reach over some {images:.1e} cells; at most {MOST_IMAGES:.0e} are tried"), nearer);
+            } else if beyond(from_first.norm(), FARTHEST) {
+                refuse("center", format!("\"{name}\" lies {:.1e} R from the first element; at most {FARTHEST:.0e} can be solved", from_first.norm()), inwards);
+            } else if self.periodic && beyond(cells, MOST_IMAGES) {
+                refuse("center", format!("\"{name}\" lies {cells:.1e} cells from the first element; at most {MOST_IMAGES:.0e} are tried"), inwards);
             }
         }
         if out.is_empty() { Ok(()) } else { Err(out) }

@@ -25,7 +25,7 @@ pub enum Status {
     L2Unreachable,
     /// The search failed; nothing is proved.
     L2NotReached,
-    /// No chain of links binds this direction.
+    /// The sheet comes apart: a state was found from which l1 can grow for ever.
     Unbounded,
     /// The minimisation did not reach its tolerance.
     NotConverged,

@@ -68,7 +68,7 @@ impl State {
         out.lattice.a1 = (self.a1 * model.unit).into();
         out.lattice.a2 = (self.a2 * model.unit).into();
         for (element, pose) in out.elements.iter_mut().zip(&self.poses) {
-            element.center = (pose.position * model.unit).into();
+            element.center = (pose.position * model.unit + model.origin).into();
             for ring in &mut element.rings {
                 ring.normal = (pose.rotation * Vec3::from(ring.normal)).into();
                 ring.offset = (pose.rotation * Vec3::from(ring.offset)).into();

@@ -29,7 +29,7 @@ pub enum RecordError {
         problem: String,
     },
     /// A file of the record is not the one that was written.
-    #[error("{file} was edited or cut off: its SHA-256 is {found}, run.json has {expected}")]
+    #[error("{file} was edited or cut off: its SHA-256 is {found}, {by} has {expected}")]
     #[diagnostic(help("restore the file, or compute the record again with --overwrite"))]
     Edited {
         /// Path of the file.
@@ -38,6 +38,8 @@ pub enum RecordError {
         found: String,
         /// What was written.
         expected: String,
+        /// Name of the file that says so.
+        by: &'static str,
     },
     /// The folder holds the record of another computation.
     #[error("{} holds a record of other inputs: {difference}", folder.display())]
@@ -82,12 +84,12 @@ pub enum RecordError {
 }
 
 impl RecordError {
-    pub(super) fn io(action: &'static str, path: impl Into<PathBuf>) -> impl FnOnce(std::io::Error) -> Self {
+    pub(crate) fn io(action: &'static str, path: impl Into<PathBuf>) -> impl FnOnce(std::io::Error) -> Self {
         let path = path.into();
         move |source| Self::Io { action, path, source }
     }
 
-    pub(super) fn malformed(file: &str, line: usize, problem: impl Into<String>) -> Self {
+    pub(crate) fn malformed(file: &str, line: usize, problem: impl Into<String>) -> Self {
         Self::Malformed { file: file.to_owned(), line: line as u64, problem: problem.into() }
     }
 }

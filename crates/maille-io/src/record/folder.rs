@@ -16,6 +16,7 @@
 //! One run at a time has a folder ([`FolderLock`]). Readers may come at any time.
 
 use super::error::RecordError;
+use super::journal::{self, Journal};
 use super::limits::{read_limits, write_limits};
 use super::lock::{FolderLock, LOCK};
 use super::run::{Counters, RunRecord, read_run, sha256, write_run};
@@ -23,6 +24,7 @@ use super::states::{read_states, write_states};
 use crate::files::{self, is_temporary};
 use maille::design::Design;
 use maille::record::{LimitRow, StateRecord, Status};
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
@@ -107,7 +109,7 @@ pub struct RecordFolder {
     /// Checksums of the files that are there.
     there: BTreeMap<String, String>,
     /// The journal, once something is in it.
-    journal: Option<fs::File>,
+    journal: Option<Journal>,
     /// No other run writes here meanwhile.
     _lock: FolderLock,
 }
@@ -139,7 +141,7 @@ impl RecordFolder {
             return Err(RecordError::NotARecord { folder: path.into(), found: some_names(&found) });
         }
         let lock = FolderLock::take(path)?;
-        remove_temporary(path)?;
+        files::remove_leftovers(path).map_err(|(path, e)| RecordError::io("remove", path)(e))?;
         let found = names(path)?;
         let mut folder = Self { path: path.to_owned(), run, there: BTreeMap::new(), journal: None, _lock: lock };
         if !found.is_empty() {
@@ -155,9 +157,11 @@ impl RecordFolder {
                 }
                 folder.run.files = record.run.files.clone();
                 let (mut rows, mut states) = record.finished();
-                if let Some(journal) = read_if_there(&path.join(JOURNAL))? {
-                    for (row, state) in journal_lines(&journal) {
-                        if !rows.iter().any(|known| (known.direction_deg, known.l2) == (row.direction_deg, row.l2)) {
+                let journal = path.join(JOURNAL);
+                if journal.exists() {
+                    for Limit { row, state } in journal::read::<Limit<LimitRow, StateRecord>>(&journal)? {
+                        let known = |r: &LimitRow| (r.direction_deg, r.l2) == (row.direction_deg, row.l2);
+                        if row.status != Status::Interrupted && !rows.iter().any(known) {
                             rows.push(row);
                             states.push(state);
                         }
@@ -186,16 +190,11 @@ impl RecordFolder {
 
     /// Keeps one limit until the next [`Self::write`].
     pub fn append(&mut self, row: &LimitRow, state: &StateRecord) -> Result<(), RecordError> {
-        let path = self.path.join(JOURNAL);
-        let line = serde_json::to_string(&(row, state)).expect("no map with odd keys") + "\n";
-        let mut append = || -> std::io::Result<()> {
-            let journal = match &mut self.journal {
-                Some(journal) => journal,
-                none => none.insert(fs::OpenOptions::new().create(true).append(true).open(&path)?),
-            };
-            journal.write_all(line.as_bytes())
+        let journal = match &mut self.journal {
+            Some(journal) => journal,
+            none => none.insert(Journal::open(&self.path.join(JOURNAL))?),
         };
-        append().map_err(RecordError::io("write", &path))
+        journal.write(&journal::line(&Limit { row, state }))
     }
 
     /// Replaces rows and states by all those of the run so far.
@@ -345,7 +344,7 @@ fn read_checked<T>(
     let found = sha256(text.as_bytes());
     match run.files.get(name).map(Vec::as_slice) {
         Some(sums @ [expected, ..]) if !sums.contains(&found) => {
-            Err(RecordError::Edited { file, found, expected: expected.clone() })
+            Err(RecordError::Edited { file, found, expected: expected.clone(), by: RUN })
         }
         _ => Ok(content),
     }
@@ -359,23 +358,19 @@ fn read_if_there(path: &Path) -> Result<Option<String>, RecordError> {
     }
 }
 
-/// The whole lines of a journal.
-fn journal_lines(text: &str) -> impl Iterator<Item = (LimitRow, StateRecord)> {
-    let whole = text.split_inclusive('\n').map_while(|line| serde_json::from_str(line.strip_suffix('\n')?).ok());
-    whole.filter(|(row, _): &(LimitRow, StateRecord)| row.status != Status::Interrupted)
+/// A line of the journal.
+#[derive(Serialize, Deserialize)]
+struct Limit<R, S> {
+    row: R,
+    state: S,
 }
 
 /// What is in a folder, but for what a run needs while it writes.
 fn names(folder: &Path) -> Result<Vec<String>, RecordError> {
-    let mut names = all_names(folder)?;
-    names.retain(|name| name != LOCK && !is_temporary(name));
-    Ok(names)
-}
-
-fn all_names(folder: &Path) -> Result<Vec<String>, RecordError> {
     let read = || -> std::io::Result<Vec<String>> {
         let names = fs::read_dir(folder)?.map(|e| Ok(e?.file_name().to_string_lossy().into_owned()));
         let mut names = names.collect::<std::io::Result<Vec<_>>>()?;
+        names.retain(|name| name != LOCK && !is_temporary(name));
         names.sort();
         Ok(names)
     };
@@ -388,15 +383,6 @@ fn some_names(names: &[String]) -> String {
         few if few.len() <= 3 => few.join(", "),
         many => format!("{}, … {} files", many[..3].join(", "), many.len()),
     }
-}
-
-/// Removes what a killed run left half written.
-fn remove_temporary(folder: &Path) -> Result<(), RecordError> {
-    for name in all_names(folder)?.iter().filter(|name| is_temporary(name)) {
-        let path = folder.join(name);
-        fs::remove_file(&path).map_err(RecordError::io("remove", path))?;
-    }
-    Ok(())
 }
 
 #[cfg(test)]

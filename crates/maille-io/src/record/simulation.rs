@@ -1,7 +1,13 @@
 //! `simulation.json` and `frames.jsonl`: what a simulated sheet leaves behind.
+//!
+//! Their folder is never a mixture: `simulation.json` is removed first and written last, and has the checksum of both.
 
-use super::error::{RecordError, complete};
-use crate::mesh::Tile;
+use super::{
+    error::{RecordError, complete},
+    lock::FolderLock,
+    run::sha256,
+};
+use crate::{files, mesh::Tile};
 use maille::{
     design::Design,
     error::InvalidInput,
@@ -12,6 +18,7 @@ use maille::{
 };
 use maille_geometry::Vec3;
 use serde::{Deserialize, Serialize};
+use std::{fs, io::Write, path::Path};
 
 /// Names of the two files of the record.
 pub const SIMULATION: [&str; 2] = ["simulation.json", "frames.jsonl"];
@@ -31,6 +38,9 @@ pub struct SimulationRecord {
     pub setup: SheetPlan,
     /// What came out.
     pub outcome: SimulationOutcome,
+    /// SHA-256, in hexadecimal, of this document without this field, on one line, with `frames.jsonl` behind it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sha256: Option<String>,
 }
 
 /// What is done to a finite sheet, as given: places by their names (see [`elements_at`]), lengths in the file's unit.
@@ -125,7 +135,7 @@ impl SheetPlan {
             ..EnergyOptions::default()
         };
         let gravity = self.gravity.map_or_else(Vec3::zeros, Vec3::from);
-        let floor = self.floor.map(|height| height / model.unit);
+        let floor = self.floor.map(|height| (height - model.origin.z) / model.unit);
         Ok(Setup { fix, pull, gravity, forces, floor, steps: self.steps, drag: self.drag, options })
     }
 }
@@ -149,8 +159,51 @@ impl SimulationRecord {
                 unbalanced: end.unbalanced,
                 note: end.note.clone(),
             },
+            sha256: None,
         }
     }
+
+    /// With the checksum of itself and its frames.
+    pub fn sealed(mut self, frames: &[FrameRecord]) -> Self {
+        self.sha256 = None;
+        let text = serde_json::to_string(&self).expect("no map with odd keys") + "\n" + &write_frames(frames);
+        self.sha256 = Some(sha256(text.as_bytes()));
+        self
+    }
+}
+
+/// Writes a simulation to its folder, which is created if it is not there.
+pub fn save_simulation(folder: &Path, record: SimulationRecord, frames: &[FrameRecord]) -> Result<(), RecordError> {
+    let _lock = FolderLock::take(folder)?;
+    files::remove_leftovers(folder).map_err(|(path, e)| RecordError::io("remove", path)(e))?;
+    let [first, second] = SIMULATION.map(|name| folder.join(name));
+    if first.exists() {
+        fs::remove_file(&first).map_err(RecordError::io("remove", &first))?;
+    }
+    let texts = [(second, write_frames(frames)), (first, write_simulation(&record.sealed(frames)))];
+    for (path, text) in texts {
+        files::replace(&path, |out| out.write_all(text.as_bytes())).map_err(RecordError::io("write", &path))?;
+    }
+    Ok(())
+}
+
+/// Reads a simulation from its folder.
+pub fn open_simulation(folder: &Path) -> Result<(SimulationRecord, Vec<FrameRecord>), RecordError> {
+    let [first, second] = SIMULATION.map(|name| folder.join(name));
+    let read = |path: &Path| {
+        let text = fs::read_to_string(path).map_err(RecordError::io("read", path))?;
+        Ok::<_, RecordError>((path.display().to_string(), text))
+    };
+    let ((file, text), (frames_file, lines)) = (read(&first)?, read(&second)?);
+    let record = read_simulation(&file, &text)?;
+    let frames = read_frames(&frames_file, &lines)?;
+    if let Some(expected) = record.sha256.clone() {
+        let found = record.clone().sealed(&frames).sha256.unwrap_or_default();
+        if found != expected {
+            return Err(RecordError::Edited { file: format!("{file} or {frames_file}"), found, expected, by: SIMULATION[0] });
+        }
+    }
+    Ok((record, frames))
 }
 
 /// What came out of a simulation. Lengths in the file's unit.

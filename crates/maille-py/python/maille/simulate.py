@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native
-from ._files import write_whole
 from .design import Design, DesignLike, chosen
 from .errors import ArgumentError, NotARecordError, ShapeError
 from .record import Progress, _Bar, _sequence, _whole
@@ -25,7 +24,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Simulation", "read_simulation", "simulate"]
 
-_FILES = ("simulation.json", "frames.jsonl")
+_FILE = "simulation.json"
 
 
 @dataclass(frozen=True)
@@ -117,22 +116,16 @@ class Simulation(Columns):
 
     def save(self, folder: str | os.PathLike[str]) -> None:
         """Writes the folder that `maille simulate` writes; `maille render --from FOLDER` draws it."""
-        out = Path(folder)
-        out.mkdir(parents=True, exist_ok=True)
-        # Frames first: a folder with simulation.json is whole.
         lines = "".join(json.dumps(frame, ensure_ascii=False) + "\n" for frame in self.frames)
-        write_whole(out / _FILES[1], lines.encode())
-        write_whole(out / _FILES[0], (json.dumps(self.document, indent=2, ensure_ascii=False) + "\n").encode())
+        _native.save_simulation(Path(folder), json.dumps(self.document, ensure_ascii=False) + "\n", lines)
 
 
 def read_simulation(folder: str | os.PathLike[str]) -> Simulation:
     """Reads what `maille simulate` or `Simulation.save` has written."""
-    files = [Path(folder) / name for name in _FILES]
-    if not files[0].is_file():
+    if not (Path(folder) / _FILE).is_file():
         found = ", ".join(sorted(p.name for p in Path(folder).glob("*"))[:3]) or "nothing"
         raise NotARecordError(f"{folder} holds no simulation", Path(folder), found)
-    text, lines = (file.read_text(encoding="utf-8") for file in files)
-    return Simulation._of(*_native.read_simulation((str(files[0]), str(files[1])), (text, lines)))
+    return Simulation._of(*_native.open_simulation(Path(folder)))
 
 
 def simulate(

@@ -73,7 +73,7 @@ pub enum Bound {
         /// The chain that is too short, where one is.
         chain: Option<BindingChain>,
     },
-    /// No chain of links joins lattice vectors along the direction: l1 has no limit.
+    /// No chain of links joins lattice vectors along the direction: there is no bound, and only contacts without a link can hold it.
     Unbounded,
 }
 

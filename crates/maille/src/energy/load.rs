@@ -94,9 +94,9 @@ impl Loads {
                         "floor",
                         format!(
                             "{} is above the lowest point of {}, {:.6}",
-                            floor.height * model.unit,
+                            floor.height * model.unit + model.origin.z,
                             model.ring_label(ring, [0, 0]),
-                            (lowest - r.minor_radius) * model.unit,
+                            (lowest - r.minor_radius) * model.unit + model.origin.z,
                         ),
                         "give the height of a plane below the sheet",
                     ));

@@ -16,7 +16,7 @@ use crate::{
         newton::{Minimization, NewtonOptions, Outcome, minimize},
     },
     state::State,
-    topology::{self, side::SideSigns},
+    topology::{self, apart::comes_apart, side::SideSigns},
 };
 use nalgebra::Matrix2;
 use serde::{Deserialize, Serialize};
@@ -230,17 +230,11 @@ impl<'a> EnergyMethod<'a> {
     pub fn limit(&self, direction_deg: f64, l2: f64, cancel: &AtomicBool) -> LimitOutcome {
         let mut search = Search { method: self, direction_deg, l2, cancel, iterations: 0, runs: 0 };
         let along = direction(direction_deg);
-        if !topology::binds(self.model, [along.x, along.y]) {
-            return search.end(
-                Status::Unbounded,
-                None,
-                Some("no chain of links joins lattice vectors along this direction".into()),
-            );
-        }
+        let linked = topology::binds(self.model, [along.x, along.y]);
         if let Some(note) = &self.start_note {
             return search.end(Status::InfeasibleStart, None, Some(note.clone()));
         }
-        search.climb()
+        search.climb(linked)
     }
 }
 
@@ -277,8 +271,8 @@ impl Search<'_> {
     }
 
     /// Steps up from 0 (or down, where 0 itself is missed), then bisects between the last target that was reached and
-    /// the first that was missed.
-    fn climb(&mut self) -> LimitOutcome {
+    /// the first that was missed. A pull that no chain of links binds is over where the sheet has come apart.
+    fn climb(&mut self, linked: bool) -> LimitOutcome {
         let options = &self.method.options;
         let first = self.trial(0.0);
         let upward = self.reached(&first);
@@ -299,6 +293,10 @@ impl Search<'_> {
             }
             let trial = self.trial(l1);
             if self.reached(&trial) {
+                if !linked && comes_apart(self.method.model, &trial.state, self.direction_deg) {
+                    let note = format!("no chain of links; at l1 = {l1} nothing is left that could hold it");
+                    return self.end(Status::Unbounded, Some(trial), Some(note));
+                }
                 low = Some(trial);
             } else {
                 high = Some(trial);

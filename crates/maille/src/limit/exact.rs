@@ -219,9 +219,7 @@ impl<'a> ExactMethod<'a> {
             (outcome, None)
         };
         let most = match bound {
-            Bound::Unbounded => {
-                return ended(Status::Unbounded, "no chain of links joins lattice vectors along this direction");
-            }
+            Bound::Unbounded => return self.unlinked(direction_deg, l2, neighbour, cancel),
             Bound::L2Unreachable { .. } => return ended(Status::L2Unreachable, ""),
             Bound::Finite { l1, .. } => l1,
         };
@@ -359,6 +357,19 @@ impl<'a> ExactMethod<'a> {
         if self.options.compression { family.least() } else { family }
     }
 
+    pub(super) fn searching<'s>(
+        &'s self,
+        cell: usize,
+        direction_deg: f64,
+        l2: f64,
+        across: Across,
+        cancel: &'s AtomicBool,
+    ) -> Search<'s> {
+        let model = &self.models[cell];
+        let family = self.family(model, direction_deg, across);
+        Search { model, seed: self.options.seed, family, l2, cancel, iterations: 0, runs: 0 }
+    }
+
     /// Solves `starts` in one cell until the bound is attained; keeps the best.
     pub(super) fn search(
         &self,
@@ -370,8 +381,7 @@ impl<'a> ExactMethod<'a> {
         cancel: &AtomicBool,
     ) -> Tally {
         let model = &self.models[cell];
-        let family = self.family(model, direction_deg, across);
-        let mut search = Search { model, seed: self.options.seed, family, l2, cancel, iterations: 0, runs: 0 };
+        let mut search = self.searching(cell, direction_deg, l2, across, cancel);
         let mut tally = Tally::default();
         for start in starts {
             if cancel.load(Ordering::Relaxed) {
@@ -498,35 +508,23 @@ impl Tally {
     }
 }
 
-struct Search<'a> {
-    model: &'a Model,
+/// The solves of one limit in one cell.
+pub(super) struct Search<'a> {
+    pub(super) model: &'a Model,
     seed: u64,
-    family: Family,
-    l2: f64,
-    cancel: &'a AtomicBool,
-    iterations: u64,
-    runs: u64,
+    pub(super) family: Family,
+    pub(super) l2: f64,
+    pub(super) cancel: &'a AtomicBool,
+    pub(super) iterations: u64,
+    pub(super) runs: u64,
 }
 
 impl Search<'_> {
     /// From a start: first l2 is brought to its value with l1 free, then l1 is maximised. `None` where l2 is not reached.
     fn solve(&mut self, from: Strained) -> Option<Solve> {
         self.runs += 1;
+        let at = self.at_lateral(from)?;
         let model = self.model;
-        let mut at = from;
-        if at.l2 != self.l2 && !self.family.across.lateral_free {
-            let pull = self.family.approach(&at, self.l2);
-            let program = SheetProgram::new(model, &pull);
-            let enough = (self.l2 - at.l2).abs() - 1e-9;
-            let start = program.posed(at.state, vec![at.l1, 0.0]);
-            let options = SqpOptions { enough, ..SqpOptions::default() };
-            let end = maximize(&program, start, Vec::new(), &options, self.cancel);
-            self.iterations += end.iterations as u64;
-            if end.point.p[1] < enough - 1e-9 || end.violation > 1e-6 {
-                return None;
-            }
-            at = Strained { l1: end.point.p[0], state: end.point.state, l2: self.l2, shear: at.shear };
-        }
         let pull = self.family.pull(self.l2);
         let mut program = SheetProgram::new(model, &pull);
         let p = self.family.parameters(&at);
@@ -536,5 +534,23 @@ impl Search<'_> {
         let found = climb(model, &mut program, x, kicks, &mut rng, self.cancel);
         self.iterations += found.iterations;
         found.best
+    }
+
+    /// A state of the wanted l2, if it is reached from this one with l1 free.
+    pub(super) fn at_lateral(&mut self, at: Strained) -> Option<Strained> {
+        if at.l2 == self.l2 || self.family.across.lateral_free {
+            return Some(at);
+        }
+        let pull = self.family.approach(&at, self.l2);
+        let program = SheetProgram::new(self.model, &pull);
+        let enough = (self.l2 - at.l2).abs() - 1e-9;
+        let start = program.posed(at.state, vec![at.l1, 0.0]);
+        let options = SqpOptions { enough, ..SqpOptions::default() };
+        let end = maximize(&program, start, Vec::new(), &options, self.cancel);
+        self.iterations += end.iterations as u64;
+        if end.point.p[1] < enough - 1e-9 || end.violation > 1e-6 {
+            return None;
+        }
+        Some(Strained { l1: end.point.p[0], state: end.point.state, l2: self.l2, shear: at.shear })
     }
 }

@@ -9,6 +9,7 @@ mod least;
 mod pull;
 pub mod sphere;
 pub mod strain;
+mod unlinked;
 
 use crate::{
     bound::{BindingChain, BoundKind},

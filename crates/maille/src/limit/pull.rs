@@ -90,7 +90,7 @@ impl Family {
     }
 
     /// l2 and γ at the parameters `p`.
-    fn free_of(&self, p: &[f64], l2: f64) -> [f64; 2] {
+    pub(super) fn free_of(&self, p: &[f64], l2: f64) -> [f64; 2] {
         let mut free = p[1..].iter().copied();
         let l2 = if self.across.lateral_free { free.next().unwrap_or(l2) } else { l2 };
         [l2, free.next().unwrap_or(0.0)]

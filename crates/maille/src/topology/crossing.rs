@@ -35,7 +35,8 @@ impl Motion {
 /// the step.
 pub struct StepBound {
     pairs: Rc<[NearPair]>,
-    reach_growth: f64,
+    /// The lattice vectors.
+    lattice: [Vec3; 2],
     /// Twice the farthest of an element from the first one; of where the lattice carries it.
     spread: f64,
     spread_carried: f64,
@@ -54,9 +55,6 @@ impl StepBound {
 
     /// At `state`, whose near pairs up to [`MARGIN`] largest radii or more are `pairs`.
     pub fn of(model: &Model, state: &State, pairs: Rc<[NearPair]>) -> Self {
-        // |Δa1 s1 + Δa2 s2| ≤ (|Δa1| |b1| + |Δa2| |b2|) |s1 a1 + s2 a2| with the dual vectors b of the lattice.
-        let (g11, g12, g22) = (state.a1.norm_squared(), state.a1.dot(&state.a2), state.a2.norm_squared());
-        let reach_growth = (g11.max(g22) / (g11 * g22 - g12 * g12)).sqrt();
         let origin = state.poses[0].position;
         let spread = 2.0 * state.poses.iter().map(|p| (p.position - origin).norm()).fold(0.0, f64::max);
         let beside = |(pose, element): (&Pose, &Element)| {
@@ -64,7 +62,7 @@ impl StepBound {
             (pose.position - origin - state.a1 * u - state.a2 * v).norm()
         };
         let spread_carried = 2.0 * state.poses.iter().zip(&model.elements).map(beside).fold(0.0, f64::max);
-        StepBound { pairs, reach_growth, spread, spread_carried }
+        StepBound { pairs, lattice: [state.a1, state.a2], spread, spread_carried }
     }
 
     /// Largest fraction of `motion`, at most 1, in which no circles can meet and no element moves more than `cap`.
@@ -76,6 +74,7 @@ impl StepBound {
             true => (model.cell.primitive(da1, da2), self.spread_carried),
             false => ([da1, da2], self.spread),
         };
+        let own = model.short_basis.vectors(own[0], own[1]);
         let mut largest = own[0].norm().max(own[1].norm());
         for e in 0..model.elements.len() {
             largest = largest.max(motion.elements[e].0.norm() + swing(e));
@@ -91,7 +90,7 @@ impl StepBound {
         // growth (L + spread); enough at L = 2 widest + margin, because growth < 1 from there on.
         let margin = MARGIN * model.largest_radius;
         let widest = model.elements.iter().map(|e| e.reach).fold(0.0, f64::max);
-        let growth = (da1.norm() + da2.norm()) * self.reach_growth;
+        let growth = largest_growth(self.lattice, motion.lattice);
         limit(2.0 * largest + growth * (2.0 * widest + margin + spread), SAFETY * margin);
         limit(growth, 0.5);
         for near in self.pairs.iter() {
@@ -107,4 +106,14 @@ impl StepBound {
         }
         fraction
     }
+}
+
+/// Largest |Δa1 s1 + Δa2 s2| / |a1 s1 + a2 s2|: the root of the larger eigenvalue of Gram(a)⁻¹ Gram(Δa), whatever the basis.
+fn largest_growth(lattice: [Vec3; 2], change: [Vec3; 2]) -> f64 {
+    let gram = |[a, b]: [Vec3; 2]| (a.norm_squared(), a.dot(&b), b.norm_squared());
+    let ((g11, g12, g22), (d11, d12, d22)) = (gram(lattice), gram(change));
+    let det = g11 * g22 - g12 * g12;
+    let half_trace = (g22 * d11 - 2.0 * g12 * d12 + g11 * d22) / (2.0 * det);
+    let product = (d11 * d22 - d12 * d12) / det;
+    (half_trace + (half_trace * half_trace - product).max(0.0).sqrt()).max(0.0).sqrt()
 }

@@ -1,5 +1,6 @@
 //! Which rings are near, which are linked, and in which directions chains of links bind the sheet.
 
+pub mod apart;
 pub(crate) mod broad;
 pub mod crossing;
 pub mod near;

@@ -5,12 +5,12 @@ from __future__ import annotations
 import io
 import json
 import os
-from collections.abc import Callable, Iterator
-from contextlib import closing, contextmanager
+from collections.abc import Callable
+from contextlib import closing
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any, Union
+from typing import TYPE_CHECKING, Any, Union
 
 import pyarrow
 from pyarrow import parquet
@@ -19,7 +19,7 @@ from .. import _native
 from .._files import write_whole
 from ..boundary import Boundary, _surface
 from ..design import Design
-from ..errors import ChainError, MailleError, MalformedRecordError, OtherInputsError, RecordError
+from ..errors import ChainError, MailleError, RecordError
 from ..record import Progress, _Bar, _whole
 from ._client import client_of, results
 from ._names import Designs, named
@@ -28,8 +28,8 @@ from ._results import Failure
 if TYPE_CHECKING:
     import distributed
 
-#: Journal of `maille boundary`, and the folder of the vertices as Parquet.
-JOURNAL, RAYS = "boundary.jsonl", "rays"
+#: The folder of the vertices as Parquet.
+RAYS = "rays"
 #: Tasks for each thread of the workers in a pass, and rays in a task at most.
 TASKS, MOST = 4, 32
 
@@ -61,7 +61,7 @@ def boundary(
 ) -> Surfaces:
     """The surface of each design, as `maille.boundary` finds it, one after the other; the rays of a pass are shared among the workers.
 
-    `out/NAME/boundary.jsonl` is the journal of `maille boundary`, kept while rays come in: the same call goes on from there, and so
+    `out/NAME/boundary.jsonl` is the journal of `maille boundary`, which no other run may write to meanwhile, kept while rays come in: the same call goes on from there, and so
     does `maille boundary DESIGN --out out/NAME`, which writes meshes and a figure. `out/rays/record=NAME/` has the
     vertices as Parquet. `designs`, `client`, `retries` and failures are as in `characterize`, the rest as in `maille.boundary`.
     """
@@ -78,9 +78,11 @@ def boundary(
                 if isinstance(design, MailleError):
                     raise design
                 design.check()
-                head = _native.boundary_head(design._inner, starts, cell, seed)
-                with _journal(Path(out) / name, head, overwrite) as (known, journal):
-                    ask = _Ask(client, design, starts, cell, seed, retries, journal, counted)
+                folder, known = _native.SurfaceFolder.open(
+                    design._inner, starts, cell, seed, Path(out) / name, overwrite
+                )
+                with closing(folder):
+                    ask = _Ask(client, design, starts, cell, seed, retries, folder, counted)
                     found = _native.boundary_by(
                         design._inner, tolerance, vertices, starts, cell, seed, known, ask.solve
                     )
@@ -116,7 +118,7 @@ class _Ask:
     cell: str
     seed: int
     retries: int
-    journal: IO[str]
+    folder: _native.SurfaceFolder
     counted: _Counted
 
     def solve(self, rays: list[str], new: bool) -> list[str]:
@@ -138,8 +140,7 @@ class _Ask:
                     raise value
                 ends[key] = value
                 if new:
-                    self.journal.write("".join(f"{end}\n" for end in value))
-                    self.journal.flush()
+                    self.folder.keep(value)
                 self.counted.more(len(value), 0)
         return [end for key in calls for end in ends[key]]
 
@@ -154,28 +155,6 @@ def solve(
         return _native.solve_rays(design._inner, rays, starts, cell, seed)
     except MailleError as error:
         return error
-
-
-@contextmanager
-def _journal(folder: Path, head: str, overwrite: bool) -> Iterator[tuple[list[str], IO[str]]]:
-    """The vertices of an earlier run, and the journal to go on with."""
-    file = folder / JOURNAL
-    folder.mkdir(parents=True, exist_ok=True)
-    known: list[str] = []
-    if file.exists() and not overwrite:
-        lines = file.read_text(encoding="utf-8").splitlines(keepends=True)
-        if lines and lines[0] != head:
-            try:
-                old = json.loads(lines[0])["input_hash"]
-            except (ValueError, KeyError, TypeError):
-                raise MalformedRecordError(f"{file}:1: no head of a surface", str(file), 1) from None
-            difference = f"its inputs have the hash {old[:12]}…"
-            raise OtherInputsError(f"{folder} holds a surface of other inputs: {difference}", folder, difference)
-        # The last line may have been cut off.
-        known = [line.rstrip("\n") for line in lines[1:] if line.endswith("}\n")]
-    write_whole(file, "".join([head, *(f"{line}\n" for line in known)]).encode())
-    with open(file, "a", encoding="utf-8", newline="\n") as journal:
-        yield known, journal
 
 
 def _write_rays(folder: Path, vertices: list[str]) -> None:

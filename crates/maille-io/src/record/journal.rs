@@ -1,0 +1,115 @@
+//! Journals: files that only grow, a JSON object with its own checksum in each line, in one write each.
+//!
+//! A line is the object with one more field at its end, `"sum"`: the first 16 digits of the SHA-256 of the object without it. A
+//! kill cuts the last line off, which is then left out. Any other line without the right sum was edited or damaged: an error, not
+//! a gap.
+
+use super::{error::RecordError, run::sha256};
+use serde::{Serialize, de::DeserializeOwned};
+use std::{
+    fs,
+    io::{self, ErrorKind, Write},
+    path::{Path, PathBuf},
+};
+
+const SUM: &str = ",\"sum\":\"";
+const DIGITS: usize = 16;
+
+/// The line of `item`, which is written as a JSON object of one field or more.
+pub(crate) fn line(item: &impl Serialize) -> String {
+    let object = serde_json::to_string(item).expect("no map with odd keys");
+    let open = object.strip_suffix('}').expect("an object");
+    format!("{open}{SUM}{}\"}}\n", &sha256(object.as_bytes())[..DIGITS])
+}
+
+/// The object of a line, if it is the one that was written.
+fn object(line: &str) -> Option<String> {
+    let (open, sum) = line.rsplit_once(SUM)?;
+    let object = format!("{open}}}");
+    (sha256(object.as_bytes())[..DIGITS] == *sum.strip_suffix("\"}")?).then_some(object)
+}
+
+/// The items of a journal, but for a last line that was cut off; none where there is no file.
+pub(crate) fn read<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, RecordError> {
+    let bytes = match fs::read(path) {
+        Ok(bytes) => bytes,
+        Err(e) if e.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(e) => return Err(RecordError::io("read", path)(e)),
+    };
+    // A line may be cut within a letter.
+    let text = String::from_utf8_lossy(&bytes);
+    let whole = text.split_inclusive('\n').filter_map(|line| line.strip_suffix('\n'));
+    let read = |(number, line): (usize, &str)| {
+        let malformed = |problem: String| RecordError::malformed(&path.display().to_string(), number + 1, problem);
+        let object = object(line).ok_or_else(|| malformed("the checksum of this line does not fit".into()))?;
+        serde_json::from_str(&object).map_err(|e| malformed(e.to_string()))
+    };
+    whole.enumerate().map(read).collect()
+}
+
+/// A journal to add to.
+#[derive(Debug)]
+pub(crate) struct Journal {
+    path: PathBuf,
+    file: fs::File,
+    /// Why a write failed. The file may end within a line then: what came behind it could not be read.
+    broken: Option<(ErrorKind, String)>,
+}
+
+impl Journal {
+    /// Opens the file, which is created if it is not there. It must end with a whole line.
+    pub fn open(path: &Path) -> Result<Self, RecordError> {
+        let file = fs::OpenOptions::new().create(true).append(true).open(path).map_err(RecordError::io("write", path))?;
+        Ok(Journal { path: path.to_owned(), file, broken: None })
+    }
+
+    /// Adds lines in one write; nothing after one that failed.
+    pub fn write(&mut self, lines: &str) -> Result<(), RecordError> {
+        let done = match &self.broken {
+            Some((kind, why)) => Err(io::Error::new(*kind, why.clone())),
+            None => self.file.write_all(lines.as_bytes()),
+        };
+        done.map_err(|error| {
+            self.broken = Some((error.kind(), error.to_string()));
+            RecordError::io("write", &self.path)(error)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde::Deserialize;
+
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    struct Item {
+        name: String,
+        x: f64,
+    }
+
+    #[test]
+    fn a_journal_is_read_up_to_a_line_that_was_cut_and_no_edit_passes() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("j");
+        assert_eq!(read::<Item>(&path).unwrap(), []);
+        // A name that holds what looks like the end of a line, and letters of several bytes.
+        let names = ["a", "\",\"sum\":\"0123\"}", "Kettenglied é"];
+        let items: Vec<Item> = names.iter().zip(1..).map(|(n, k)| Item { name: n.to_string(), x: 0.1 * f64::from(k) }).collect();
+        let mut journal = Journal::open(&path).unwrap();
+        items.iter().for_each(|item| journal.write(&line(item)).unwrap());
+        assert_eq!(read::<Item>(&path).unwrap(), items);
+        let whole = fs::read(&path).unwrap();
+        let last = whole[..whole.len() - 1].iter().rposition(|b| *b == b'\n').unwrap() + 1;
+        for end in last..whole.len() {
+            fs::write(&path, &whole[..end]).unwrap();
+            assert_eq!(read::<Item>(&path).unwrap(), items[..2]);
+        }
+        for at in 0..whole.len() - 1 {
+            let mut bytes = whole.clone();
+            bytes[at] = if bytes[at] == b'7' { b'8' } else { b'7' };
+            fs::write(&path, &bytes).unwrap();
+            let error = read::<Item>(&path).unwrap_err();
+            assert!(matches!(error, RecordError::Malformed { .. }), "{at}: {error}");
+        }
+    }
+}
