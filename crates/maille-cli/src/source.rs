@@ -144,8 +144,7 @@ impl SourceArgs {
             let [a1, a2] = [model.start.a1, model.start.a2].map(|a| (a * model.unit).into());
             mesh::state_of(&model, &StateRecord { poses: frame.poses, a1, a2, ..StateRecord::default() })
         };
-        let states: Vec<State> =
-            frames.into_iter().map(state).collect::<Result<_, _>>()?;
+        let states: Vec<State> = frames.into_iter().map(state).collect::<Result<_, _>>()?;
         let last = states.len().checked_sub(1).ok_or_else(|| unusable("it has no frames".into()))?;
         let shown = match (at.unwrap_or_default().frame, at) {
             (Some(frame), _) if frame <= last => frame,

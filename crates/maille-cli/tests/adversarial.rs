@@ -235,12 +235,8 @@ fn of_several(basis: [[f64; 3]; 2], minor_radius: f64, elements: &[Multi<'_>]) -
             format!("{{ major_radius = {radius:?}, normal = {normal:?}, offset = {offset:?} }}")
         };
         let rings: Vec<String> = rings.iter().map(ring).collect();
-        write!(
-            text,
-            "\n[[elements]]\nname = \"{name}\"\ncenter = {center:?}\nrings = [{}]\n",
-            rings.join(", ")
-        )
-        .unwrap();
+        write!(text, "\n[[elements]]\nname = \"{name}\"\ncenter = {center:?}\nrings = [{}]\n", rings.join(", "))
+            .unwrap();
     }
     text
 }

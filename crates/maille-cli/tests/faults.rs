@@ -260,7 +260,10 @@ fn a_surface_that_was_edited_is_refused_and_one_that_was_cut_goes_on() {
         fs::write(&path, edited).unwrap();
         let (code, text) = said(&maille(folder.path(), line));
         assert_eq!(code, 4, "{text}");
-        assert!(text.contains("boundary.jsonl:") && text.contains("checksum") && text.contains("--overwrite"), "{text}");
+        assert!(
+            text.contains("boundary.jsonl:") && text.contains("checksum") && text.contains("--overwrite"),
+            "{text}"
+        );
     }
     for end in [0, 10, text.len() / 3, text.len() - 2] {
         fs::write(&path, &text[..end]).unwrap();

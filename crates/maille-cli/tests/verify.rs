@@ -83,6 +83,29 @@ fn the_energy_method_claims_no_certificate_and_its_states_are_verified() {
     assert_eq!(said(&found, "deformation", "proved").len(), 2, "{found:#}");
 }
 
+/// Two chains of rings along x, not linked with each other.
+const CHAINS: &str = "schema = 1\nname = \"chains\"\nminor_radius = 0.1\nreference_radius = 1.0\n\
+    [lattice]\na1 = [2.5, 0.0, 0.0]\na2 = [0.0, 2.5, 0.0]\n\
+    [[elements]]\nname = \"flat\"\ncenter = [0.0, 0.0, 0.0]\nrings = [{ major_radius = 1.0, normal = [0.0, 0.0, 1.0] }]\n\
+    [[elements]]\nname = \"standing\"\ncenter = [1.25, 0.0, 0.0]\nrings = [{ major_radius = 1.0, normal = [0.0, 1.0, 0.0] }]\n";
+
+#[test]
+fn that_a_sheet_comes_apart_is_proved_and_a_state_that_does_not_show_it_found() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("chains.toml"), CHAINS).unwrap();
+    let line = "characterize chains.toml --directions 90 --l2=-0.125,0 --cell 1x1 --out record --quiet";
+    assert_eq!(code(&maille(dir.path(), line)), 0);
+    let (outcome, found) = verified(dir.path(), "record");
+    assert_eq!(outcome, 0, "{found:#}");
+    assert_eq!(said(&found, "bound", "proved"), ["from this state l1 can grow for ever"; 2], "{found:#}");
+    let specimen = Specimen { dir };
+    // The rows of rings so near that one of them could still hold the next.
+    specimen.forge_state(|state| state["a2"] = json!([0.0, 2.1, 0.0]));
+    let (outcome, found) = specimen.verified();
+    assert_eq!(outcome, 4, "{found:#}");
+    assert!(said(&found, "bound", "false")[0].contains("could meet where l1 grows on"), "{found:#}");
+}
+
 /// A record of 1.1 that can be tampered with.
 struct Specimen {
     dir: tempfile::TempDir,

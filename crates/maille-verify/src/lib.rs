@@ -6,6 +6,7 @@
 mod apart;
 mod balance;
 mod chain;
+mod endless;
 mod files;
 mod linking;
 mod record;

@@ -258,4 +258,9 @@ impl Row {
     pub(crate) fn certified(&self) -> bool {
         matches!(self.status.as_str(), "global" | "local")
     }
+
+    /// Whether the state is to show that l1 can grow for ever; the energy method's may overlap.
+    pub(crate) fn comes_apart(&self) -> bool {
+        self.status == "unbounded" && self.method == "exact"
+    }
 }

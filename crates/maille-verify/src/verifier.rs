@@ -4,6 +4,7 @@ use crate::{
     apart::{Apart, apart, some_distance},
     balance::{COMPLEMENTARITY, Free, RESIDUAL, balance},
     chain::{self, ChainBound},
+    endless::could_meet,
     files,
     linking::linking_number,
     record::{Chain, Row, Run, State, Texts, Unreadable, read_rows, read_run, read_states},
@@ -88,7 +89,8 @@ impl Verifier {
     }
 
     fn findings(&self, row: &Row, state: &State) -> Vec<Finding> {
-        let solved = row.certified() || matches!(row.status.as_str(), "threshold-reached" | "uncertified");
+        let found = matches!(row.status.as_str(), "threshold-reached" | "uncertified");
+        let solved = row.certified() || row.comes_apart() || found;
         if !solved {
             return self.bound(row, state).into_iter().collect();
         }
@@ -119,6 +121,16 @@ impl Verifier {
         if row.certified() {
             out.push(self.balance(row, state, &here, start));
             out.extend(self.bound(row, state));
+        }
+        if row.comes_apart() {
+            out.push(match could_meet(&here, &start.sheet, strain::axes(row.direction_deg).0) {
+                Ok(None) => Finding::new(Check::Bound, Verdict::Proved, None, "from this state l1 can grow for ever"),
+                Ok(Some((a, b, shift))) => {
+                    let words = format!("rings {a} and {b} at {shift:?} could meet where l1 grows on from this state");
+                    Finding::new(Check::Bound, Verdict::False, None, words)
+                }
+                Err(words) => Finding::new(Check::Bound, Verdict::Open, None, words),
+            });
         }
         out
     }
@@ -340,7 +352,7 @@ fn links_finding(row: &Row, found: Result<Links, String>, start: &Result<Links, 
         (_, Err(words)) => return Finding::new(Check::Links, Verdict::Open, None, format!("at the start, {words}")),
     };
     let kept = found == *start;
-    let claimed = row.certified() || row.links_ok.unwrap_or(kept);
+    let claimed = row.certified() || row.comes_apart() || row.links_ok.unwrap_or(kept);
     if kept == claimed && row.links_ok.is_none_or(|ok| ok == kept) {
         let words = if kept {
             "linking numbers are those of the design"

@@ -245,7 +245,10 @@ mod tests {
             assert_eq!(short.copies(), 1);
             let mut lengths = short.vectors(b1, b2).map(|b| b.norm());
             lengths.sort_by(f64::total_cmp);
-            assert!((lengths[0] - a1.norm()).abs() < 1e-12 && (lengths[1] - a2.norm()).abs() < 1e-12, "{cell}: {short}");
+            assert!(
+                (lengths[0] - a1.norm()).abs() < 1e-12 && (lengths[1] - a2.norm()).abs() < 1e-12,
+                "{cell}: {short}"
+            );
         }
         // A hexagonal basis, and its other one.
         let half = 0.75_f64.sqrt();

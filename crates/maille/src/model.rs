@@ -175,13 +175,38 @@ impl Model {
             let nearer = "bring the rings nearer to the element's center, or take longer lattice vectors";
             let inwards = "move it by whole lattice vectors into the cell";
             if beyond(reach, FARTHEST) {
-                refuse("rings", format!("the rings of \"{name}\" reach {reach:.1e} R from its center; at most {FARTHEST:.0e} can be solved"), nearer);
+                refuse(
+                    "rings",
+                    format!(
+                        "the rings of \"{name}\" reach {reach:.1e} R from its center; at most {FARTHEST:.0e} can be solved"
+                    ),
+                    nearer,
+                );
             } else if self.periodic && beyond(images, MOST_IMAGES) {
-                refuse("rings", format!("the rings of \"{name}\" reach over some {images:.1e} cells; at most {MOST_IMAGES:.0e} are tried"), nearer);
+                refuse(
+                    "rings",
+                    format!(
+                        "the rings of \"{name}\" reach over some {images:.1e} cells; at most {MOST_IMAGES:.0e} are tried"
+                    ),
+                    nearer,
+                );
             } else if beyond(from_first.norm(), FARTHEST) {
-                refuse("center", format!("\"{name}\" lies {:.1e} R from the first element; at most {FARTHEST:.0e} can be solved", from_first.norm()), inwards);
+                refuse(
+                    "center",
+                    format!(
+                        "\"{name}\" lies {:.1e} R from the first element; at most {FARTHEST:.0e} can be solved",
+                        from_first.norm()
+                    ),
+                    inwards,
+                );
             } else if self.periodic && beyond(cells, MOST_IMAGES) {
-                refuse("center", format!("\"{name}\" lies {cells:.1e} cells from the first element; at most {MOST_IMAGES:.0e} are tried"), inwards);
+                refuse(
+                    "center",
+                    format!(
+                        "\"{name}\" lies {cells:.1e} cells from the first element; at most {MOST_IMAGES:.0e} are tried"
+                    ),
+                    inwards,
+                );
             }
         }
         if out.is_empty() { Ok(()) } else { Err(out) }

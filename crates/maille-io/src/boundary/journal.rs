@@ -60,7 +60,11 @@ pub struct SurfaceFolder {
 impl SurfaceFolder {
     /// Opens or creates the folder for a run with these inputs; gives the rays of an earlier run. One of other inputs is an
     /// error, or replaced with `overwrite`.
-    pub fn open(folder: &Path, head: &BoundaryHead, overwrite: bool) -> Result<(Self, Vec<BoundaryVertex>), RecordError> {
+    pub fn open(
+        folder: &Path,
+        head: &BoundaryHead,
+        overwrite: bool,
+    ) -> Result<(Self, Vec<BoundaryVertex>), RecordError> {
         let lock = FolderLock::take(folder)?;
         files::remove_leftovers(folder).map_err(|(path, e)| RecordError::io("remove", path)(e))?;
         let path = folder.join(JOURNAL);
@@ -72,7 +76,9 @@ impl SurfaceFolder {
             Some(Line::Head(old)) => {
                 let difference = match old.program_version == head.program_version {
                     true => format!("its inputs have the hash {:.12}…", old.input_hash),
-                    false => format!("it was computed by version {}, not {}", old.program_version, head.program_version),
+                    false => {
+                        format!("it was computed by version {}, not {}", old.program_version, head.program_version)
+                    }
                 };
                 return Err(RecordError::OtherInputs { folder: folder.into(), difference });
             }

@@ -59,7 +59,8 @@ pub(crate) struct Journal {
 impl Journal {
     /// Opens the file, which is created if it is not there. It must end with a whole line.
     pub fn open(path: &Path) -> Result<Self, RecordError> {
-        let file = fs::OpenOptions::new().create(true).append(true).open(path).map_err(RecordError::io("write", path))?;
+        let file =
+            fs::OpenOptions::new().create(true).append(true).open(path).map_err(RecordError::io("write", path))?;
         Ok(Journal { path: path.to_owned(), file, broken: None })
     }
 
@@ -94,7 +95,8 @@ mod tests {
         assert_eq!(read::<Item>(&path).unwrap(), []);
         // A name that holds what looks like the end of a line, and letters of several bytes.
         let names = ["a", "\",\"sum\":\"0123\"}", "Kettenglied é"];
-        let items: Vec<Item> = names.iter().zip(1..).map(|(n, k)| Item { name: n.to_string(), x: 0.1 * f64::from(k) }).collect();
+        let items: Vec<Item> =
+            names.iter().zip(1..).map(|(n, k)| Item { name: n.to_string(), x: 0.1 * f64::from(k) }).collect();
         let mut journal = Journal::open(&path).unwrap();
         items.iter().for_each(|item| journal.write(&line(item)).unwrap());
         assert_eq!(read::<Item>(&path).unwrap(), items);

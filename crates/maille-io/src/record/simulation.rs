@@ -200,7 +200,12 @@ pub fn open_simulation(folder: &Path) -> Result<(SimulationRecord, Vec<FrameReco
     if let Some(expected) = record.sha256.clone() {
         let found = record.clone().sealed(&frames).sha256.unwrap_or_default();
         if found != expected {
-            return Err(RecordError::Edited { file: format!("{file} or {frames_file}"), found, expected, by: SIMULATION[0] });
+            return Err(RecordError::Edited {
+                file: format!("{file} or {frames_file}"),
+                found,
+                expected,
+                by: SIMULATION[0],
+            });
         }
     }
     Ok((record, frames))

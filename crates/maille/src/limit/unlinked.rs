@@ -62,7 +62,8 @@ impl ExactMethod<'_> {
                     let mut outcome = self.nothing(Status::Unbounded, ExactFigures::default());
                     let gradient = search.family.gradient(&search.family.parameters(&at), l2);
                     (outcome.runs, outcome.iterations) = (search.runs, search.iterations);
-                    outcome.note = Some(format!("no chain of links; at l1 = {:.3} nothing is left that could hold it", at.l1));
+                    outcome.note =
+                        Some(format!("no chain of links; at l1 = {:.3} nothing is left that could hold it", at.l1));
                     (outcome.state, outcome.gradient) = (at.state, gradient);
                     return (outcome, None);
                 }
@@ -71,7 +72,8 @@ impl ExactMethod<'_> {
         let (runs, iterations) = (search.runs, search.iterations);
         if !held && let Some(l1) = farthest {
             let figures = ExactFigures { l1_uncertified: Some(l1), ..ExactFigures::default() };
-            let note = Some(format!("no chain of links; pulled to l1 = {l1:.3}, where nothing holds it and it is not apart"));
+            let note =
+                Some(format!("no chain of links; pulled to l1 = {l1:.3}, where nothing holds it and it is not apart"));
             return (LimitOutcome { runs, iterations, note, ..self.nothing(Status::Uncertified, figures) }, None);
         }
         let unbounded = f64::INFINITY;

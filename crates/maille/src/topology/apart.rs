@@ -5,6 +5,7 @@ use crate::{
     model::Model,
     state::State,
 };
+use nalgebra::Vector2;
 
 /// A lattice vector whose part along the pull is a smaller share of it lies across.
 const ACROSS: f64 = 1e-9;
@@ -21,13 +22,15 @@ const ACROSS: f64 = 1e-9;
 pub fn comes_apart(model: &Model, state: &State, direction_deg: f64) -> bool {
     let along = direction(direction_deg);
     let thickest = model.rings.iter().map(|r| r.minor_radius).fold(0.0, f64::max);
+    let (across, f) = (Vector2::new(-along.y, along.x), state.deformation_gradient(model));
+    let lean = (along.dot(&(f * across)) / across.dot(&(f * across))).abs();
     let elements = || state.poses.iter().zip(&model.elements).enumerate();
     elements().all(|(i, (a, first))| {
         elements().skip(i).all(|(j, (b, second))| {
             let between = b.position - a.position;
             let reach = first.reach + second.reach + 2.0 * thickest;
-            // Both parts of the way to an image that is not safe are at most ϱ, or ahead by less.
-            let far = 2.0 * (reach + between.norm());
+            // An image that is not safe is at most ϱ beside and ahead, and behind by no more than `between` and the shear carry it.
+            let far = (2.0 + lean) * (reach + between.norm());
             shifts_within(&Default::default(), &state.a1, &state.a2, far).into_iter().all(|shift| {
                 if i == j && shift == [0, 0] {
                     return true;
