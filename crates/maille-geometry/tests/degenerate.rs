@@ -227,3 +227,18 @@ fn a_tilt_too_small_for_its_square_is_none() {
         }
     }
 }
+
+/// The search once halved every interval to the end: two seconds a pair.
+#[test]
+fn a_circle_too_small_for_its_squares_is_a_point() {
+    let mut rng = rng(41);
+    let small = |center: [f64; 3], normal: Vec3| Circle::new(center.into(), UnitVector3::new_normalize(normal), 1e-83);
+    for _ in 0..200 {
+        let a = Circle::new(Vec3::zeros(), direction(&mut rng), 1e83);
+        for b in [small([0.0; 3], *direction(&mut rng)), small([0.0, 0.0, 1e-90], *a.normal)] {
+            for minima in in_both_orders(&a, &b) {
+                assert!(minima.continuum && (minima.closest().distance / 1e83 - 1.0).abs() < 1e-15, "{minima:?}");
+            }
+        }
+    }
+}
