@@ -3,6 +3,9 @@
 use crate::reduced::Reduced;
 use crate::{Circle, Minimum, PairKind, ROUNDING, Vec3};
 
+/// Lengths below this part of the pair's scale are 0.
+const NOTHING: f64 = 1e-100;
+
 /// A pair of circles, a **base** and a **moving** one whose angle is the unknown, reduced to six numbers.
 ///
 /// Let `Y` be the unit vector along `N_moving × N_base`, which lies in both planes, `X = Y × N_base`, and `U = Y × N_moving`,
@@ -85,14 +88,16 @@ impl<'a> Relative<'a> {
         let x = y.cross(n);
         let tilt_cos = n.dot(m);
         let tilt_sin = y.dot(&cross);
-        let offset = [x.dot(&offset) / scale, y.dot(&offset) / scale, n.dot(&offset) / scale];
-        let radius = moving.radius / scale;
+        // Far below rounding, and their squares would have no digits: such a circle is a point.
+        let sized = |length: f64| if length.abs() < NOTHING * scale { 0.0 } else { length / scale };
+        let offset = [x.dot(&offset), y.dot(&offset), n.dot(&offset)].map(sized);
+        let radius = sized(moving.radius);
         let (across, along) = (tilt_cos * offset[0], offset[1]);
         Self {
             base,
             moving,
             scale,
-            base_radius: base.radius / scale,
+            base_radius: sized(base.radius),
             radius,
             offset,
             tilt_cos,

@@ -26,9 +26,6 @@ const MAX_SAMPLES: usize = 400;
 const COARSE_LEVEL: usize = 4;
 /// Away from the axis, there: ρ over its change in half an interval.
 const AWAY: f64 = 16.0;
-/// A circle of a smaller radius, in units of the pair's scale, is a point: it moves the distance by less than rounding, and its
-/// squares have no digits.
-const POINT: f64 = 1e-100;
 /// Minima nearer to each other than this are one: at `2π · 2⁻¹⁸` two differ by the fourth power, rounding.
 const MERGE_RAD: f64 = TAU / (1 << 18) as f64;
 
@@ -136,13 +133,13 @@ enum Level {
 /// Is `h` constant?
 ///
 /// Sixteen samples suffice: ρ h′ divides a trigonometric polynomial of degree four, which has eight roots at most
-/// unless it is zero; so where ρ is no small divisor, h′ is small between the samples too. A point has one distance.
+/// unless it is zero; so where ρ is no small divisor, h′ is small between the samples too.
 fn level(pair: &Relative<'_>) -> Level {
     let mut best = (f64::INFINITY, 0);
     let mut near_axis = false;
     for (index, center) in GRID.centers.iter().enumerate() {
         let sample = pair.at(center.cos, center.sin);
-        if !sample.is_level() && pair.radius > POINT {
+        if !sample.is_level() {
             return Level::No;
         }
         near_axis |= sample.rho < half_width(0) * pair.radius;
@@ -150,7 +147,7 @@ fn level(pair: &Relative<'_>) -> Level {
             best = (sample.distance(), index);
         }
     }
-    if near_axis && pair.radius > POINT {
+    if near_axis {
         return Level::AwayFromAxis;
     }
     Level::Everywhere(START_RAD + (best.1 as f64 + 0.5) * TAU / INTERVALS as f64)

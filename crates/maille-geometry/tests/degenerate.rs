@@ -237,7 +237,9 @@ fn a_circle_too_small_for_its_squares_is_a_point() {
         let a = Circle::new(Vec3::zeros(), direction(&mut rng), 1e83);
         for b in [small([0.0; 3], *direction(&mut rng)), small([0.0, 0.0, 1e-90], *a.normal)] {
             for minima in in_both_orders(&a, &b) {
-                assert!(minima.continuum && (minima.closest().distance / 1e83 - 1.0).abs() < 1e-15, "{minima:?}");
+                let closest = minima.closest();
+                assert!(minima.continuum && (closest.distance / 1e83 - 1.0).abs() < 1e-15, "{minima:?}");
+                assert!(((closest.point_a - closest.point_b).norm() / 1e83 - 1.0).abs() < 1e-15, "{minima:?}");
             }
         }
     }
