@@ -5,7 +5,8 @@
 
 Each command runs in a small disk in memory, of several sizes: it must end with exit code 1 and say that a file cannot be written, and what
 is there must be whole (the checks of `kills.py`). The disk is then made large, and the same command must go on to the files of the undisturbed run.
-The same with a disk that is made read-only after 0 to 300 ms. Needs the right to mount; exits with 1 where something differs.
+The same with a disk that is read-only, empty or with what a killed run has left. (A system refuses to make a disk read-only while a run
+has its lock there.) Needs the right to mount; exits with 1 where something differs.
 """
 
 from __future__ import annotations
@@ -15,7 +16,6 @@ import random
 import subprocess
 import sys
 import tempfile
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -23,7 +23,8 @@ from pathlib import Path
 from kills import COMMANDS, Campaign
 
 SIZES_K = (8, 24, 60, 120)
-READ_ONLY_S = (0.0, 0.05, 0.3)
+#: Parts of a whole run after which it is killed, before the disk is read-only.
+KILLED = (0.0, 0.2, 0.6)
 
 
 @contextmanager
@@ -60,16 +61,9 @@ class Trial:
         remount(folder, "rw,size=100m")
         self.campaign.goes_on(folder)
 
-    def run(self, folder: Path, meanwhile: float | None = None) -> tuple[int, str]:
-        start = subprocess.Popen(self.campaign.start, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-        if meanwhile is not None:
-            time.sleep(meanwhile)
-            # Refused while a file is being written.
-            for _ in range(1000):
-                if subprocess.run(["mount", "-o", "remount,ro", folder], capture_output=True).returncode == 0:
-                    break
-        _, said = start.communicate()
-        return start.returncode, " ".join(said.split())
+    def run(self, folder: Path) -> tuple[int, str]:
+        done = subprocess.run(self.campaign.start, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        return done.returncode, " ".join(done.stderr.split())
 
 
 def main() -> int:
@@ -87,11 +81,13 @@ def main() -> int:
                 full.goes_on(folder, *full.run(folder), f"{size} k", "No space left")
         shown = (0, 0)
         for trial, words in [(full, "full"), (read_only, "read-only")]:
-            if trial is read_only:
-                for wait in READ_ONLY_S:
-                    with disk("size=100m") as folder:
-                        campaign.study(folder)
-                        trial.goes_on(folder, *trial.run(folder, wait), f"after {wait} s", "Read-only file system")
+            for part in KILLED if trial is read_only else ():
+                with disk("size=100m") as folder:
+                    campaign.study(folder)
+                    if part > 0.0:
+                        campaign.run(folder, part * campaign.whole_s)
+                    remount(folder, "ro")
+                    trial.goes_on(folder, *trial.run(folder), f"killed after {part} of a run", "Read-only file system")
             f = campaign.figures
             lost, differences = f.lost - shown[0], f.differences - shown[1]
             print(f"| {name} | {words} | {trial.failed} | {trial.ended} | {lost} | {differences} |", flush=True)

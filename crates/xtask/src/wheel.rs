@@ -6,29 +6,10 @@ use std::{
     process::{Command, Stdio},
 };
 
-/// What is installed beside the wheel: the build backend, and what the tests need.
-const PACKAGES: &[&str] = &[
-    "maturin>=1.7,<2",
-    "numpy",
-    "pyarrow",
-    "pandas",
-    "pandas-stubs",
-    "polars",
-    "matplotlib",
-    "tqdm",
-    "distributed",
-    "k3d",
-    "ipywidgets",
-    "nbclient",
-    "ipykernel",
-    "pytest",
-    "mypy",
-    "pyright",
-];
 /// Folder of the package.
 const PACKAGE: &str = "crates/maille-py";
-/// Their versions, and those of what they need.
-const CONSTRAINTS: &str = "crates/maille-py/constraints.txt";
+/// What is installed beside the wheel, the build backend and what the tests need, with versions and hashes.
+const LOCK: &str = "crates/maille-py/requirements.lock";
 /// Programs that may be a Python of 3.10 or later.
 const PYTHONS: &[&str] = &["python3", "python", "python3.13", "python3.12", "python3.11", "python3.10"];
 const OLD_ENOUGH: &str = "import sys, venv; sys.exit(sys.version_info < (3, 10))";
@@ -47,10 +28,8 @@ impl Environment {
         let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), |path| root.join(path));
         let out = Environment { root: root.to_owned(), folder: target.join("python"), target };
         let ready = out.folder.join("ready");
-        let constraints = root.join(CONSTRAINTS);
-        let versions =
-            std::fs::read_to_string(&constraints).map_err(|e| format!("cannot read {}: {e}", constraints.display()))?;
-        let wanted = [&PACKAGES.join("\n"), "", &versions].join("\n");
+        let lock = root.join(LOCK);
+        let wanted = std::fs::read_to_string(&lock).map_err(|e| format!("cannot read {}: {e}", lock.display()))?;
         if clean || std::fs::read_to_string(&ready).ok().as_deref() != Some(&wanted) {
             out.create()?;
             std::fs::write(&ready, wanted).map_err(|e| format!("cannot write {}: {e}", ready.display()))?;
@@ -81,14 +60,10 @@ impl Environment {
                 .into());
         };
         self.run(Command::new(python).args(["-m", "venv", "--clear"]).arg(&self.folder), "make an environment")?;
-        let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--constraint"];
-        let constraints = self.root.join(CONSTRAINTS);
-        let done = self.run(self.python().args(install).arg(constraints).args(PACKAGES), "install packages");
+        let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--require-hashes", "-r"];
+        let done = self.run(self.python().args(install).arg(self.root.join(LOCK)), "install packages");
         done.map_err(|e| {
-            format!(
-                "{e}\npip must reach a package index, or find wheels by PIP_FIND_LINKS; wanted: {}",
-                PACKAGES.join(", ")
-            )
+            format!("{e}\npip must reach a package index, or find wheels by PIP_FIND_LINKS; wanted: those of {LOCK}")
         })
     }
 
