@@ -155,6 +155,9 @@ fn print(answer: &StrainAnswer<'_>, wall_s: f64) {
         Status::L2NotReached => {
             return say!("  {} starts did not reach the strains that are held; nothing is proved", found.n_starts);
         }
+        Status::Uncertified if found.value.is_none() => {
+            return say!("  no chain of links and no contact held it where the search was stopped; nothing is proved");
+        }
         _ if found.value.is_none() => return,
         _ => {}
     }

@@ -268,6 +268,25 @@ fn what_is_caged_is_held_without_a_link() {
     }
 }
 
+/// The least and the largest of what nothing holds are no numbers: the search was only stopped there.
+#[test]
+fn a_strain_that_nothing_holds_has_no_largest_value() {
+    let rings = [([0.0; 3], Z, 1.0, None), ([1.25, 0.0, 0.0], Y, 1.0, None)];
+    let folder = tempfile::tempdir().unwrap();
+    let chains = design([[2.5, 0.0, 0.0], [0.0, 2.5, 0.0]], 0.1, 1.0, &rings);
+    fs::write(folder.path().join("chains.toml"), chains).unwrap();
+    let (code, out, _) = maille(folder.path(), "limit chains.toml --maximize eyy");
+    assert_eq!(code, 5);
+    assert!(out.contains("uncertified") && out.contains("no chain of links and no contact held it"), "{out}");
+    let (code, out, said) = maille(folder.path(), "limit chains.toml --maximize eyy --json");
+    let found: Value = serde_json::from_str(&out).unwrap();
+    assert_eq!((code, &found["value"]), (5, &Value::Null), "{said}");
+    let (code, out, said) = maille(folder.path(), "limit chains.toml --maximize exx --json");
+    let found: Value = serde_json::from_str(&out).unwrap();
+    assert_eq!(code, 0, "{said}");
+    assert!((found["value"].as_f64().unwrap() - 0.5368).abs() < 1e-12, "{found}");
+}
+
 /// The images of such elements once had all memory.
 #[test]
 fn elements_over_more_cells_than_can_be_listed_are_refused() {

@@ -134,7 +134,7 @@ pub struct StrainOutcome {
     /// `global`, `local`, `uncertified`, `l2-unreachable` (what is held is proved impossible), `l2-not-reached` (it was not
     /// reached) or `interrupted`.
     pub status: Status,
-    /// Largest p₀.
+    /// Largest p₀; none where nothing was found that holds it.
     pub value: Option<f64>,
     /// p₀ of the first start, which goes straight from the design's state: where it is first stopped.
     pub first: Option<f64>,
@@ -270,6 +270,10 @@ impl<'a> StrainMethod<'a> {
         out.n_distinct = distinct.len() as u64;
         if out.value.is_none() {
             out.status = Status::L2NotReached;
+        }
+        // Without a bound, and where no contact pushes back: this is no limit, only where the search was stopped.
+        if out.status == Status::Uncertified && out.bound.is_none() && out.contacts.is_empty() {
+            (out.value, out.first) = (None, None);
         }
         out
     }
