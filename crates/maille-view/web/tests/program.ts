@@ -47,9 +47,10 @@ export const test = base.extend<{ program: Program; problems: string[] }>({
     }
     rmSync(folder, { recursive: true });
   },
-  // No test may leave an error in the console.
+  // No test may leave an error in the console. It needs the program, so that it is asked before the server ends: a page may
+  // still be asking for something then.
   problems: [
-    async ({ page }, use) => {
+    async ({ page, program: _ }, use) => {
       const problems: string[] = [];
       page.on("pageerror", (error) => problems.push(String(error)));
       page.on("console", (message) => {
