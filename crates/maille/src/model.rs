@@ -35,7 +35,8 @@ pub struct Element {
     pub rings: Range<usize>,
     /// Radius about the reference point that holds all core circles: max |offset| + R.
     pub reach: f64,
-    /// Where its copy of the design's cell stands in a larger one, in lattice vectors: that part of a strain it can follow.
+    /// Where its copy of the design's cell stands in a larger one, in lattice vectors: that part of a strain it can follow. In a
+    /// design of more than [`MANY`] elements, where it stands itself.
     pub anchor: [f64; 2],
 }
 
@@ -70,6 +71,8 @@ pub struct Model {
     pub short_basis: Cell,
 }
 
+/// A design of more elements is taken for a large cell written out.
+const MANY: usize = 32;
 /// A design whose first element lies further than this from the origin is moved there, in units of R.
 pub const FAR: f64 = 1e3;
 /// Elements further than this from the first one, and rings from their element's centre, are refused, in units of R: rounding
@@ -106,7 +109,6 @@ impl Model {
         let (mut elements, mut rings, mut poses) = (Vec::new(), Vec::new(), Vec::new());
         for coset in cell.cosets() {
             let shift = p1 * f64::from(coset[0]) + p2 * f64::from(coset[1]);
-            let anchor = (reference_inverse * shift.xy()).into();
             for spec in &design.elements {
                 let first = rings.len();
                 for ring in &spec.rings {
@@ -124,8 +126,10 @@ impl Model {
                 } else {
                     format!("{}@{},{}", spec.name, coset[0], coset[1])
                 };
-                elements.push(Element { name, rings: first..rings.len(), reach, anchor });
                 let position = (Vec3::from(spec.center) - origin) / unit + shift;
+                let copy = if design.elements.len() > MANY { position } else { shift };
+                let anchor = (reference_inverse * copy.xy()).into();
+                elements.push(Element { name, rings: first..rings.len(), reach, anchor });
                 poses.push(Pose { position, rotation: UnitQuaternion::identity() });
             }
         }
