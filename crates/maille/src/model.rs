@@ -72,7 +72,7 @@ pub struct Model {
 }
 
 /// A design of more elements is taken for a large cell written out.
-const MANY: usize = 32;
+pub const MANY: usize = 32;
 /// A design whose first element lies further than this from the origin is moved there, in units of R.
 pub const FAR: f64 = 1e3;
 /// Elements further than this from the first one, and rings from their element's centre, are refused, in units of R: rounding
