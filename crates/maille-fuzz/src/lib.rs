@@ -8,7 +8,7 @@ pub mod mutate;
 mod text;
 
 pub use circles::circles;
-pub use text::{design, frames, limits, run, simulation, states, study};
+pub use text::{design, frames, limits, run, simulation, states, study, surface};
 
 use std::path::Path;
 
@@ -37,7 +37,7 @@ pub fn sound(target: &str) -> Vec<Vec<u8>> {
 pub type Target = (&'static str, fn(&[u8]));
 
 /// All of them.
-pub const TARGETS: [Target; 8] = [
+pub const TARGETS: [Target; 9] = [
     ("circles", circles),
     ("design", design),
     ("limits", limits),
@@ -46,4 +46,5 @@ pub const TARGETS: [Target; 8] = [
     ("simulation", simulation),
     ("frames", frames),
     ("study", study),
+    ("surface", surface),
 ];

@@ -2,6 +2,7 @@
 
 use maille::{lattice::Cell, model::Model};
 use maille_io::{
+    boundary::{read_surface, surface_line, write_surface},
     read_design,
     record::{
         read_frames, read_limits, read_run, read_simulation, read_states, write_frames, write_limits, write_run,
@@ -63,6 +64,18 @@ pub fn simulation(bytes: &[u8]) {
 /// `frames.jsonl`.
 pub fn frames(bytes: &[u8]) {
     same(bytes, read_frames, |frames| Some(write_frames(frames)));
+}
+
+/// `boundary.jsonl`: as it is, and with the right checksum for each line, which few wounds leave.
+pub fn surface(bytes: &[u8]) {
+    let read = |file: &str, text: &str| {
+        read_surface(file, text.as_bytes()).map(|(head, vertices)| write_surface(&head, &vertices))
+    };
+    same(bytes, read, |written| Some(written.clone()));
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    let object = |line: &str| line.rsplit_once(",\"sum\":").map_or(line.to_owned(), |(open, _)| format!("{open}}}"));
+    let summed: String = text.lines().filter_map(|line| surface_line(&object(line))).collect();
+    same(summed.as_bytes(), read, |written| Some(written.clone()));
 }
 
 /// A study of `maille sweep`.

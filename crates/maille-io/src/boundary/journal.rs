@@ -4,7 +4,7 @@ use crate::{
     files,
     record::{
         FolderLock, RecordError, input_hash,
-        journal::{Journal, line, read},
+        journal::{Journal, line, parse, summed},
     },
 };
 use maille::{
@@ -14,7 +14,7 @@ use maille::{
 };
 use serde::{Deserialize, Serialize};
 use serde_json::json;
-use std::{io::Write, path::Path};
+use std::{fs, io::Write, path::Path};
 
 /// Name of the file.
 pub const JOURNAL: &str = "boundary.jsonl";
@@ -50,6 +50,28 @@ enum Line {
     Vertex(Box<BoundaryVertex>),
 }
 
+/// Reads a journal's bytes; `file` is the name to show in errors. A last line that was cut off is left out.
+pub fn read_surface(file: &str, bytes: &[u8]) -> Result<(BoundaryHead, Vec<BoundaryVertex>), RecordError> {
+    let malformed = |line, problem: &str| RecordError::malformed(file, line, problem);
+    let mut lines = parse::<Line>(file, bytes)?.into_iter();
+    let Some(Line::Head(head)) = lines.next() else { return Err(malformed(1, "no head of a surface")) };
+    let vertex = |(number, line)| match line {
+        Line::Vertex(vertex) => Ok(*vertex),
+        Line::Head(_) => Err(malformed(number + 2, "a second head")),
+    };
+    Ok((head, lines.enumerate().map(vertex).collect::<Result<_, _>>()?))
+}
+
+/// A journal as text.
+pub fn write_surface(head: &BoundaryHead, vertices: &[BoundaryVertex]) -> String {
+    line(head) + &vertices.iter().map(line).collect::<String>()
+}
+
+/// The line of a journal for a JSON object: the object with its checksum. None where it does not end as an object.
+pub fn surface_line(object: &str) -> Option<String> {
+    summed(object)
+}
+
 /// The folder of a surface, to which a run adds rays; no other run writes there meanwhile.
 #[derive(Debug)]
 pub struct SurfaceFolder {
@@ -68,12 +90,11 @@ impl SurfaceFolder {
         let lock = FolderLock::take(folder)?;
         files::remove_leftovers(folder).map_err(|(path, e)| RecordError::io("remove", path)(e))?;
         let path = folder.join(JOURNAL);
-        let malformed = |line, problem: &str| RecordError::malformed(&path.display().to_string(), line, problem);
-        let mut lines = if overwrite { Vec::new() } else { read::<Line>(&path)? }.into_iter();
-        match lines.next() {
-            None if overwrite || !path.exists() => {}
-            Some(Line::Head(old)) if old == *head => {}
-            Some(Line::Head(old)) => {
+        let mut known = Vec::new();
+        if !overwrite && path.exists() {
+            let bytes = fs::read(&path).map_err(RecordError::io("read", &path))?;
+            let (old, vertices) = read_surface(&path.display().to_string(), &bytes)?;
+            if old != *head {
                 let difference = match old.program_version == head.program_version {
                     true => format!("its inputs have the hash {:.12}…", old.input_hash),
                     false => {
@@ -82,18 +103,11 @@ impl SurfaceFolder {
                 };
                 return Err(RecordError::OtherInputs { folder: folder.into(), difference });
             }
-            None | Some(Line::Vertex(_)) => return Err(malformed(1, "no head of a surface")),
-        }
-        let mut known = Vec::new();
-        for (number, line) in lines.enumerate() {
-            match line {
-                Line::Vertex(vertex) => known.push(*vertex),
-                Line::Head(_) => return Err(malformed(number + 2, "a second head")),
-            }
+            known = vertices;
         }
         // Written anew, so that a line that was cut off does not stay.
-        let text: String = known.iter().map(line).collect();
-        files::replace(&path, |out| write!(out, "{}{text}", line(head))).map_err(RecordError::io("write", &path))?;
+        let text = write_surface(head, &known);
+        files::replace(&path, |out| out.write_all(text.as_bytes())).map_err(RecordError::io("write", &path))?;
         Ok((SurfaceFolder { journal: Journal::open(&path)?, _lock: lock }, known))
     }
 

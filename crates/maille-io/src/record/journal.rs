@@ -17,9 +17,13 @@ const DIGITS: usize = 16;
 
 /// The line of `item`, which is written as a JSON object of one field or more.
 pub(crate) fn line(item: &impl Serialize) -> String {
-    let object = serde_json::to_string(item).expect("no map with odd keys");
-    let open = object.strip_suffix('}').expect("an object");
-    format!("{open}{SUM}{}\"}}\n", &sha256(object.as_bytes())[..DIGITS])
+    summed(&serde_json::to_string(item).expect("no map with odd keys")).expect("an object")
+}
+
+/// The line of a JSON object, if it ends as one.
+pub(crate) fn summed(object: &str) -> Option<String> {
+    let open = object.strip_suffix('}')?;
+    Some(format!("{open}{SUM}{}\"}}\n", &sha256(object.as_bytes())[..DIGITS]))
 }
 
 /// The object of a line, if it is the one that was written.
@@ -31,16 +35,20 @@ fn object(line: &str) -> Option<String> {
 
 /// The items of a journal, but for a last line that was cut off; none where there is no file.
 pub(crate) fn read<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, RecordError> {
-    let bytes = match fs::read(path) {
-        Ok(bytes) => bytes,
-        Err(e) if e.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
-        Err(e) => return Err(RecordError::io("read", path)(e)),
-    };
+    match fs::read(path) {
+        Ok(bytes) => parse(&path.display().to_string(), &bytes),
+        Err(e) if e.kind() == ErrorKind::NotFound => Ok(Vec::new()),
+        Err(e) => Err(RecordError::io("read", path)(e)),
+    }
+}
+
+/// The same of the file's bytes; `file` is the name to show in errors.
+pub(crate) fn parse<T: DeserializeOwned>(file: &str, bytes: &[u8]) -> Result<Vec<T>, RecordError> {
     // A line may be cut within a letter.
-    let text = String::from_utf8_lossy(&bytes);
+    let text = String::from_utf8_lossy(bytes);
     let whole = text.split_inclusive('\n').filter_map(|line| line.strip_suffix('\n'));
     let read = |(number, line): (usize, &str)| {
-        let malformed = |problem: String| RecordError::malformed(&path.display().to_string(), number + 1, problem);
+        let malformed = |problem: String| RecordError::malformed(file, number + 1, problem);
         let object = object(line).ok_or_else(|| malformed("the checksum of this line does not fit".into()))?;
         serde_json::from_str(&object).map_err(|e| malformed(e.to_string()))
     };
