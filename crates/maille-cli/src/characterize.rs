@@ -298,7 +298,7 @@ fn once(args: &Args) -> Result<ExitCode> {
     let begun = Instant::now();
     let open = map::open(&map, &input)?;
     if !args.quiet {
-        if open.is_unbounded() {
+        if open.is_unlinked() {
             eprintln!("warning: no chain of links joins the cells of this design; no pull has a bound");
         }
         if open.left() < open.total() {

@@ -268,6 +268,26 @@ fn what_is_caged_is_held_without_a_link() {
     }
 }
 
+/// Rings one behind the other, pulled across with a little of a degree along: by l1 = 128 they are not past each other. Nothing holds
+/// them, and nothing is shown: no number.
+#[test]
+fn what_is_neither_held_nor_apart_has_no_number() {
+    let stack = design([[0.5, 0.0, 0.0], [0.0, 4.0, 0.0]], 0.1, 1.0, &[([0.0; 3], X, 1.0, None)]);
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("stack.toml"), stack).unwrap();
+    let (code, _, said) =
+        maille(folder.path(), "characterize stack.toml --directions 90.01 --l2 0 --cell 1x1 --out out --quiet");
+    assert_eq!(code, 5, "{said}");
+    let table: Value = serde_json::from_str(&maille(folder.path(), "table out --format json").1).unwrap();
+    let row = &table["rows"][0];
+    assert_eq!(
+        (&row["status"], &row["l1"], &row["l1_uncertified"]),
+        (&"uncertified".into(), &Value::Null, &Value::Null)
+    );
+    assert_eq!(maille(folder.path(), "verify out --quiet").0, 0);
+    assert!(fs::read_to_string(folder.path().join("out/states.jsonl")).unwrap().contains("no contact held it"));
+}
+
 /// The least and the largest of what nothing holds are no numbers: the search was only stopped there.
 #[test]
 fn a_strain_that_nothing_holds_has_no_largest_value() {

@@ -98,6 +98,12 @@ fn that_a_sheet_comes_apart_is_proved_and_a_state_that_does_not_show_it_found() 
     let (outcome, found) = verified(dir.path(), "record");
     assert_eq!(outcome, 0, "{found:#}");
     assert_eq!(said(&found, "bound", "proved"), ["from this state l1 can grow for ever"; 2], "{found:#}");
+    // So does the energy method's state.
+    let line = "characterize chains.toml --directions 90 --l2 0 --method energy --cell 1x1 --out energy --quiet";
+    assert_eq!(code(&maille(dir.path(), line)), 0);
+    let (outcome, found) = verified(dir.path(), "energy");
+    assert_eq!(outcome, 0, "{found:#}");
+    assert_eq!(said(&found, "bound", "proved"), ["from this state l1 can grow for ever"], "{found:#}");
     let specimen = Specimen { dir };
     // The rows of rings so near that one of them could still hold the next.
     specimen.forge_state(|state| state["a2"] = json!([0.0, 2.1, 0.0]));

@@ -4,7 +4,7 @@
 
 mod journal;
 
-pub use self::journal::{BoundaryHead, JOURNAL, SurfaceFolder, read_surface, surface_line, write_surface};
+pub use self::journal::{BoundaryHead, SurfaceFolder, read_surface, surface_line, write_surface};
 
 use maille::{
     limit::boundary::{Boundary, BoundaryVertex},

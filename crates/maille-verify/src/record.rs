@@ -259,8 +259,8 @@ impl Row {
         matches!(self.status.as_str(), "global" | "local")
     }
 
-    /// Whether the state is to show that l1 can grow for ever; the energy method's may overlap.
+    /// Whether the state is to show that l1 can grow for ever.
     pub(crate) fn comes_apart(&self) -> bool {
-        self.status == "unbounded" && self.method == "exact"
+        self.status == "unbounded"
     }
 }

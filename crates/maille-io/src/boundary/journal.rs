@@ -17,7 +17,7 @@ use serde_json::json;
 use std::{fs, io::Write, path::Path};
 
 /// Name of the file.
-pub const JOURNAL: &str = "boundary.jsonl";
+const JOURNAL: &str = "boundary.jsonl";
 
 /// First line of a journal.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

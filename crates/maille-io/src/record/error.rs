@@ -30,7 +30,7 @@ pub enum RecordError {
     },
     /// A file of the record is not the one that was written.
     #[error("{file} was edited or cut off: its SHA-256 is {found}, {by} has {expected}")]
-    #[diagnostic(help("restore the file, or compute the record again with --overwrite"))]
+    #[diagnostic(help("restore the file, or compute it again; a record with --overwrite"))]
     Edited {
         /// Path of the file.
         file: String,

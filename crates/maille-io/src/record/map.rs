@@ -111,7 +111,7 @@ impl OpenMap {
     }
 
     /// Whether no chain of links joins the cells of the design.
-    pub fn is_unbounded(&self) -> bool {
+    pub fn is_unlinked(&self) -> bool {
         maille::topology::binding_vectors(&self.models[0]).is_empty()
     }
 

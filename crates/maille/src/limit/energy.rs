@@ -293,7 +293,12 @@ impl Search<'_> {
             }
             let trial = self.trial(l1);
             if self.reached(&trial) {
-                if !linked && comes_apart(self.method.model, &trial.state, self.direction_deg) {
+                let model = self.method.model;
+                let whole = |state: &State| {
+                    topology::links_kept(model, state)
+                        && topology::smallest_gap(model, state).is_none_or(|(gap, _)| gap >= 0.0)
+                };
+                if !linked && comes_apart(model, &trial.state, self.direction_deg) && whole(&trial.state) {
                     let note = format!("no chain of links; at l1 = {l1} nothing is left that could hold it");
                     return self.end(Status::Unbounded, Some(trial), Some(note));
                 }

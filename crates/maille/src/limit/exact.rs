@@ -357,6 +357,7 @@ impl<'a> ExactMethod<'a> {
         if self.options.compression { family.least() } else { family }
     }
 
+    /// A search in one cell, before its first solve.
     pub(super) fn searching<'s>(
         &'s self,
         cell: usize,
