@@ -6,6 +6,9 @@
 mod apart;
 mod balance;
 mod chain;
+mod claims;
+mod curvature;
+mod dual;
 mod endless;
 mod files;
 mod linking;
@@ -13,6 +16,7 @@ mod record;
 mod report;
 mod sheet;
 mod strain;
+mod tie;
 mod verifier;
 
 pub use balance::{COMPLEMENTARITY, RESIDUAL};
