@@ -90,7 +90,7 @@ pub(crate) struct Closed<'a> {
 
 impl<'a> Closed<'a> {
     /// The least distance next to `angle`.
-    fn next_to(sheet: &'a Sheet, pair: Pair, angle: f64) -> Self {
+    pub fn next_to(sheet: &'a Sheet, pair: Pair, angle: f64) -> Self {
         let (one, other) = (sheet.circle(pair.0, [0, 0]), sheet.circle(pair.1, pair.2));
         Closed::at(sheet, pair, least(&Arc::new(&one, &other), angle))
     }

@@ -37,7 +37,7 @@ pub(crate) struct Sheet {
     pub bodies: Vec<Body>,
     pub lattice: [Vec3; 2],
     /// Where the copy of the design's cell lies that each element is of, at the start.
-    copies: Vec<Vec3>,
+    pub copies: Vec<Vec3>,
 }
 
 /// Rows of integers: the cell's lattice vectors in those of the design.
