@@ -11,6 +11,7 @@ mod curvature;
 mod dual;
 mod endless;
 mod files;
+mod image;
 mod linking;
 mod record;
 mod report;

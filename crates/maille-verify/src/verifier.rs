@@ -9,6 +9,7 @@ use crate::{
     dual::{self, Held, Starts},
     endless::could_meet,
     files,
+    image::too_near,
     linking::linking_number,
     record::{Row, Run, State, Texts, Unreadable, read_rows, read_run, read_states},
     report::{Check, Finding, RowReport, Verdict},
@@ -288,19 +289,37 @@ impl Verifier {
     /// A row that claims that no state has its l2.
     fn unreachable(&self, row: &Row, state: &State) -> Finding {
         let say = |verdict, words: String| Finding::new(Check::Bound, verdict, None, words);
-        match self.derived(row, state) {
-            Ok(Some((means, most))) if most < -1.0 => say(Verdict::Proved, format!("{means} forbids this l2")),
-            Ok(Some((means, most))) if row.bound_l1.is_none() => {
+        let (means, most) = match self.derived(row, state) {
+            Ok(Some((means, most))) if most < -1.0 => {
+                return say(Verdict::Proved, format!("{means} forbids this l2"));
+            }
+            Ok(Some(derived)) => derived,
+            Ok(None) => return say(Verdict::Open, "nothing in the state proves that no state has this l2".into()),
+            Err((verdict, words)) => return say(verdict, words),
+        };
+        match self.images(row, most) {
+            Ok(Some((element, shift))) => {
+                let name = &state.poses[element].element;
+                say(Verdict::Proved, format!("\"{name}\" would overlap its image at {shift:?}, or be linked with it"))
+            }
+            // Where the chain is to prove it the row has no bound; where images do, it has that of l1.
+            Ok(None) if row.bound_l1.is_none() => {
                 say(Verdict::False, format!("{means} allows this l2, with l1 ≤ {most:?}"))
             }
-            Ok(Some((means, _))) => {
-                let words =
-                    format!("{means} allows this l2; that images of an element would be too near was not derived");
+            Ok(None) => {
+                let words = format!("{means} allows this l2, and no images of an element are shown to be too near");
                 say(Verdict::Open, words)
             }
-            Ok(None) => say(Verdict::Open, "nothing in the state proves that no state has this l2".into()),
             Err((verdict, words)) => say(verdict, words),
         }
+    }
+
+    /// An element of the row's cell whose image would be too near at every l1 up to `most`.
+    fn images(&self, row: &Row, most: f64) -> Result<Option<(usize, [i32; 2])>, (Verdict, String)> {
+        if [&row.lateral, &row.shear].iter().any(|word| word.as_deref() == Some("free")) {
+            return Ok(None);
+        }
+        Ok(too_near(linked(&self.starts[&row.cell])?, most, row.l2, strain::axes(row.direction_deg)))
     }
 
     /// By what means the state bounds l1, and the bound; below −1 where no state has this l2. `None` if it names nothing.
