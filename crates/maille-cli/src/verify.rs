@@ -20,9 +20,10 @@ use std::{
 
 /// Derive each state of a record anew, by other means than it was found, and say what is proved
 ///
-/// Of each row with a limit: its strains from its lattice; that no two rings overlap by more than 1e-9 R, by a bound
-/// on whole arcs; linking numbers by Gauss's integral; that the contact forces push and balance the pull to 1e-6, from
-/// differences of gaps; the chain bound. And that the files are whole, unedited, and fit together.
+/// Of each row with a limit: that it has what its status says; its strains from its lattice; that no two rings overlap by more than 1e-9 R,
+/// by a bound on whole arcs; linking numbers by Gauss's integral; that the recorded contact forces push and balance the pull to
+/// 1e-6, from differences of gaps; that no small motion raises l1, to second order; its bound, from the chain or the forces that the state names. Of rows
+/// without one: that no state has their l2, or that l1 can grow for ever. And that the files are whole, unedited, and fit together.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -31,8 +32,8 @@ Examples:
   maille verify 1.1 --rows                a line for each row
   maille verify 1.1 --json
 
-Not derived: that no small motion raises l1 to second order, link bounds, and what the search did (n_starts, wall_s …).
-docs/reliability.md has the method.
+What a row claims is derived, or false, or open. Not judged: what the search did (n_starts, n_distinct, iterations, runs, wall_s), and
+that rings never crossed on the way. docs/reliability.md has the method.
 
 Exit codes: 0 all certified rows are proved, 4 something is false or unreadable, 5 something could not be proved.")]
 pub struct Args {
@@ -164,12 +165,7 @@ fn tell(record: &Verified, all: bool) {
         if findings.is_empty() {
             continue;
         }
-        let verdicts = [
-            (Verdict::Proved, "proved"),
-            (Verdict::Consistent, "not derived, fits"),
-            (Verdict::Open, "could not be shown"),
-            (Verdict::False, "false"),
-        ];
+        let verdicts = [(Verdict::Proved, "proved"), (Verdict::Open, "could not be shown"), (Verdict::False, "false")];
         let count = |verdict: Verdict| findings.iter().filter(|f| f.verdict == verdict).count();
         let words = verdicts.iter().map(|(verdict, word)| (count(*verdict), word)).filter(|(n, _)| *n > 0);
         let words: Vec<String> = words.map(|(n, word)| format!("{n} {word}")).collect();

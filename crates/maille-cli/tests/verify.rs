@@ -112,18 +112,74 @@ fn that_a_sheet_comes_apart_is_proved_and_a_state_that_does_not_show_it_found() 
     assert!(said(&found, "bound", "false")[0].contains("could meet where l1 grows on"), "{found:#}");
 }
 
-/// A record of 1.1 that can be tampered with.
+/// A record that can be tampered with.
 struct Specimen {
     dir: tempfile::TempDir,
 }
 
 impl Specimen {
+    /// Of 1.1.
     fn new() -> Self {
+        Specimen::of("1.1 --directions 0,25 --l2=-0.125,0 --cell 1x1")
+    }
+
+    fn of(rest: &str) -> Self {
         let dir = tempfile::tempdir().unwrap();
-        let line = "characterize 1.1 --directions 0,25 --l2=-0.125,0 --cell 1x1 --out record --quiet";
-        assert_eq!(code(&maille(dir.path(), line)), 0);
+        let line = format!("characterize {rest} --out record --quiet");
+        assert!([0, 5].contains(&code(&maille(dir.path(), &line))), "{line}");
         all_proved(dir.path(), "record");
         Specimen { dir }
+    }
+
+    /// Changes cells of the first row, and what the state and the counters say of its status.
+    fn forge_row(&self, cells: &[(&str, &str)]) {
+        let mut lines: Vec<Vec<String>> =
+            self.text("limits.csv").lines().map(|line| line.split(',').map(str::to_owned).collect()).collect();
+        for (column, value) in cells {
+            let at = lines[0].iter().position(|name| name == column).unwrap_or_else(|| panic!("{column}"));
+            lines[1][at] = (*value).to_owned();
+        }
+        let text: Vec<String> = lines.iter().map(|cells| cells.join(",")).collect();
+        self.forge("limits.csv", &(text.join("\n") + "\n"));
+        let Some((_, status)) = cells.iter().find(|(column, _)| *column == "status") else { return };
+        self.forge_state(|state| state["status"] = json!(status));
+        let at = lines[0].iter().position(|name| name == "status").unwrap();
+        let mut counts = serde_json::Map::new();
+        for line in &lines[1..] {
+            let count = counts.get(&line[at]).and_then(Value::as_u64).unwrap_or(0);
+            counts.insert(line[at].clone(), json!(count + 1));
+        }
+        self.forge_run(|run| run["counters"]["rows"] = Value::Object(counts.clone()));
+    }
+
+    /// A cell of the first row.
+    fn cell(&self, column: &str) -> String {
+        let text = self.text("limits.csv");
+        let mut lines = text.lines();
+        let at = lines.next().unwrap().split(',').position(|name| name == column).unwrap();
+        lines.next().unwrap().split(',').nth(at).unwrap().to_owned()
+    }
+
+    /// Changes `run.json`, with its input hash.
+    fn forge_run(&self, change: impl Fn(&mut Value)) {
+        let mut run: Value = serde_json::from_str(&self.text("run.json")).unwrap();
+        change(&mut run);
+        let inputs = [("design", &run["design"]), ("parameters", &run["parameters"]), ("schema", &run["schema"])];
+        let inputs: Vec<String> = inputs.iter().map(|(name, value)| format!("\"{name}\":{}", sorted(value))).collect();
+        let sum = Sha256::digest(format!("{{{}}}", inputs.join(",")));
+        run["input_hash"] = json!(sum.iter().map(|byte| format!("{byte:02x}")).collect::<String>());
+        fs::write(self.path("run.json"), serde_json::to_string_pretty(&run).unwrap() + "\n").unwrap();
+    }
+
+    /// The first row is false or open, as `code` says, by this check; the files fit together.
+    fn found_by(&self, code: i32, check: &str, words: &str) {
+        let (found_code, found) = self.verified();
+        assert_eq!(found_code, code, "{found:#}");
+        assert_eq!(said(&found, "files", "false"), [""; 0]);
+        let is_certified = found["rows"][0]["certified"] == true;
+        assert!(!is_certified || found["proved"].as_u64() < found["certified"].as_u64());
+        let said = said(&found, check, if code == 4 { "false" } else { "open" });
+        assert!(said.iter().any(|w| w.contains(words)), "{check} {words}: {found:#}");
     }
 
     fn path(&self, name: &str) -> PathBuf {
@@ -164,6 +220,21 @@ impl Specimen {
         assert_eq!(said(&found, "files", "false"), [""; 0]);
         let said = said(&found, check, "false");
         assert!(said.iter().any(|w| w.contains(words)), "{check} {words}: {found:#}");
+    }
+}
+
+/// JSON with sorted keys and no spaces.
+fn sorted(value: &Value) -> String {
+    match value {
+        Value::Object(map) => {
+            let mut keys: Vec<&String> = map.keys().collect();
+            keys.sort();
+            let entries: Vec<String> =
+                keys.iter().map(|key| format!("{}:{}", json!(key), sorted(&map[*key]))).collect();
+            format!("{{{}}}", entries.join(","))
+        }
+        Value::Array(items) => format!("[{}]", items.iter().map(sorted).collect::<Vec<_>>().join(",")),
+        leaf => leaf.to_string(),
     }
 }
 
@@ -321,4 +392,193 @@ fn a_run_that_was_killed_between_two_files_is_open_not_false() {
     let line = "characterize 1.1 --directions 0,25 --l2=-0.125,0 --cell 1x1 --out record --quiet";
     assert_eq!(self::code(&maille(specimen.dir.path(), line)), 0);
     all_proved(specimen.dir.path(), "record");
+}
+
+/// What a row without a limit leaves empty.
+const LIMIT: [&str; 28] = [
+    "l1",
+    "lambda1",
+    "lambda2",
+    "stretch1",
+    "stretch2",
+    "max_overlap",
+    "min_gap",
+    "bound_l1",
+    "bound_kind",
+    "bound_gap",
+    "dual_residual",
+    "complementarity",
+    "min_multiplier",
+    "min_curvature",
+    "zero_modes",
+    "links_ok",
+    "n_distinct",
+    "own_image_force",
+    "l1_uncertified",
+    "l2_min",
+    "l2_max",
+    "shear_min",
+    "shear_max",
+    "a1_x",
+    "a1_y",
+    "a2_x",
+    "a2_y",
+    "by_cell",
+];
+
+fn without_limit(status: &'static str) -> Vec<(&'static str, &'static str)> {
+    LIMIT.iter().map(|column| (*column, "")).chain([("status", status)]).collect()
+}
+
+#[test]
+fn a_limit_that_was_rewritten_as_unreachable_is_found() {
+    // The numbers left, then emptied with the chain left, then without the chain.
+    let specimen = Specimen::new();
+    specimen.forge_row(&[("status", "l2-unreachable")]);
+    specimen.found_by(4, "status", "a row that is l2-unreachable has l1");
+    let specimen = Specimen::new();
+    specimen.forge_row(&without_limit("l2-unreachable"));
+    specimen.found_by(4, "bound", "a chain of links allows this l2");
+    specimen.forge_state(|state| {
+        state.as_object_mut().unwrap().remove("chain");
+    });
+    specimen.found_by(5, "bound", "nothing in the state proves that no state has this l2");
+}
+
+/// A row whose limit stays below its bound, claimed to attain it.
+#[test]
+fn a_local_limit_that_was_lifted_to_global_is_found() {
+    let local = || {
+        let specimen = Specimen::of("2 --directions 0 --l2 0 --cell 1x1 --starts 1");
+        assert_eq!(specimen.cell("status"), "local");
+        specimen
+    };
+    let bound = |specimen: &Specimen, kind: &'static str| {
+        let l1 = specimen.cell("l1");
+        specimen.forge_row(&[("status", "global"), ("bound_l1", &l1), ("bound_gap", "0.0"), ("bound_kind", kind)]);
+    };
+    // The chain that the solver wrote proves the true bound and no lower one; it proves no link bound.
+    let specimen = local();
+    bound(&specimen, "chain");
+    specimen.found_by(4, "bound", "a chain of links proves l1 ≤");
+    for kind in ["link", "chain"] {
+        let specimen = local();
+        bound(&specimen, kind);
+        specimen.forge_state(|state| {
+            state.as_object_mut().unwrap().remove("chain");
+            state.as_object_mut().unwrap().remove("dual");
+        });
+        specimen.found_by(5, "bound", "nothing in the state proves the bound");
+    }
+}
+
+#[test]
+fn a_link_bound_that_its_forces_do_not_prove_is_found() {
+    let global = || {
+        let specimen = Specimen::of("5.1 --directions 0 --l2 0 --cell 1x1 --starts 1");
+        assert_eq!((specimen.cell("status"), specimen.cell("bound_kind")), ("global".into(), "link".into()));
+        specimen
+    };
+    let of_forces = "a balance of forces in the links";
+    let higher = (global().cell("bound_l1").parse::<f64>().unwrap() + 0.1).to_string();
+    // Another bound; forces that balance no more; rings that are not linked; no forces.
+    let specimen = global();
+    specimen.forge_row(&[("status", "local"), ("bound_l1", &higher), ("bound_gap", "0.1")]);
+    let (code, found) = specimen.verified();
+    assert_eq!((code, said(&found, "bound", "false").len()), (4, 1), "{found:#}");
+    let specimen = global();
+    specimen.forge_state(|state| {
+        let force = &mut state["dual"][0]["force"][0];
+        *force = json!(force.as_f64().unwrap() + 1e-3);
+    });
+    specimen.found_by(4, "bound", of_forces);
+    let specimen = global();
+    specimen.forge_state(|state| state["dual"][0]["rings"][0][1] = json!([7, 0]));
+    specimen.found_by(4, "bound", "which are not linked");
+    let specimen = global();
+    specimen.forge_state(|state| {
+        state.as_object_mut().unwrap().remove("dual");
+        state.as_object_mut().unwrap().remove("chain");
+    });
+    specimen.found_by(5, "bound", "nothing in the state proves the bound");
+}
+
+#[test]
+fn certificates_that_were_emptied_or_invented_are_found() {
+    for (cells, check, words) in [
+        (vec![("min_curvature", "0.5")], "curvature", "min_curvature is Some(0.5)"),
+        (vec![("min_curvature", "")], "curvature", "min_curvature is None"),
+        (vec![("min_curvature", "-0.1")], "status", "min_curvature of a certified row"),
+        (vec![("zero_modes", "99")], "curvature", "Some(99) zero modes"),
+        (vec![("n_distinct", "999")], "status", "n_distinct is 999"),
+        (vec![("n_distinct", "0")], "status", "n_distinct is 0"),
+        (vec![("dual_residual", "")], "status", "has no dual_residual"),
+        (vec![("complementarity", "")], "status", "has no complementarity"),
+        (vec![("min_multiplier", "")], "status", "has no min_multiplier"),
+        (vec![("zero_modes", "")], "status", "has no zero_modes"),
+        (vec![("links_ok", "")], "status", "has no links_ok"),
+        (vec![("links_ok", "false")], "status", "links_ok of a certified row is false"),
+        (vec![("own_image_force", "")], "status", "has no own_image_force"),
+        (vec![("min_gap", "")], "status", "has no min_gap"),
+        (vec![("bound_l1", "")], "status", "has no bound_l1"),
+        (vec![("l1", "")], "status", "has no l1"),
+        (vec![("l2_min", "")], "status", "has no l2_min"),
+        (vec![("dual_residual", "0.1")], "status", "dual_residual of a certified row"),
+        (vec![("status", "threshold-reached")], "status", "the exact method has no status threshold-reached"),
+        (vec![("status", "l2-not-reached")], "status", "a row that is l2-not-reached has l1"),
+    ] {
+        let specimen = Specimen::new();
+        specimen.forge_row(&cells);
+        specimen.found_by(4, check, words);
+    }
+}
+
+#[test]
+fn a_certificate_of_the_energy_method_is_found() {
+    let specimen = Specimen::of("1.1 --directions 0 --l2 0 --cell 1x1");
+    specimen.forge_run(|run| run["parameters"]["method"] = json!("energy"));
+    specimen.forge_row(&[("method", "energy")]);
+    specimen.found_by(4, "status", "the energy method has no status global");
+}
+
+#[test]
+fn rows_that_are_all_of_larger_cells_are_proved() {
+    let dir = tempfile::tempdir().unwrap();
+    let line = "characterize 3.1 --directions 30 --l2=-0.25 --out record --quiet";
+    assert_eq!(code(&maille(dir.path(), line)), 0);
+    let row = verified(dir.path(), "record").1["rows"][0].clone();
+    assert_eq!(row["status"], "local");
+    let cell = fs::read_to_string(dir.path().join("record/limits.csv")).unwrap();
+    assert!(!cell.lines().nth(1).unwrap().contains(",1x1,"), "{cell}");
+    all_proved(dir.path(), "record");
+}
+
+/// Beside the direction across a chain nothing is unbounded, and what is left of the pull is no fault of the record.
+#[test]
+fn next_to_the_direction_across_a_chain_nothing_is_unbounded() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("chains.toml"), CHAINS).unwrap();
+    for direction in ["90.00000001", "90.0001"] {
+        let line =
+            format!("characterize chains.toml --directions {direction} --l2 0 --cell 1x1 --out {direction} --quiet");
+        assert!([0, 5].contains(&code(&maille(dir.path(), &line))), "{line}");
+        let (outcome, found) = verified(dir.path(), direction);
+        assert_ne!(found["rows"][0]["status"], "unbounded", "{found:#}");
+        assert_ne!(outcome, 4, "{found:#}");
+    }
+}
+
+/// Images of a gyroscope would be linked: shown by translations. Without what bounds l1 nothing is shown.
+#[test]
+fn that_images_would_be_too_near_is_proved() {
+    let specimen = Specimen { dir: tempfile::tempdir().unwrap() };
+    let line = "characterize 1.3 --directions 22.5 --l2 0.125 --cell 1x1 --starts 1 --out record --quiet";
+    assert_eq!(code(&maille(specimen.dir.path(), line)), 5);
+    let (outcome, found) = specimen.verified();
+    assert_eq!((outcome, &found["rows"][0]["status"]), (0, &json!("l2-unreachable")), "{found:#}");
+    assert!(said(&found, "bound", "proved")[0].contains("would overlap its image"), "{found:#}");
+    specimen.forge_state(|state| {
+        state.as_object_mut().unwrap().remove("chain");
+    });
+    specimen.found_by(5, "bound", "nothing in the state proves");
 }

@@ -21,8 +21,8 @@ use maille_geometry::Circle;
 /// What is known of the distance of two circles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Apart {
-    /// Proved to be at least what was asked. The least distance that was seen is an upper bound of it, if there is one.
-    Proved(f64),
+    /// Proved to be at least what was asked.
+    Proved,
     /// There are points this near.
     Nearer(f64),
     /// Neither could be shown with [`ARCS`] arcs.
@@ -40,11 +40,11 @@ pub(crate) fn apart(one: &Circle, other: &Circle, least: f64, slack: f64) -> Apa
     let (a, b) = if one.radius >= other.radius { (one, other) } else { (other, one) };
     let between = b.center - a.center;
     if between.norm() - a.radius - b.radius - slack >= least {
-        return Apart::Proved(f64::INFINITY);
+        return Apart::Proved;
     }
     let tilt = a.normal.cross(&b.normal).norm();
     if between.dot(&a.normal).abs() - b.radius * tilt - 4.0 * slack >= least {
-        return Apart::Proved(f64::INFINITY);
+        return Apart::Proved;
     }
     let arm = Arc::new(a, b);
     let mut nearest = f64::INFINITY;
@@ -66,7 +66,7 @@ pub(crate) fn apart(one: &Circle, other: &Circle, least: f64, slack: f64) -> Apa
             open.extend([(mid - 0.5 * half, 0.5 * half), (mid + 0.5 * half, 0.5 * half)]);
         }
     }
-    Apart::Proved(nearest)
+    Apart::Proved
 }
 
 /// A lower bound of the distance, at least half of it, if it is not 0 to rounding.
@@ -74,7 +74,7 @@ pub(crate) fn some_distance(a: &Circle, b: &Circle, slack: f64) -> Option<f64> {
     let mut least = a.radius.min(b.radius);
     while least > 1e3 * slack {
         match apart(a, b, least, slack) {
-            Apart::Proved(_) => return Some(least),
+            Apart::Proved => return Some(least),
             Apart::Nearer(found) | Apart::Unknown(found) => least = (0.7 * found).min(0.7 * least),
         }
     }
@@ -183,7 +183,7 @@ mod tests {
             let seen = seen.fold(f64::INFINITY, f64::min);
             // The grid is off by less than ϱ times half a step.
             let off = radius * std::f64::consts::PI / f64::from(steps);
-            assert!(matches!(apart(&a, &b, seen - off, 1e-14), Apart::Proved(_)), "{k}");
+            assert!(matches!(apart(&a, &b, seen - off, 1e-14), Apart::Proved), "{k}");
             match apart(&a, &b, seen + 1e-9, 1e-14) {
                 Apart::Nearer(found) => assert!(found <= seen + 1e-9 && found >= seen - off - 1e-12, "{k}"),
                 other => panic!("{k}: {other:?}"),
@@ -203,7 +203,7 @@ mod tests {
             (circle([0.0, 0.0, 0.0], [0.0, 0.0, 1.0], 0.8), 0.2),
         ];
         for (b, distance) in cases {
-            assert!(matches!(apart(&a, &b, distance - 1e-9, 1e-14), Apart::Proved(_)), "{b:?}");
+            assert!(matches!(apart(&a, &b, distance - 1e-9, 1e-14), Apart::Proved), "{b:?}");
             assert!(matches!(apart(&a, &b, distance + 1e-9, 1e-14), Apart::Nearer(_)), "{b:?}");
         }
     }

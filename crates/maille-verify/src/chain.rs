@@ -8,8 +8,8 @@
 
 use crate::{
     record::Chain,
-    sheet::{Pair, Sheet},
-    strain::axes,
+    strain::{ACROSS, axes},
+    tie::{Linked, Place},
 };
 
 /// What a chain proves of l1, where l2 is held and the shear is 0.
@@ -20,48 +20,45 @@ pub(crate) enum ChainBound {
     Impossible,
 }
 
-/// Ends across the pull bind nothing along it.
-const ACROSS: f64 = 1e-9;
+/// The vector v and the length of a chain from a ring to its image.
+pub(crate) fn length(start: Linked<'_>, rings: &[Place]) -> Result<([i32; 2], f64), String> {
+    let (Some(first), Some(last)) = (rings.first(), rings.last()) else {
+        return Err("the chain is empty".into());
+    };
+    let vector = [last.1[0] - first.1[0], last.1[1] - first.1[1]];
+    if first.0 != last.0 || vector == [0, 0] {
+        return Err("the chain does not lead from a ring to its image".into());
+    }
+    let mut length = 0.0;
+    let count = start.sheet.rings.len();
+    for pair in rings.windows(2) {
+        let (a, b) = (pair[0], pair[1]);
+        if a.0.max(b.0) >= count {
+            return Err(format!("the chain names ring {}, of {count} rings", a.0.max(b.0)));
+        }
+        let (one, other) = (&start.sheet.rings[a.0], &start.sheet.rings[b.0]);
+        length +=
+            if one.element == other.element && a.1 == b.1 { (one.arm - other.arm).norm() } else { start.link(a, b)? };
+    }
+    Ok((vector, length))
+}
 
-/// The bound of `chain` on `sheet`, the start in the cell that the chain's shifts count, whose linked pairs are `links`.
+/// The bound of `chain` on the start in the cell that the chain's shifts count.
 pub(crate) fn bound(
-    sheet: &Sheet,
-    links: &[(Pair, i32)],
+    start: Linked<'_>,
     chain: &Chain,
     unit: f64,
     direction_deg: f64,
     l2: f64,
 ) -> Result<ChainBound, String> {
-    let linked = |a: usize, b: usize, [m, n]: [i32; 2]| {
-        links.iter().any(|((x, y, s), _)| (*x, *y, *s) == (a, b, [m, n]) || (*x, *y, *s) == (b, a, [-m, -n]))
-    };
-    let (Some(first), Some(last)) = (chain.rings.first(), chain.rings.last()) else {
-        return Err("the chain is empty".into());
-    };
-    let along = [last.1[0] - first.1[0], last.1[1] - first.1[1]];
-    if first.0 != last.0 || along != chain.vector || along == [0, 0] {
-        return Err("the chain does not lead from a ring to its image at the vector it names".into());
-    }
-    let mut length = 0.0;
-    for pair in chain.rings.windows(2) {
-        let ((a, p), (b, q)) = (pair[0], pair[1]);
-        if a.max(b) >= sheet.rings.len() {
-            return Err(format!("the chain names ring {}, of {} rings", a.max(b), sheet.rings.len()));
-        }
-        let (one, other) = (&sheet.rings[a], &sheet.rings[b]);
-        let shift = [q[0] - p[0], q[1] - p[1]];
-        length += if one.element == other.element && shift == [0, 0] {
-            (one.arm - other.arm).norm()
-        } else if linked(a, b, shift) {
-            one.radius + other.radius - one.wire - other.wire
-        } else {
-            return Err(format!("the chain joins rings {a} and {b} at {shift:?}, which are not linked"));
-        };
+    let (vector, length) = length(start, &chain.rings)?;
+    if vector != chain.vector {
+        return Err(format!("the chain leads to {vector:?}, {:?} is written", chain.vector));
     }
     if (length - chain.length / unit).abs() > 1e-12 * length {
         return Err(format!("the chain's length is {length:?} R, {:?} in the state", chain.length / unit));
     }
-    let v = sheet.translation(along).xy();
+    let v = start.sheet.translation(vector).xy();
     let (d, side) = axes(direction_deg);
     let (reach, used) = (v.dot(&d).abs(), (1.0 + l2) * v.dot(&side).abs());
     if used > length * (1.0 + 1e-12) {

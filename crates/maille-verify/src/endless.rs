@@ -6,12 +6,9 @@
 
 use crate::{
     sheet::{Pair, Sheet, Vec3},
-    strain,
+    strain::{self, ACROSS},
 };
 use nalgebra::Vector2;
-
-/// D·t counts as 0 below this share of |t|: the direction of the pull is rounded.
-const ACROSS: f64 = 1e-9;
 
 /// The first pair of rings that a larger l1 could bring together, if there is one. Overlap of the state itself is not looked at.
 pub(crate) fn could_meet(here: &Sheet, start: &Sheet, along: Vector2<f64>) -> Result<Option<Pair>, String> {

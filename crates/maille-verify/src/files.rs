@@ -142,10 +142,6 @@ fn rows_and_states(run: &Run, rows: &[Row], states: &[State]) -> Vec<Finding> {
         if Some(row.method.as_str()) != run.parameters["method"].as_str() {
             wrong.push(format!("{at}: method \"{}\" is not the one of {RUN}", row.method));
         }
-        let earned = matches!(row.status.as_str(), "global" | "local" | "threshold-reached");
-        if earned != row.l1.is_some() {
-            wrong.push(format!("{at}: a row that is {} has {} l1", row.status, if earned { "no" } else { "an" }));
-        }
     }
     let mut found = BTreeSet::new();
     for (k, state) in states.iter().enumerate() {

@@ -6,13 +6,18 @@
 mod apart;
 mod balance;
 mod chain;
+mod claims;
+mod curvature;
+mod dual;
 mod endless;
 mod files;
+mod image;
 mod linking;
 mod record;
 mod report;
 mod sheet;
 mod strain;
+mod tie;
 mod verifier;
 
 pub use balance::{COMPLEMENTARITY, RESIDUAL};

@@ -4,7 +4,7 @@
 
 use serde::{Deserialize, de::DeserializeOwned};
 use serde_json::Value;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use thiserror::Error;
 
 /// The files of a record. What is not there is `None`.
@@ -110,6 +110,9 @@ pub(crate) struct Row {
     pub complementarity: Option<f64>,
     pub min_multiplier: Option<f64>,
     pub min_curvature: Option<f64>,
+    pub zero_modes: Option<u64>,
+    pub n_starts: Option<u64>,
+    pub n_distinct: Option<u64>,
     pub links_ok: Option<bool>,
     pub own_image_force: Option<f64>,
     pub l1_uncertified: Option<f64>,
@@ -151,6 +154,8 @@ pub(crate) struct State {
     pub contacts: Vec<Contact>,
     #[serde(default)]
     pub chain: Option<Chain>,
+    #[serde(default)]
+    pub dual: Vec<Dual>,
 }
 
 #[derive(Clone, Debug, Deserialize)]
@@ -176,6 +181,14 @@ pub(crate) struct Chain {
     pub vector: [i32; 2],
     pub length: f64,
     pub rings: Vec<(usize, [i32; 2])>,
+}
+
+/// The force of one tie in the proof of a bound.
+#[derive(Clone, Debug, Deserialize)]
+pub(crate) struct Dual {
+    pub tie: String,
+    pub rings: Vec<(usize, [i32; 2])>,
+    pub force: [f64; 3],
 }
 
 /// A text file ends with a newline; otherwise its last line may have lost its end.
@@ -205,9 +218,12 @@ pub(crate) fn read_states(text: &str) -> Result<Vec<State>, Unreadable> {
     text.lines().enumerate().map(|(k, line)| json(STATES, k + 1, line)).collect()
 }
 
-pub(crate) fn read_rows(text: &str) -> Result<Vec<Row>, Unreadable> {
+/// The rows, and the names of the columns.
+pub(crate) fn read_rows(text: &str) -> Result<(Vec<Row>, BTreeSet<String>), Unreadable> {
     complete(LIMITS, text)?;
     let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let header = reader.headers().map_err(|e| Unreadable { file: LIMITS, line: 1, problem: e.to_string() })?;
+    let columns = header.iter().map(str::to_owned).collect();
     let rows = reader.deserialize::<Row>().enumerate();
     let rows = rows.map(|(k, row)| {
         let wrong = |problem: String| Unreadable { file: LIMITS, line: k + 2, problem };
@@ -218,7 +234,7 @@ pub(crate) fn read_rows(text: &str) -> Result<Vec<Row>, Unreadable> {
             Err(wrong("a number is not finite".into()))
         }
     });
-    rows.collect()
+    Ok((rows.collect::<Result<_, _>>()?, columns))
 }
 
 impl Row {

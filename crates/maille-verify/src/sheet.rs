@@ -36,6 +36,8 @@ pub(crate) struct Sheet {
     pub rings: Vec<Ring>,
     pub bodies: Vec<Body>,
     pub lattice: [Vec3; 2],
+    /// Where the copy of the design's cell lies that each element is of, at the start.
+    pub copies: Vec<Vec3>,
 }
 
 /// Rows of integers: the cell's lattice vectors in those of the design.
@@ -55,6 +57,11 @@ pub(crate) fn cell(text: &str) -> Option<Cell> {
         [row(first)?, row(second)?]
     };
     (determinant(&rows) != 0).then_some(rows)
+}
+
+/// Copies of the design's cell.
+pub(crate) fn copies(cell: &Cell) -> u64 {
+    determinant(cell).unsigned_abs()
 }
 
 fn determinant(m: &Cell) -> i64 {
@@ -99,16 +106,17 @@ fn same_copy(cell: &Cell, a: [i32; 2], b: [i32; 2]) -> bool {
 }
 
 impl Sheet {
-    /// The start of `design` in `cell`, with the elements in the order of `poses`.
-    pub fn start(design: &Design, cell: &Cell, poses: &[Pose]) -> Result<Sheet, String> {
+    /// The start of `design` in `cell`, with the elements in the order of `names`.
+    pub fn start(design: &Design, cell: &Cell, names: &[&str]) -> Result<Sheet, String> {
         let unit = design.reference_radius;
         let [p1, p2] = primitive(design);
-        let mut out = Sheet { rings: Vec::new(), bodies: Vec::new(), lattice: vectors(cell, [p1, p2]) };
+        let mut out =
+            Sheet { rings: Vec::new(), bodies: Vec::new(), lattice: vectors(cell, [p1, p2]), copies: Vec::new() };
         let mut seen: Vec<(usize, [i32; 2])> = Vec::new();
-        for pose in poses {
-            let (element, copy) = named(design, cell, &pose.element)?;
+        for name in names {
+            let (element, copy) = named(design, cell, name)?;
             if seen.iter().any(|(e, c)| *e == element && same_copy(cell, *c, copy)) {
-                return Err(format!("two poses of \"{}\"", pose.element));
+                return Err(format!("two poses of \"{name}\""));
             }
             seen.push((element, copy));
             let spec = &design.elements[element];
@@ -123,7 +131,9 @@ impl Sheet {
                     wire: wire / unit,
                 });
             }
-            let position = Vec3::from(spec.center) / unit + p1 * f64::from(copy[0]) + p2 * f64::from(copy[1]);
+            let way = p1 * f64::from(copy[0]) + p2 * f64::from(copy[1]);
+            let position = Vec3::from(spec.center) / unit + way;
+            out.copies.push(way);
             out.bodies.push(Body { position, turn: UnitQuaternion::identity() });
         }
         let expected = design.elements.len() as u64 * determinant(cell).unsigned_abs();
@@ -146,7 +156,13 @@ impl Sheet {
         };
         let bodies = state.poses.iter().map(body).collect::<Result<_, _>>()?;
         let lattice = [state.a1, state.a2].map(|a| Vec3::from(a) / unit);
-        Ok(Sheet { rings: self.rings.clone(), bodies, lattice })
+        Ok(Sheet { rings: self.rings.clone(), bodies, lattice, copies: self.copies.clone() })
+    }
+
+    /// Where the copy that each element is of lies, in lattice vectors of this start.
+    pub fn carried(&self) -> Vec<[f64; 2]> {
+        let inverse = columns(self.lattice).try_inverse().unwrap_or_default();
+        self.copies.iter().map(|way| (inverse * way.xy()).into()).collect()
     }
 
     /// Translation of the image `shift`.

@@ -15,6 +15,10 @@ pub(crate) const SAME: f64 = 1e-11;
 /// Ranges of what is free are found with l1 less by 1e-6 of 1 + l1 (`free_slack` of the run).
 const RANGE: f64 = 1e-6;
 
+/// A vector lies across the pull if its part along it is at most this share of it: what rounding leaves of a direction in
+/// degrees, up to 360°, that is turned into radians, and of two products.
+pub(crate) const ACROSS: f64 = 16.0 * f64::EPSILON;
+
 /// The direction of the pull and the one across it, to its left.
 pub(crate) fn axes(direction_deg: f64) -> (Vector2<f64>, Vector2<f64>) {
     let (sin, cos) = direction_deg.to_radians().sin_cos();

@@ -1,6 +1,7 @@
 //! Characterisation: limits over directions and lateral strains, as rows and states of a record.
 
 use crate::{
+    bound::DualForce,
     lattice::{Across, Cell, direction},
     limit::{
         FreeRanges, LimitOutcome,
@@ -8,7 +9,7 @@ use crate::{
         exact::{ExactMethod, ExactOptions},
     },
     model::Model,
-    record::{ChainRecord, ContactRecord, LimitRow, StateRecord, Status, pose_records},
+    record::{ChainRecord, ContactRecord, DualRecord, LimitRow, StateRecord, Status, pose_records},
     topology,
 };
 use maille_geometry::Vec3;
@@ -245,6 +246,11 @@ fn report(
         length: chain.length * model.unit,
         rings: chain.rings.clone(),
     });
+    let force = |dual: &DualForce| DualRecord {
+        tie: dual.kind.name().into(),
+        rings: dual.rings.clone(),
+        force: dual.force.into(),
+    };
     let state = StateRecord {
         direction_deg: task.direction_deg,
         l2: task.l2,
@@ -257,6 +263,7 @@ fn report(
         note: outcome.note.clone(),
         contacts: exact.map_or(Vec::new(), |e| e.contacts.iter().map(contact).collect()),
         chain,
+        dual: exact.map_or(Vec::new(), |e| e.dual.iter().map(force).collect()),
     };
     (row, state)
 }

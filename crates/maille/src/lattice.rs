@@ -198,6 +198,10 @@ pub fn short_basis(a1: Vec3, a2: Vec3) -> Cell {
     Cell { rows }
 }
 
+/// A vector lies across a direction if its part along it is at most this share of it: as much as rounding leaves there of a
+/// direction in degrees (up to 360°, turned into radians: 1.4e-15) and of two products.
+pub const ACROSS: f64 = 16.0 * f64::EPSILON;
+
 /// The unit vector at `direction_deg`, exact at multiples of 90°.
 pub fn direction(direction_deg: f64) -> Vector2<f64> {
     let turn = direction_deg.rem_euclid(360.0);

@@ -225,15 +225,27 @@ pub struct ContactRecord {
     pub force: f64,
 }
 
-/// The chain of links that binds in the bound: rings with their cells, the last an image of the first.
+/// The chain of links that binds in the bound: rings with their cells, the last an image of the first. Rings and cells are
+/// counted in the first cell of the run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ChainRecord {
-    /// Lattice vector that the chain joins, in primitive cells.
+    /// Lattice vector that the chain joins, in those cells.
     pub vector: [i32; 2],
     /// Its length, in the file's unit.
     pub length: f64,
     /// (ring, cell) along the chain.
     pub rings: Vec<(usize, [i32; 2])>,
+}
+
+/// The force of one tie in a proof by the link bound, see `docs/theory/bounds.md`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DualRecord {
+    /// `link` of a, b; `strand-pair` of a, a', both linked with b; `crossing-pairs` of a, a' and b, b'; `chain`.
+    pub tie: String,
+    /// Its rings, each with its cell: counted in the design's own cell; along a chain in the first cell of the run.
+    pub rings: Vec<(usize, [i32; 2])>,
+    /// y for a unit pull, lengths in reference radii.
+    pub force: [f64; 3],
 }
 
 /// One line of `states.jsonl`: the state at the limit of one row (or the last state of a failed search).
@@ -264,4 +276,7 @@ pub struct StateRecord {
     /// The binding chain of the bound (exact method).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub chain: Option<ChainRecord>,
+    /// The forces that prove the bound, or that no state has this l2, where the chain does not (exact method).
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub dual: Vec<DualRecord>,
 }

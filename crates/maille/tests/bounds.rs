@@ -232,11 +232,44 @@ fn threads_bind_along_themselves_only() {
     let chain = ChainBound::new(&model);
     let link = LinkBound::new(&model, &chain);
     assert_eq!(chain.chains().count(), 1);
-    assert!(same(&chain.limit(0.0, 3.0), &Bound::Finite { l1: 0.44, kind: BoundKind::Chain, chain: None }, 1e-15));
+    assert!(same(
+        &chain.limit(0.0, 3.0),
+        &Bound::Finite { l1: 0.44, kind: BoundKind::Chain, chain: None, dual: Vec::new() },
+        1e-15
+    ));
     assert_eq!(chain.limit(90.0, 0.0), Bound::Unbounded);
     assert!(matches!(chain.limit(90.0, 0.45), Bound::L2Unreachable { .. }));
     assert_eq!(link.limit(90.0, 0.0).l1, f64::INFINITY);
     assert!((chain.limit(30.0, 0.0).l1().unwrap() - link.limit(30.0, 0.0).l1).abs() < 1e-9);
+}
+
+/// Beside the direction across a chain the chain still bounds l1; across it, but for the rounding of the direction, it does not.
+#[test]
+fn a_chain_binds_next_to_the_direction_across_it() {
+    let mut threads = design("1.1", 0.1);
+    threads.elements.retain(|e| e.rings[0].normal != [1.0, 0.0, 0.0]);
+    let chain = |threads: &Design| ChainBound::new(&Model::compile(threads, "1x1".parse().unwrap()).unwrap());
+    for off_deg in [1e-3, 1e-6, 1e-8, -1e-8, 1e-10] {
+        let l1 = chain(&threads).limit(90.0 + off_deg, 0.0).l1().unwrap();
+        // v = 2.5 and d = 3.6; what 90° + off is in binary.
+        let off_rad = ((90.0 + off_deg) - 90.0_f64).to_radians().abs();
+        let used = 2.5 * off_rad.cos();
+        let exact = (3.6_f64.powi(2) - used * used).sqrt() / (2.5 * off_rad.sin()) - 1.0;
+        assert!((l1 / exact - 1.0).abs() < 1e-4, "{off_deg}: {l1} for {exact}");
+    }
+    // The same threads turned, pulled across: in decimals of a degree and of a lattice vector.
+    for k in 0..480 {
+        let degrees = 0.75 * f64::from(k);
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let turned = |[x, y, z]: [f64; 3]| [cos * x - sin * y, sin * x + cos * y, z];
+        let mut design = threads.clone();
+        (design.lattice.a1, design.lattice.a2) = (turned(design.lattice.a1), turned(design.lattice.a2));
+        for element in &mut design.elements {
+            element.center = turned(element.center);
+            element.rings.iter_mut().for_each(|ring| ring.normal = turned(ring.normal));
+        }
+        assert_eq!(chain(&design).limit(degrees + 90.0, 0.0), Bound::Unbounded, "{degrees}");
+    }
 }
 
 /// States without overlap that climb towards a limit by random moves never pass the bound.

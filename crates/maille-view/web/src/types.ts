@@ -33,6 +33,12 @@ export interface Design {
   elements: ElementSpec[];
 }
 
+export interface DualRecord {
+  tie: string;
+  rings: [number, [number, number]][];
+  force: [number, number, number];
+}
+
 export interface Edit {
   text: string;
   field: string;
@@ -255,6 +261,7 @@ export interface StateRecord {
   note?: string | null;
   contacts?: ContactRecord[];
   chain?: ChainRecord | null;
+  dual?: DualRecord[];
 }
 
 export type Status =

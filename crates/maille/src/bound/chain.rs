@@ -19,7 +19,10 @@
 //! a closed walk of the primitive cell: K, and with it the bound, is the same for every cell and basis of the sheet.
 
 use super::{Bound, BoundKind, axes};
-use crate::{lattice::Shift, model::Model};
+use crate::{
+    lattice::{ACROSS, Shift},
+    model::Model,
+};
 use nalgebra::Vector2;
 
 /// A chain of links that joins a ring with its own image.
@@ -47,8 +50,8 @@ pub struct ChainBound {
     vertices: Vec<Vertex>,
 }
 
-/// |v·D| below this part of |v| does not bind along D.
-const ACROSS: f64 = 1e-9;
+/// Two chains whose directions differ by a smaller sine are taken as parallel.
+const PARALLEL: f64 = 1e-9;
 /// Excess of (1 + l2) |v·D⊥| over d(v), relative to d(v), that is no rounding error.
 const EXCESS: f64 = 1e-12;
 
@@ -92,7 +95,7 @@ impl ChainBound {
         for (k, a) in self.vertices.iter().enumerate() {
             for b in &self.vertices[..k] {
                 let det = a.x.x * b.x.y - a.x.y * b.x.x;
-                if det.abs() > ACROSS * a.x.norm() * b.x.norm() {
+                if det.abs() > PARALLEL * a.x.norm() * b.x.norm() {
                     // |α|, |β| ≤ |x′|/|det|, |x|/|det|.
                     least = least.min((a.x.norm() + b.x.norm()) / det.abs());
                 }
@@ -122,8 +125,12 @@ impl ChainBound {
         }
         let kind = BoundKind::Chain;
         match (worst, best) {
-            (Some((_, vertex)), _) => Bound::L2Unreachable { kind, chain: Some(vertex.chain.clone()) },
-            (None, Some((l1, vertex))) => Bound::Finite { l1, kind, chain: Some(vertex.chain.clone()) },
+            (Some((_, vertex)), _) => {
+                Bound::L2Unreachable { kind, chain: Some(vertex.chain.clone()), dual: Vec::new() }
+            }
+            (None, Some((l1, vertex))) => {
+                Bound::Finite { l1, kind, chain: Some(vertex.chain.clone()), dual: Vec::new() }
+            }
             (None, None) => Bound::Unbounded,
         }
     }

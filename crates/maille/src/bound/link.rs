@@ -30,13 +30,27 @@
 //! with the largest stretch that the chains allow.
 
 use super::{
-    Bound, ChainBound, axes,
+    BindingChain, Bound, ChainBound, axes,
     cone::{Cone, ConeProgram, eigenvalues, pack},
-    tie::{self, Tie},
+    tie::{self, Tie, TieKind},
 };
-use crate::{lattice::Across, model::Model};
+use crate::{
+    lattice::{Across, Shift},
+    model::Model,
+};
 use maille_geometry::Vec3;
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix4, Vector2};
+
+/// The force y of one tie.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DualForce {
+    /// What the tie is made of.
+    pub kind: TieKind,
+    /// Its rings with their cells, see [`TieKind`]: in the cell of the model that the bound is of.
+    pub rings: Vec<(usize, Shift)>,
+    /// y, for a unit pull and lengths in reference radii.
+    pub force: Vec3,
+}
 
 /// What the link bound found for one direction and one l2.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,8 +59,8 @@ pub struct LinkSolution {
     pub l1: f64,
     /// What the solver reached from below, not quite feasible: the difference tells how well the program was solved.
     pub primal_l1: f64,
-    /// Force in each of the model's links for a unit pull, in the state of the relaxation.
-    pub tension: Vec<f64>,
+    /// The forces that prove it, for a unit pull: P = 1.
+    pub dual: Vec<DualForce>,
     /// Iterations of the solver.
     pub iterations: usize,
 }
@@ -65,7 +79,6 @@ const UNREACHABLE: f64 = -1.01;
 #[derive(Clone, Debug)]
 pub struct LinkBound {
     ties: Vec<Tie>,
-    n_links: usize,
     n_elements: usize,
     /// First of the nine unknowns of Q, for elements that need it.
     turn: Vec<Option<usize>>,
@@ -88,7 +101,6 @@ impl LinkBound {
             .iter()
             .map(|e| e.rings.clone().map(|r| model.rings[r].offset).sum::<Vec3>() / e.rings.len() as f64)
             .collect();
-        let n_links = model.links.len();
         let mut ties = tie::all(model);
         let n_elements = model.elements.len();
         let mut turned = vec![false; n_elements];
@@ -109,15 +121,21 @@ impl LinkBound {
         let center: Vec<_> = free.into_iter().map(|yes| take(yes, 3)).collect();
         let turn: Vec<_> = turned.into_iter().map(|yes| take(yes, 9)).collect();
         let template = template(&ties, &center, &turn, next);
-        LinkBound { ties, n_links, n_elements, turn, template, chain: chain.clone() }
+        LinkBound { ties, n_elements, turn, template, chain: chain.clone() }
     }
 
     /// The program of the chains alone, each of them a tie between a ring and its own image.
     pub fn of_chains(chain: &ChainBound) -> Self {
-        let tie = |x: Vector2<f64>| Tie { terms: Vec::new(), span: x.push(0.0), length: 1.0 };
-        let ties: Vec<Tie> = chain.directions().map(tie).collect();
+        let tie = |(x, chain): (Vector2<f64>, &BindingChain)| Tie {
+            kind: TieKind::Chain,
+            rings: chain.rings.clone(),
+            terms: Vec::new(),
+            span: (x * chain.length).push(0.0),
+            length: chain.length,
+        };
+        let ties: Vec<Tie> = chain.directions().zip(chain.chains()).map(tie).collect();
         let template = template(&ties, &[], &[], 1);
-        LinkBound { ties, n_links: 0, n_elements: 0, turn: Vec::new(), template, chain: chain.clone() }
+        LinkBound { ties, n_elements: 0, turn: Vec::new(), template, chain: chain.clone() }
     }
 
     /// The bound of l1 along `direction_deg` with l2 held.
@@ -127,12 +145,7 @@ impl LinkBound {
 
     /// The bound of l1 along `direction_deg`, with l2 and the shear held or free.
     pub fn limit_across(&self, direction_deg: f64, l2: f64, free: Across) -> LinkSolution {
-        let nothing = LinkSolution {
-            l1: f64::INFINITY,
-            primal_l1: f64::INFINITY,
-            tension: vec![0.0; self.n_links],
-            iterations: 0,
-        };
+        let nothing = LinkSolution { l1: f64::INFINITY, primal_l1: f64::INFINITY, dual: Vec::new(), iterations: 0 };
         let largest_stretch = match self.chain.limit(direction_deg, l2) {
             _ if free.any() => self.chain.largest_stretch(),
             Bound::Unbounded => return nothing,
@@ -173,9 +186,15 @@ impl LinkBound {
         LinkSolution {
             l1,
             primal_l1: solution.x[0] - 1.0,
-            tension: forces[..self.n_links].iter().map(|y| y.norm() / pull).collect(),
+            dual: self.dual(&forces, pull),
             iterations: solution.iterations,
         }
+    }
+
+    /// The forces that are not 0, for a unit pull.
+    fn dual(&self, forces: &[Vec3], pull: f64) -> Vec<DualForce> {
+        let of = |(tie, y): (&Tie, &Vec3)| DualForce { kind: tie.kind, rings: tie.rings.clone(), force: y / pull };
+        self.ties.iter().zip(forces).filter(|(_, y)| **y != Vec3::zeros()).map(of).collect()
     }
 }
 

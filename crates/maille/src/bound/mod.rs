@@ -28,9 +28,9 @@ mod tie;
 
 pub use chain::{BindingChain, ChainBound};
 pub use image::{ImageBound, NearImages};
-pub use link::{LinkBound, LinkSolution};
+pub use link::{DualForce, LinkBound, LinkSolution};
 pub use metric::{MetricBound, metric_bound};
-pub use tie::crossing_pairs_length;
+pub use tie::{TieKind, crossing_pairs_length};
 
 use crate::lattice::Across;
 use nalgebra::Vector2;
@@ -65,6 +65,8 @@ pub enum Bound {
         kind: BoundKind,
         /// The chain that binds, from the chain bound: also where the link bound is lower.
         chain: Option<BindingChain>,
+        /// The forces that prove it, where one chain does not.
+        dual: Vec<DualForce>,
     },
     /// No state with l1 > −1 has this l2 in this direction.
     L2Unreachable {
@@ -72,6 +74,8 @@ pub enum Bound {
         kind: BoundKind,
         /// The chain that is too short, where one is.
         chain: Option<BindingChain>,
+        /// The forces that prove it, where one chain does not.
+        dual: Vec<DualForce>,
     },
     /// No chain of links joins lattice vectors along the direction: there is no bound, and only contacts without a link can hold it.
     Unbounded,
@@ -101,6 +105,14 @@ impl Bound {
             Bound::Unbounded => None,
         }
     }
+
+    /// The forces that prove it, where one chain does not.
+    pub fn dual(&self) -> &[DualForce] {
+        match self {
+            Bound::Finite { dual, .. } | Bound::L2Unreachable { dual, .. } => dual,
+            Bound::Unbounded => &[],
+        }
+    }
 }
 
 /// The link bound counts as lower than the chain bound from this difference on; below it they are the same number.
@@ -114,9 +126,9 @@ pub fn best_bound(chain: &ChainBound, link: Option<&LinkBound>, direction_deg: f
     };
     let solution = link.limit(direction_deg, l2);
     if solution.l2_unreachable() {
-        Bound::L2Unreachable { kind: BoundKind::Link, chain: path.clone() }
+        Bound::L2Unreachable { kind: BoundKind::Link, chain: path.clone(), dual: solution.dual }
     } else if solution.l1 < chain_l1 - SAME {
-        Bound::Finite { l1: solution.l1, kind: BoundKind::Link, chain: path.clone() }
+        Bound::Finite { l1: solution.l1, kind: BoundKind::Link, chain: path.clone(), dual: solution.dual }
     } else {
         first
     }
@@ -135,18 +147,19 @@ pub fn best_bound_across(
     }
     let of_chains = LinkBound::of_chains(chain).limit_across(direction_deg, l2, free);
     if of_chains.l2_unreachable() {
-        return Bound::L2Unreachable { kind: BoundKind::Chain, chain: None };
+        return Bound::L2Unreachable { kind: BoundKind::Chain, chain: None, dual: of_chains.dual };
     }
     if !of_chains.l1.is_finite() {
         return Bound::Unbounded;
     }
-    match link.map(|link| link.limit_across(direction_deg, l2, free)) {
-        Some(solution) if solution.l2_unreachable() => Bound::L2Unreachable { kind: BoundKind::Link, chain: None },
-        Some(solution) if solution.l1 < of_chains.l1 - SAME => {
-            Bound::Finite { l1: solution.l1, kind: BoundKind::Link, chain: None }
-        }
-        _ => Bound::Finite { l1: of_chains.l1, kind: BoundKind::Chain, chain: None },
+    let (kind, solution) = match link.map(|link| link.limit_across(direction_deg, l2, free)) {
+        Some(solution) if solution.l1 < of_chains.l1 - SAME => (BoundKind::Link, solution),
+        _ => (BoundKind::Chain, of_chains),
+    };
+    if solution.l2_unreachable() {
+        return Bound::L2Unreachable { kind, chain: None, dual: solution.dual };
     }
+    Bound::Finite { l1: solution.l1, kind, chain: None, dual: solution.dual }
 }
 
 /// D and D⊥ in the sheet's plane.

@@ -22,9 +22,37 @@ pub(super) struct Term {
     pub(super) offset: Vec3,
 }
 
+/// What a tie is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TieKind {
+    /// Two linked rings.
+    Link,
+    /// Two rings a, a' that are linked with b.
+    StrandPair,
+    /// Rings a, a' that are each linked with b and b'.
+    CrossingPairs,
+    /// A chain of links from a ring to its image.
+    Chain,
+}
+
+impl TieKind {
+    /// The name in records.
+    pub fn name(self) -> &'static str {
+        match self {
+            TieKind::Link => "link",
+            TieKind::StrandPair => "strand-pair",
+            TieKind::CrossingPairs => "crossing-pairs",
+            TieKind::Chain => "chain",
+        }
+    }
+}
+
 /// |Σ w (c + Q o + F s)| ≤ length.
 #[derive(Clone, Debug)]
 pub(super) struct Tie {
+    pub(super) kind: TieKind,
+    /// Its rings: a, b; a, a', b; a, a', b, b'; or those along a chain.
+    pub(super) rings: Vec<Place>,
     pub(super) terms: Vec<Term>,
     /// S = Σ w s in the reference lattice.
     pub(super) span: Vec3,
@@ -32,7 +60,7 @@ pub(super) struct Tie {
 }
 
 /// A ring of the sheet: index in the model and cell.
-type Place = (usize, Shift);
+pub(super) type Place = (usize, Shift);
 
 /// All ties of a model: its links first, in their order.
 pub(super) fn all(model: &Model) -> Vec<Tie> {
@@ -43,7 +71,7 @@ pub(super) fn all(model: &Model) -> Vec<Tie> {
         .map(|link| {
             let (a, b) = (link.pair.ring_a, link.pair.ring_b);
             let length = model.rings[a].major_radius + model.rings[b].major_radius - model.contact_distance(a, b);
-            sheet.tie(&[((a, [0, 0]), 1.0), ((b, link.pair.shift), -1.0)], length)
+            sheet.tie(TieKind::Link, &[((a, [0, 0]), 1.0), ((b, link.pair.shift), -1.0)], length)
         })
         .collect();
     ties.extend(sheet.strand_pairs());
@@ -69,12 +97,14 @@ impl<'a> Sheet<'a> {
         Sheet { model, through }
     }
 
-    fn tie(&self, weighted: &[(Place, f64)], length: f64) -> Tie {
+    fn tie(&self, kind: TieKind, weighted: &[(Place, f64)], length: f64) -> Tie {
         let term = |&((ring, _), weight): &(Place, f64)| {
             let ring = &self.model.rings[ring];
             Term { element: ring.element, weight, offset: ring.offset }
         };
         Tie {
+            kind,
+            rings: weighted.iter().map(|(place, _)| *place).collect(),
             terms: weighted.iter().map(term).collect(),
             span: weighted.iter().map(|((_, shift), weight)| *weight * self.model.start.translation(*shift)).sum(),
             length,
@@ -110,7 +140,7 @@ impl<'a> Sheet<'a> {
                 let middle_sq = 0.5 * (rho[0] * rho[0] + rho[1] * rho[1]) - 0.25 * apart * apart;
                 let mean = 0.5 * (self.model.rings[first.0].major_radius + self.model.rings[second.0].major_radius);
                 let weighted = [(first, 0.5), (second, 0.5), ((b, [0, 0]), -1.0)];
-                out.push(self.tie(&weighted, middle_sq.max(0.0).sqrt() + mean));
+                out.push(self.tie(TieKind::StrandPair, &weighted, middle_sq.max(0.0).sqrt() + mean));
             }
         }
         out
@@ -138,7 +168,8 @@ impl<'a> Sheet<'a> {
             });
             let same = sizes.iter().all(|size| *size == sizes[0]);
             let length = crossing_pairs_length(sizes[0].0, sizes[0].1)?;
-            same.then(|| self.tie(&[(a, 0.5), (a2, 0.5), (b, -0.5), (b2, -0.5)], length))
+            let weighted = [(a, 0.5), (a2, 0.5), (b, -0.5), (b2, -0.5)];
+            same.then(|| self.tie(TieKind::CrossingPairs, &weighted, length))
         };
         found.into_iter().filter_map(tie).collect()
     }

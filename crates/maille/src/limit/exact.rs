@@ -208,11 +208,7 @@ impl<'a> ExactMethod<'a> {
     ) -> (LimitOutcome, Option<Strained>) {
         let across = self.options.across;
         let bound = best_bound_across(&self.chain, Some(&self.link), direction_deg, l2, across);
-        let figures = ExactFigures {
-            bound: bound.l1().zip(bound.kind()),
-            chain: bound.chain().cloned(),
-            ..ExactFigures::default()
-        };
+        let figures = ExactFigures::of_bound(&bound);
         let ended = |status, note: &str| {
             let mut outcome = self.nothing(status, figures.clone());
             outcome.note = (!note.is_empty()).then(|| note.to_owned());

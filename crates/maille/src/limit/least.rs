@@ -55,9 +55,9 @@ impl ExactMethod<'_> {
     ) -> (LimitOutcome, Neighbours) {
         let across = self.options.across;
         let mut found: Neighbours = vec![None; self.models.len()];
-        if let Bound::L2Unreachable { .. } = best_bound_across(&self.chain, Some(&self.link), direction_deg, l2, across)
-        {
-            return (self.nothing(Status::L2Unreachable, ExactFigures::default()), found);
+        let bound = best_bound_across(&self.chain, Some(&self.link), direction_deg, l2, across);
+        if let Bound::L2Unreachable { .. } = bound {
+            return (self.nothing(Status::L2Unreachable, ExactFigures::of_bound(&bound)), found);
         }
         let mut trend = Vec::new();
         let (mut cell, mut best): (usize, Option<Tally>) = (0, None);

@@ -12,7 +12,7 @@ pub mod strain;
 mod unlinked;
 
 use crate::{
-    bound::{BindingChain, BoundKind},
+    bound::{BindingChain, Bound, BoundKind, DualForce},
     constraint::Contact,
     record::Status,
     solve::certificate::Certificate,
@@ -63,6 +63,8 @@ pub struct ExactFigures {
     pub cell: usize,
     /// The chain of links that binds in the bound.
     pub chain: Option<BindingChain>,
+    /// The forces that prove the bound, or that there is no limit, where one chain does not.
+    pub dual: Vec<DualForce>,
     /// The certificate, complete or not.
     pub certificate: Option<Certificate>,
     /// Whether the links are those of the start.
@@ -81,6 +83,18 @@ pub struct ExactFigures {
     pub trend: Vec<CellTrend>,
     /// Where something was free: the ranges in which it can be at the limit.
     pub free: Option<FreeRanges>,
+}
+
+impl ExactFigures {
+    /// Those of a bound, before anything is solved.
+    fn of_bound(bound: &Bound) -> Self {
+        ExactFigures {
+            bound: bound.l1().zip(bound.kind()),
+            chain: bound.chain().cloned(),
+            dual: bound.dual().to_vec(),
+            ..ExactFigures::default()
+        }
+    }
 }
 
 /// Least and largest value found at a limit, of l2 and of the shear γ; both the same where it was held.

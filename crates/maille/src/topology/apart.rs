@@ -1,14 +1,11 @@
 //! Whether a pull has taken a sheet apart: it can then go on for ever.
 
 use crate::{
-    lattice::{direction, shifts_within},
+    lattice::{ACROSS, direction, shifts_within},
     model::Model,
     state::State,
 };
 use nalgebra::Vector2;
-
-/// A lattice vector whose part along the pull is a smaller share of it lies across.
-const ACROSS: f64 = 1e-9;
 
 /// Whether l1 can grow without end from `state`, the poses as they are.
 ///

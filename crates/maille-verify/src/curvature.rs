@@ -1,0 +1,429 @@
+//! Whether a small motion could raise l1, to second order: the curvature of −Σ μ g on the motions that keep the loaded contacts.
+//!
+//! **Unknowns.** A translation and a turn of every element, but no translation of the first one and no spin of a single ring about its own axis, which
+//! change nothing; then l1 and what is free. The lattice carries the copies of the design's cell along.
+//!
+//! **A contact.** The distance d(y, θ) of the point θ of ring b from the circle of ring a, as the elements move by y. Its gradient is the
+//! velocity of the point against the nearest point of a, along the normal between them. Second derivatives are differences of these gradients, of fourth
+//! order. The least distance min d(y, θ) over θ has
+//!
+//! ∇²g = d_yy − d_yθ d_θy/d_θθ.
+//!
+//! Derivatives are taken along translations and turns of the moved bodies, not in coordinates. Of rotations they do not commute; half the sum of both
+//! orders is the second derivative in rotation vectors.
+//!
+//! **Flat pairs.** Equal rings that lie on one another are closed along the whole circle, d_θθ = 0. Such a pair keeps its contacts
+//! only without tilt, if its force N = Σ μ and the moment T = Σ μ u, u the directions of the points, have |T| < N: a height h + R τ·u that is nowhere negative and whose weighted sum N h
+//! + R τ·T is 0 has τ = 0. With the offset e of the axes the gap is (e·u)²/2s above the height, which is linear in u: each way to spread
+//! the force over the circle with the same N and T balances. Of all ways the one with the least Σ μ (δe·u)² = (T·δe)²/N counts for a motion with
+//! δe = v_b − v_a − ω_a × (c_b − c_a); it stands in place of the recorded points' own.
+
+use crate::{
+    balance::Closed,
+    sheet::{Pair, Sheet, Vec3, frame},
+};
+use nalgebra::{DMatrix, DVector, SMatrix, SVector, UnitQuaternion};
+use std::collections::BTreeMap;
+
+/// Step of the differences, in core distances.
+const STEP: f64 = 1e-3;
+/// Contacts that carry more are kept.
+const LOADED: f64 = 1e-8;
+/// Rows count as dependent below this share of the largest eigenvalue of their Gram matrix.
+const DEPENDENT: f64 = 1e-12;
+/// Curvature below this share of the largest is none.
+pub(crate) const ZERO_MODE: f64 = 1e-7;
+/// d_θθ below which a pair can lie flat.
+const FLATTEST: f64 = 1e-6;
+/// Tilt, and distance of the axes and difference of the radii in radii, of a pair that lies flat.
+const FLAT: f64 = 1e-3;
+/// |T|/N of a pair that lies flat, at most.
+const ROCKING: f64 = 0.99;
+/// The matrices are dense.
+const MOST_UNKNOWNS: usize = 3000;
+
+/// What was found.
+#[derive(Clone, Debug)]
+pub(crate) struct Curvature {
+    /// Eigenvalues on the motions that keep the loaded contacts, ascending.
+    pub values: Vec<f64>,
+    /// Unknowns that no contact meets.
+    pub idle: usize,
+    /// Whether a pair lies flat.
+    pub flat: bool,
+}
+
+impl Curvature {
+    /// The largest |eigenvalue|, at least 1.
+    pub fn scale(&self) -> f64 {
+        self.values.iter().fold(1.0, |most, v| most.max(v.abs()))
+    }
+
+    /// The least that is not zero.
+    pub fn least(&self) -> Option<f64> {
+        let zero = ZERO_MODE * self.scale();
+        self.values.iter().copied().find(|v| v.abs() > zero)
+    }
+
+    /// How many are zero.
+    pub fn zero_modes(&self) -> u64 {
+        let zero = ZERO_MODE * self.scale();
+        (self.idle + self.values.iter().filter(|v| v.abs() <= zero).count()) as u64
+    }
+}
+
+/// Motions of a pair: translation and turn of a's element, then of b's image, then θ.
+type Local = SVector<f64, 13>;
+
+/// The gradient of the distance of the point from circle a after a motion of size h along `along`.
+fn gradient(point: &Closed<'_>, along: usize, h: f64) -> Local {
+    let (a, b, shift) = point.pair;
+    let sheet = point.sheet;
+    let body = |ring: usize, first: usize| {
+        let (ring, body) = (&sheet.rings[ring], &sheet.bodies[sheet.rings[ring].element]);
+        let mut step = [Vec3::zeros(), Vec3::zeros()];
+        if (first..first + 6).contains(&along) {
+            step[(along - first) / 3][(along - first) % 3] = h;
+        }
+        let turn = UnitQuaternion::from_scaled_axis(step[1]) * body.turn;
+        (body.position + step[0], turn * ring.arm, turn * ring.normal, turn)
+    };
+    let (at_a, arm_a, axis, _) = body(a, 0);
+    let (at_b, arm_b, _, turn) = body(b, 6);
+    let at_b = at_b + sheet.translation(shift);
+    // The frame in which the angle was measured, carried by the body.
+    let (u, v) = frame(&sheet.circle(b, shift).normal);
+    let carried = turn * sheet.bodies[sheet.rings[b].element].turn.inverse();
+    let (u, v) = (carried * u, carried * v);
+    let (sin, cos) = (point.angle + if along == 12 { h } else { 0.0 }).sin_cos();
+    let radius = sheet.rings[b].radius;
+    let (out, forward) = ((u * cos + v * sin) * radius, (v * cos - u * sin) * radius);
+    let p = at_b + arm_b + out;
+    let x = p - (at_a + arm_a);
+    let across = x - axis * x.dot(&axis);
+    let q = at_a + arm_a + across.normalize() * sheet.rings[a].radius;
+    let n = (p - q).normalize();
+    let (of_a, of_b) = ((q - at_a).cross(&n), (p - at_b).cross(&n));
+    Local::from_column_slice(&[
+        -n.x,
+        -n.y,
+        -n.z,
+        -of_a.x,
+        -of_a.y,
+        -of_a.z,
+        n.x,
+        n.y,
+        n.z,
+        of_b.x,
+        of_b.y,
+        of_b.z,
+        forward.dot(&n),
+    ])
+}
+
+/// Second derivatives of the distance, symmetric.
+fn hessian(point: &Closed<'_>) -> SMatrix<f64, 13, 13> {
+    let (a, b, _) = point.pair;
+    let step = STEP * point.sheet.touching(a, b);
+    let mut out = SMatrix::<f64, 13, 13>::zeros();
+    for along in 0..13 {
+        let turns = !matches!(along % 6, 0..3) || along == 12;
+        let size = point.sheet.rings[a].radius.max(point.sheet.rings[b].radius)
+            + point.sheet.rings[a].arm.norm().max(point.sheet.rings[b].arm.norm());
+        let h = if turns { step / size.max(1.0) } else { step };
+        let g = |x: f64| gradient(point, along, x);
+        let column = ((g(h) - g(-h)) * 8.0 - (g(2.0 * h) - g(-2.0 * h))) / (12.0 * h);
+        out.set_column(along, &column);
+    }
+    (out + out.transpose()) * 0.5
+}
+
+/// The unknowns that move an element, with their motions: translation and turn.
+struct Unknowns {
+    of_element: Vec<Vec<(usize, [Vec3; 2])>>,
+    first_parameter: usize,
+    /// For each parameter the rates of the lattice vectors.
+    rates: Vec<[Vec3; 2]>,
+    /// Where the lattice carries each element, in lattice vectors.
+    anchors: Vec<[f64; 2]>,
+}
+
+impl Unknowns {
+    fn new(sheet: &Sheet, anchors: Vec<[f64; 2]>, rates: &[[Vec3; 2]]) -> Self {
+        let axes = [Vec3::x(), Vec3::y(), Vec3::z()];
+        let mut next = 0;
+        let mut of_element = Vec::new();
+        for element in 0..sheet.bodies.len() {
+            let rings: Vec<usize> = (0..sheet.rings.len()).filter(|&r| sheet.rings[r].element == element).collect();
+            let turns: Vec<Vec3> = match &rings[..] {
+                [ring] if sheet.rings[*ring].arm.norm() < 1e-12 => {
+                    let (u, v) = frame(&sheet.circle(*ring, [0, 0]).normal);
+                    vec![u, v]
+                }
+                _ => axes.to_vec(),
+            };
+            let shifts = axes.iter().filter(|_| element > 0).map(|axis| [*axis, Vec3::zeros()]);
+            let motions = shifts.chain(turns.into_iter().map(|axis| [Vec3::zeros(), axis]));
+            of_element.push(motions.enumerate().map(|(k, motion)| (next + k, motion)).collect::<Vec<_>>());
+            next += of_element[element].len();
+        }
+        Unknowns { of_element, first_parameter: next, rates: rates.to_vec(), anchors }
+    }
+
+    fn count(&self) -> usize {
+        self.first_parameter + self.rates.len()
+    }
+
+    /// The unknowns that move a pair, each with the motion of a's element and of b's image.
+    fn of_pair(&self, sheet: &Sheet, (a, b, shift): Pair) -> Vec<(usize, Local)> {
+        let (i, j) = (sheet.rings[a].element, sheet.rings[b].element);
+        let mut out: BTreeMap<usize, Local> = BTreeMap::new();
+        let mut add = |unknown: usize, first: usize, [shift, turn]: [Vec3; 2]| {
+            let local = out.entry(unknown).or_insert_with(Local::zeros);
+            for axis in 0..3 {
+                local[first + axis] += shift[axis];
+                local[first + 3 + axis] += turn[axis];
+            }
+        };
+        self.of_element[i].iter().for_each(|(k, motion)| add(*k, 0, *motion));
+        self.of_element[j].iter().for_each(|(k, motion)| add(*k, 6, *motion));
+        for (m, rate) in self.rates.iter().enumerate() {
+            let moved = |by: [f64; 2]| [rate[0] * by[0] + rate[1] * by[1], Vec3::zeros()];
+            add(self.first_parameter + m, 0, moved(self.anchors[i]));
+            add(self.first_parameter + m, 6, moved([0, 1].map(|k| self.anchors[j][k] + f64::from(shift[k]))));
+        }
+        out.into_iter().collect()
+    }
+}
+
+/// A pair that lies flat, with its contacts.
+#[derive(Default)]
+struct FlatPair {
+    force: f64,
+    moment: Vec3,
+    /// Σ μ f, f being δe·u of a contact.
+    drift: Local,
+    /// Σ μ f fᵀ.
+    drift_sq: SMatrix<f64, 13, 13>,
+}
+
+/// The curvature at `points` with their forces, or why it cannot be told. `rates` are those of the lattice with l1 and what is free.
+pub(crate) fn curvature(
+    sheet: &Sheet,
+    points: &[(Closed<'_>, f64)],
+    rates: &[[Vec3; 2]],
+    anchors: Vec<[f64; 2]>,
+) -> Result<Curvature, String> {
+    let unknowns = Unknowns::new(sheet, anchors, rates);
+    let n = unknowns.count();
+    if n > MOST_UNKNOWNS {
+        return Err(format!("{n} unknowns; the curvature is derived of up to {MOST_UNKNOWNS}"));
+    }
+    let mut of_sum = DMatrix::<f64>::zeros(n, n);
+    let mut add = |columns: &[(usize, Local)], h: &SMatrix<f64, 13, 13>| {
+        for (i, x) in columns {
+            let image = h * x;
+            columns.iter().for_each(|(j, y)| of_sum[(*i, *j)] += y.dot(&image));
+        }
+    };
+    let mut gram = DMatrix::<f64>::zeros(n, n);
+    let mut row = |columns: &[(usize, Local)], gradient: &Local| {
+        let entries: Vec<(usize, f64)> = columns.iter().map(|(k, motion)| (*k, motion.dot(gradient))).collect();
+        for (i, x) in &entries {
+            entries.iter().for_each(|(j, y)| gram[(*i, *j)] += x * y);
+        }
+    };
+    let mut flat: BTreeMap<Pair, FlatPair> = BTreeMap::new();
+    for (point, force) in points {
+        let columns = unknowns.of_pair(sheet, point.pair);
+        let mut h = hessian(point);
+        let bend = h[(12, 12)];
+        let aside = h.column(12).into_owned();
+        if bend > FLATTEST {
+            h -= aside * aside.transpose() / bend;
+        } else {
+            of_flat(sheet, point, *force, flat.entry(point.pair).or_default())?;
+        }
+        h.row_mut(12).fill(0.0);
+        h.column_mut(12).fill(0.0);
+        add(&columns, &(h * -*force));
+        if *force > LOADED {
+            row(&columns, &gradient(point, 0, 0.0));
+        }
+    }
+    for (pair, found) in &flat {
+        if found.moment.norm() > ROCKING * found.force {
+            return Err(format!("rings {} and {} lie flat and could rock about one side", pair.0, pair.1));
+        }
+        let columns = unknowns.of_pair(sheet, *pair);
+        let touching = sheet.touching(pair.0, pair.1);
+        let least = found.drift * found.drift.transpose() / found.force;
+        add(&columns, &((found.drift_sq - least) / touching));
+        let (u, v) = frame(&sheet.circle(pair.0, [0, 0]).normal);
+        for axis in [u, v] {
+            let mut tilt = Local::zeros();
+            for k in 0..3 {
+                (tilt[3 + k], tilt[9 + k]) = (-axis[k], axis[k]);
+            }
+            row(&columns, &tilt);
+        }
+    }
+    let is_met = |k: &usize| gram[(*k, *k)] != 0.0 || of_sum.column(*k).iter().any(|x| *x != 0.0);
+    let met: Vec<usize> = (0..n).filter(is_met).collect();
+    let idle = n - met.len();
+    let block = |of: &DMatrix<f64>| DMatrix::from_fn(met.len(), met.len(), |i, j| of[(met[i], met[j])]);
+    let (sub, gram) = (block(&of_sum), block(&gram));
+    let eigen = gram.symmetric_eigen();
+    let largest = eigen.eigenvalues.amax();
+    let free: Vec<DVector<f64>> = (0..met.len())
+        .filter(|&k| eigen.eigenvalues[k] < DEPENDENT * largest)
+        .map(|k| eigen.eigenvectors.column(k).into_owned())
+        .collect();
+    let mut values = Vec::new();
+    if !free.is_empty() {
+        let basis = DMatrix::from_columns(&free);
+        let reduced = basis.transpose() * sub * &basis;
+        let reduced = (&reduced + reduced.transpose()) * 0.5;
+        values = reduced.symmetric_eigenvalues().iter().copied().collect();
+        values.sort_by(f64::total_cmp);
+    }
+    if values.iter().any(|v| !v.is_finite()) {
+        return Err("the eigenvalues of the curvature are not finite".into());
+    }
+    Ok(Curvature { values, idle, flat: !flat.is_empty() })
+}
+
+/// Adds a contact of a pair that lies flat, if it does.
+fn of_flat(sheet: &Sheet, point: &Closed<'_>, force: f64, out: &mut FlatPair) -> Result<(), String> {
+    let (a, b, shift) = point.pair;
+    let (one, other) = (sheet.circle(a, [0, 0]), sheet.circle(b, shift));
+    let x = other.center - one.center;
+    let apart = (x - one.normal.into_inner() * x.dot(&one.normal)).norm();
+    let tilt = one.normal.cross(&other.normal).norm();
+    let unequal = (one.radius - other.radius).abs();
+    if tilt > FLAT || apart.max(unequal) > FLAT * one.radius {
+        return Err(format!("rings {a} and {b} at {shift:?} touch along an arc, and do not lie flat"));
+    }
+    let (u, v) = frame(&other.normal);
+    let u = u * point.angle.cos() + v * point.angle.sin();
+    let at = |ring: usize| sheet.bodies[sheet.rings[ring].element].position;
+    let (arm_a, arm_b) = (one.center - at(a), other.center - at(b) - sheet.translation(shift));
+    let (of_a, of_b) = (arm_a.cross(&u) + x.cross(&u), arm_b.cross(&u));
+    let drift = Local::from_column_slice(&[
+        -u.x, -u.y, -u.z, -of_a.x, -of_a.y, -of_a.z, u.x, u.y, u.z, of_b.x, of_b.y, of_b.z, 0.0,
+    ]);
+    out.force += force;
+    out.moment += u * force;
+    out.drift += drift * force;
+    out.drift_sq += drift * drift.transpose() * force;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{apart::Arc, sheet::Body, sheet::Ring};
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    /// Two elements of one ring each, in a cell that is too wide for images.
+    fn sheet(poses: [(Vec3, Vec3, Vec3); 2]) -> Sheet {
+        let ring = |(element, (_, arm, normal)): (usize, &(Vec3, Vec3, Vec3))| Ring {
+            element,
+            arm: *arm,
+            normal: normal.normalize(),
+            radius: 1.0,
+            wire: 0.1,
+        };
+        let body = |(at, _, _): &(Vec3, Vec3, Vec3)| Body { position: *at, turn: UnitQuaternion::identity() };
+        Sheet {
+            rings: poses.iter().enumerate().map(ring).collect(),
+            bodies: poses.iter().map(body).collect(),
+            lattice: [Vec3::x() * 50.0, Vec3::y() * 50.0],
+            copies: vec![Vec3::zeros(); 2],
+        }
+    }
+
+    /// The angle of the least distance near `angle`, by golden section.
+    fn refined(arc: &Arc<'_>, angle: f64) -> f64 {
+        let ratio = 0.5 * (5.0_f64.sqrt() - 1.0);
+        let (mut low, mut high) = (angle - 0.2, angle + 0.2);
+        for _ in 0..90 {
+            let (left, right) = (high - ratio * (high - low), low + ratio * (high - low));
+            if arc.at(left).distance < arc.at(right).distance { high = right } else { low = left }
+        }
+        0.5 * (low + high)
+    }
+
+    /// The least distance near `angle` after the motion.
+    fn least(sheet: &Sheet, angle: f64, motion: &Local) -> f64 {
+        let mut moved = sheet.clone();
+        for (k, body) in moved.bodies.iter_mut().enumerate() {
+            let part =
+                |first: usize| Vec3::new(motion[6 * k + first], motion[6 * k + first + 1], motion[6 * k + first + 2]);
+            body.position += part(0);
+            body.turn = UnitQuaternion::from_scaled_axis(part(3)) * body.turn;
+        }
+        let (one, other) = (moved.circle(0, [0, 0]), moved.circle(1, [0, 0]));
+        let arc = Arc::new(&one, &other);
+        // The frame of the moved circle is near that of the still one.
+        arc.at(refined(&arc, angle)).distance
+    }
+
+    /// Second derivatives of the least distance along random motions, against second differences of the least distance itself.
+    #[test]
+    fn second_derivatives_are_those_of_the_least_distance() {
+        let mut rng = ChaCha8Rng::seed_from_u64(11);
+        let mut tried = 0;
+        while tried < 30 {
+            let mut vector = |size: f64| Vec3::from([0; 3].map(|_| size * rng.random_range(-1.0..1.0)));
+            let sheet = sheet([(vector(0.2), vector(0.3), vector(1.0)), (vector(1.0), vector(0.3), vector(1.0))]);
+            let (one, other) = (sheet.circle(0, [0, 0]), sheet.circle(1, [0, 0]));
+            let arc = Arc::new(&one, &other);
+            let Some(angle) =
+                (0..63).map(|k| 0.1 * f64::from(k)).min_by(|a, b| arc.at(*a).distance.total_cmp(&arc.at(*b).distance))
+            else {
+                continue;
+            };
+            let point = Closed::next_to(&sheet, (0, 1, [0, 0]), refined(&arc, angle));
+            let h = hessian(&point);
+            if point.gap < 0.0 || h[(12, 12)] < 0.05 {
+                continue;
+            }
+            let aside = h.column(12).into_owned();
+            let mut motion = Local::from_fn(|_, _| rng.random_range(-1.0..1.0));
+            motion[12] = 0.0;
+            let schur = motion.dot(&(h * motion)) - aside.dot(&motion).powi(2) / h[(12, 12)];
+            let step = 2e-4;
+            let f = |x: f64| least(&sheet, point.angle, &(motion * x));
+            let direct = (f(step) - 2.0 * f(0.0) + f(-step)) / (step * step);
+            assert!((schur - direct).abs() < 1e-3 * (1.0 + schur.abs()), "{schur} {direct}");
+            // The gradient, too.
+            let slope = (f(step) - f(-step)) / (2.0 * step);
+            assert!((gradient(&point, 0, 0.0).dot(&motion) - slope).abs() < 1e-4 * (1.0 + slope.abs()));
+            tried += 1;
+        }
+    }
+
+    /// A ring between two rings of a clamp, all flat on one another, glides and turns with it without a change of the gaps, wherever on
+    /// the circles the balanced forces are written; where their sums have a moment T, gliding along T opens them, by −(T·δe)²/N s for each side.
+    #[test]
+    fn a_ring_in_a_clamp_glides() {
+        let mut sheet = sheet([(Vec3::zeros(), Vec3::zeros(), Vec3::z()), (Vec3::z() * 0.2, Vec3::zeros(), Vec3::z())]);
+        sheet.rings.push(Ring { arm: Vec3::z() * 0.4, ..sheet.rings[0].clone() });
+        for angles in [vec![0.3, 0.3 + std::f64::consts::PI], vec![0.0, 2.0, 4.5]] {
+            let at = |pair: Pair, angle: f64| (Closed::next_to(&sheet, pair, angle), 0.5);
+            let below = angles.iter().map(|angle| at((0, 1, [0, 0]), *angle));
+            let above = angles.iter().map(|angle| at((1, 2, [0, 0]), *angle));
+            let points: Vec<(Closed<'_>, f64)> = below.chain(above).collect();
+            let found = curvature(&sheet, &points, &[], vec![[0.0; 2]; 2]).unwrap();
+            // Eight unknowns; the height and two tilts are held.
+            assert!(found.flat && found.values.len() == 5, "{found:?}");
+            let moment = angles.iter().map(|angle| Vec3::new(angle.cos(), angle.sin(), 0.0) * 0.5).sum::<Vec3>();
+            // δe = v − ω × 0.2 z, of a unit motion with ω twice: its square is at most 1 + 0.2²/2.
+            let expected = -2.0 * moment.norm_squared() / (0.5 * angles.len() as f64 * 0.2) * 1.02;
+            assert!((found.values[0] - expected).abs() < 1e-6, "{:?} {expected}", found.values);
+            assert!(found.values[1..].iter().all(|v| v.abs() < 1e-6), "{:?}", found.values);
+        }
+    }
+}
