@@ -51,7 +51,7 @@ record  design  minor_radius  method  direction_deg      l2
 out/a   1.1              0.1  energy             30   0.000
 out/a   1.1              0.1  energy              0  -0.125
 first 2 of 3 chosen rows, of 4
-columns that do not fit: l1, status, bound_l1, iterations, wall_s
+columns that do not fit: l1, status, bound_l1, grows_with_cell, image_of_deg, iterations, wall_s
 "
     );
     assert_eq!(table(&[], "l2"), "l2\n\n0 rows\n");
