@@ -17,6 +17,8 @@ pub struct Summary {
     lateral_free: bool,
     limits: Vec<OfL2>,
     statuses: BTreeMap<&'static str, usize>,
+    images: usize,
+    grows_with_cell: usize,
     solved: usize,
     wall_s: f64,
     interrupted: bool,
@@ -66,6 +68,8 @@ impl Summary {
             lateral_free: rows.iter().any(|r| r.lateral.as_deref() == Some("free")),
             limits: l2.into_iter().map(of).collect(),
             statuses: Status::ALL.iter().map(|s| (s.name(), count(*s))).filter(|(_, n)| *n > 0).collect(),
+            images: rows.iter().filter(|r| r.image_of_deg.is_some()).count(),
+            grows_with_cell: rows.iter().filter(|r| r.l1.is_some() && r.grows_with_cell == Some(true)).count(),
             solved,
             wall_s: took.as_secs_f64(),
             interrupted,
@@ -85,6 +89,16 @@ impl Summary {
             if let Some(count) = self.statuses.get(status.name()) {
                 output::say!("{count} {}", status.name());
             }
+        }
+        match self.grows_with_cell {
+            0 => {}
+            1 => output::say!("1 limit still grows with the cell: a larger one may go further; see by_cell"),
+            count => output::say!("{count} limits still grow with the cell: a larger one may go further; see by_cell"),
+        }
+        match self.images {
+            0 => {}
+            1 => output::say!("1 limit by symmetry, the image of another; see image_of_deg"),
+            count => output::say!("{count} limits by symmetry, images of others; see image_of_deg"),
         }
         output::say!(
             "{} limits in {:.1} s; {}, states.jsonl, run.json, polar.svg",

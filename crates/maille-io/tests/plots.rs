@@ -38,6 +38,23 @@ fn the_plot_says_what_it_shows() {
     }
 }
 
+/// Limits that still grow with the cell are named, up to six of each l2; those that do not, or have no limit, are not.
+#[test]
+fn limits_that_grow_with_the_cell_are_named() {
+    let grow = |row: LimitRow, grows: bool| LimitRow { grows_with_cell: Some(grows), ..row };
+    let rows: Vec<_> = turn(-0.125, 30.0).into_iter().map(|row| grow(row.clone(), row.direction_deg <= 45.0)).collect();
+    let rows = [rows, turn(0.0, 1.0).into_iter().map(|row| grow(row, true)).collect()].concat();
+    let plot = PolarPlot::from_rows(&design(), &rows, Quantity::Stretch, &[]);
+    let said = plot.caption.last().unwrap();
+    assert_eq!(
+        said,
+        "Still grows with the cell, so that larger cells may go further: 0°, 15°, 45° at l₂ = −0.125; 0°, 15°, 30°, 45°, 60°, 75° \
+         and 7 more at l₂ = 0."
+    );
+    let plot = PolarPlot::from_rows(&design(), &turn(0.0, 1.0), Quantity::Stretch, &[]);
+    assert!(plot.caption.iter().all(|line| !line.contains("grows")));
+}
+
 #[test]
 fn each_quantity_has_its_centre() {
     let rows = turn(0.0, 1.0);

@@ -125,7 +125,7 @@ fn a_damaged_table_is_named_by_line_column_and_value() {
         broken("lambda1,lambda2", "lambda2,lambda1"),
         "out/limits.csv:1: column 9 is \"lambda2\", expected \"lambda1\""
     );
-    assert_eq!(broken(",0.25,", ","), "out/limits.csv:2: 41 columns, expected 42");
+    assert_eq!(broken(",0.25,", ","), "out/limits.csv:2: 43 columns, expected 44");
     assert_eq!(
         message(read_limits("limits.csv", &text[..text.len() - 3])),
         "limits.csv:3: the file ends within this line"
@@ -274,6 +274,18 @@ fn a_damaged_record_is_reported_and_can_be_replaced() {
 fn a_record_of_another_schema_is_refused() {
     let found = message(read_run("run.json", "{ \"schema\": 2, \"new\": true }"));
     assert_eq!(found, "run.json:1: schema 2; this program reads schema 1");
+}
+
+/// Symmetry came after forty-two columns.
+#[test]
+fn a_table_without_symmetry_is_read() {
+    let image = LimitRow { image_of_deg: Some(75.0), grows_with_cell: Some(true), ..row(105.0, Status::Global) };
+    let table = write_limits(std::slice::from_ref(&image)).unwrap();
+    assert_eq!(read_limits("limits.csv", &table).unwrap(), [image.clone()]);
+    let plain = table.replace("\"1,0;-1,2\"", "2x1");
+    let old: String = plain.lines().map(|line| line.split(',').take(42).collect::<Vec<_>>().join(",") + "\n").collect();
+    let without = LimitRow { cell: "2x1".into(), image_of_deg: None, grows_with_cell: None, ..image };
+    assert_eq!(read_limits("limits.csv", &old).unwrap(), [without]);
 }
 
 /// Tables of earlier versions end after thirty columns, or after those of a free width.

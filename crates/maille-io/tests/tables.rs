@@ -51,7 +51,7 @@ record  design  minor_radius  method  direction_deg      l2
 out/a   1.1              0.1  energy             30   0.000
 out/a   1.1              0.1  energy              0  -0.125
 first 2 of 3 chosen rows, of 4
-columns that do not fit: l1, status, bound_l1, iterations, wall_s
+columns that do not fit: l1, status, bound_l1, grows_with_cell, image_of_deg, iterations, wall_s
 "
     );
     assert_eq!(table(&[], "l2"), "l2\n\n0 rows\n");
@@ -93,7 +93,7 @@ fn columns_are_named_once_and_known() {
     let message = |text: &str| Field::parse_list(text).unwrap_err().to_string();
     assert_eq!(message("l1,lambda3"), "there is no column \"lambda3\"; did you mean lambda1?");
     assert_eq!(message("direction,l1,direction_deg"), "column direction_deg is named twice; name each column once");
-    assert!(message("xyz").ends_with("by_cell, record"));
+    assert!(message("xyz").ends_with("grows_with_cell, record"));
 }
 
 fn document(name: &str) -> String {

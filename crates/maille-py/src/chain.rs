@@ -47,17 +47,17 @@ impl OpenMap {
         self.lock().as_ref().map(|open| (open.total(), open.left())).ok_or_else(closed)
     }
 
-    /// Each chain: direction, limits that are left, hash.
-    fn chains(&self) -> PyResult<Vec<(f64, usize, String)>> {
+    /// Each chain: directions, limits that are left, hash.
+    fn chains(&self) -> PyResult<Vec<(Vec<f64>, usize, String)>> {
         let open = self.lock();
         let chains = open.as_ref().ok_or_else(closed)?.chains();
-        Ok(chains.map(|chain| (chain.direction_deg, chain.left, chain.hash)).collect())
+        Ok(chains.map(|chain| (chain.directions_deg, chain.left, chain.hash)).collect())
     }
 
     /// What the record has of a chain.
-    fn chain(&self, direction_deg: f64) -> PyResult<Record> {
+    fn chain(&self, directions_deg: Vec<f64>) -> PyResult<Record> {
         let open = self.lock();
-        let record = open.as_ref().ok_or_else(closed)?.chain(direction_deg);
+        let record = open.as_ref().ok_or_else(closed)?.chain(&directions_deg);
         Ok(Record { name: self.name.clone(), record })
     }
 

@@ -83,13 +83,13 @@ def test_a_study_is_that_of_the_program_and_is_done_once(client, study, by_progr
     arguments = [str(study), "--scheduler", client.scheduler.address, "--out", str(out)]
     before = executed(client)
     code = command.main(arguments)
-    assert code in (0, 5) and "16 of 16 chains now" in capsys.readouterr().out
-    assert executed(client) - before == 16
+    assert code in (0, 5) and "8 of 8 chains now" in capsys.readouterr().out
+    assert executed(client) - before == 8
     same_run(out, by_program)
-    assert command.main(arguments) == code and "0 of 16 chains now" in capsys.readouterr().out
+    assert command.main(arguments) == code and "0 of 8 chains now" in capsys.readouterr().out
     again = maille.dask.sweep(study, client=client, out=out)
-    assert (again.solved, again.chains, again.failures) == (0, 16, ())
-    assert executed(client) - before == 16
+    assert (again.solved, again.chains, again.failures) == (0, 8, ())
+    assert executed(client) - before == 8
     same_run(out, by_program)
     # All rows once, also with other readers.
     everything = pyarrow.dataset.dataset(out / "chains", partitioning="hive").to_table()
@@ -272,7 +272,7 @@ def test_ctrl_c_leaves_what_was_found_and_the_same_command_goes_on(study, by_pro
     assert child.returncode == 130, stderr
     assert stderr.strip().splitlines()[-1] == "interrupted; the same command goes on from here" and "Traceback" not in stderr
     found = len(list(out.glob("chains/*/*.parquet")))
-    assert 0 < found < 16
+    assert 0 < found < 8
     done = run(*arguments[3:])
-    assert done.returncode in (0, 5) and f"{16 - found} of 16 chains now" in done.stdout
+    assert done.returncode in (0, 5) and f"{8 - found} of 8 chains now" in done.stdout
     same_run(out, by_program)

@@ -15,10 +15,12 @@ use maille::{
     characterize::{CellChoice, Method},
     lattice::{Across, Cell},
     limit::exact::ExactOptions,
+    model::Model,
     record::{LimitRow, StateRecord},
 };
 use maille_io::{plot::Quantity, record::Map};
 use std::{
+    borrow::Cow,
     convert::Infallible,
     sync::{
         Arc, Mutex, PoisonError,
@@ -113,6 +115,16 @@ fn run(work: &Work, map: &Map, request: &Solve, ticket: Ticket, send: &Unbounded
     let _ = send.send(last); // nobody may listen any more
 }
 
+/// The models with one of the cell `cell` among them: the image of a limit can be of a cell that was not solved.
+fn with_cell<'a>(models: &'a [Model], cell: &str) -> Cow<'a, [Model]> {
+    match cell.parse::<Cell>() {
+        Ok(other) if models.iter().all(|model| model.cell != other) => {
+            Cow::Owned(models.iter().cloned().chain([models[0].in_cell(other)]).collect())
+        }
+        _ => Cow::Borrowed(models),
+    }
+}
+
 fn solve(map: &Map, request: &Solve, cancel: &AtomicBool, send: &UnboundedSender<SolveEvent>) -> Result<(), Refusal> {
     let read = request.subject.read()?;
     let models = map.cells(&read.design).into_iter().map(|cell: Cell| read.compile(&read.design, cell));
@@ -126,9 +138,10 @@ fn solve(map: &Map, request: &Solve, cancel: &AtomicBool, send: &UnboundedSender
         if cancel.load(Ordering::Relaxed) {
             return; // limits that were cut off
         }
+        let models = with_cell(&models, &row.cell);
         let limit = limit(&models, row, state);
         let mut told = told.lock().unwrap_or_else(PoisonError::into_inner);
-        for model in &models {
+        for model in models.iter() {
             let cell = model.cell.to_string();
             if (cell == row.cell || told.is_empty()) && !told.contains(&cell) {
                 say(SolveEvent::Sheet(Box::new(sheet(model, &read.design))));

@@ -1,5 +1,7 @@
 //! Characterisation: limits over directions and lateral strains, as rows and states of a record.
 
+mod image;
+
 use crate::{
     bound::DualForce,
     lattice::{Across, Cell, direction},
@@ -10,6 +12,7 @@ use crate::{
     },
     model::Model,
     record::{ChainRecord, ContactRecord, DualRecord, LimitRow, StateRecord, Status, pose_records},
+    symmetry::{Operation, Orbit, mirrored, operations, orbits},
     topology,
 };
 use maille_geometry::Vec3;
@@ -103,13 +106,37 @@ pub fn tasks(directions_deg: &[f64], l2: &[f64]) -> Vec<Task> {
     l2.iter().flat_map(|&l2| directions_deg.iter().map(move |&direction_deg| Task { direction_deg, l2 })).collect()
 }
 
+/// The directions of a map that are solved as one: those that the symmetries of the design make images of each other. `model` is
+/// the first of the map's cells, whose translations the symmetries keep. A row of an image is the row of the
+/// direction that is solved, with the image of its state.
+///
+/// The energy method repeats the thesis and checks the exact one, so it uses no symmetry: each direction is solved by itself.
+pub fn chains(model: &Model, method: &Method, directions_deg: &[f64]) -> Vec<Orbit> {
+    symmetric_chains(model, method, directions_deg).1
+}
+
+fn symmetric_chains(model: &Model, method: &Method, directions_deg: &[f64]) -> (Vec<Operation>, Vec<Orbit>) {
+    match method {
+        Method::Energy(_) => {
+            let alone =
+                |&direction_deg: &f64| Orbit { representative_deg: direction_deg, directions_deg: vec![direction_deg] };
+            (Vec::new(), directions_deg.iter().map(alone).collect())
+        }
+        Method::Exact(_) => {
+            let operations = operations(model);
+            let orbits = orbits(&operations, directions_deg);
+            (operations, orbits)
+        }
+    }
+}
+
 /// Finds the limits of a map on the current thread pool and hands each over as it is finished, in any order.
 ///
 /// `models` are the design compiled for the cell to solve and, for the exact method, larger ones that it may go on to.
 /// `wanted` tells which tasks are still open. The energy method starts every limit from the design's state alone; the
-/// exact one goes along each direction outwards from l2 = 0, and repeats a whole direction where one of its limits is
-/// open. So rows do not depend on the number of threads, nor on where an earlier run was stopped. After `cancel` the
-/// limits under way come back as interrupted or not at all.
+/// exact one goes along one direction of each of the [`chains`] outwards from l2 = 0, and repeats all of it where one of the limits
+/// is open. So rows do not depend on the number of threads, nor on where an earlier run was stopped, nor on which images of a
+/// direction are asked for. After `cancel` the limits under way come back as interrupted or not at all.
 pub fn characterize(
     models: &[Model],
     minor_radius: Option<f64>,
@@ -120,13 +147,6 @@ pub fn characterize(
     cancel: &AtomicBool,
     finished: &(dyn Fn(Finished) + Sync),
 ) {
-    let report = |task: Task, outcome: &LimitOutcome, begun: Instant| {
-        let model = &models[outcome.exact.as_ref().map_or(0, |e| e.cell)];
-        let trend = outcome.exact.iter().flat_map(|e| &e.trend);
-        let trend: Vec<String> = trend.map(|t| t.words(&models[t.cell].cell.to_string())).collect();
-        let (row, state) = report(model, minor_radius, method, &task, outcome, &trend, begun.elapsed().as_secs_f64());
-        finished(Finished { row, state });
-    };
     match method {
         Method::Energy(options) => {
             let energy = EnergyMethod::new(&models[0], options.clone(), cancel);
@@ -134,38 +154,70 @@ pub fn characterize(
             open.par_iter().with_max_len(1).for_each(|task| {
                 if !cancel.load(Ordering::Relaxed) {
                     let begun = Instant::now();
-                    report(*task, &energy.limit(task.direction_deg, task.l2, cancel), begun);
+                    let outcome = energy.limit(task.direction_deg, task.l2, cancel);
+                    let found = Found { model: &models[0], outcome: &outcome, cells: &[], image_of_deg: None };
+                    finished(report(&found, minor_radius, method, task, begun.elapsed().as_secs_f64()));
                 }
             });
         }
         Method::Exact(options) => {
             let exact = ExactMethod::new(models, options.clone());
-            directions_deg.par_iter().with_max_len(1).for_each(|&direction_deg| {
-                let task = |k: usize| Task { direction_deg, l2: l2[k] };
-                if cancel.load(Ordering::Relaxed) || !(0..l2.len()).any(|k| wanted(task(k))) {
+            let (operations, chains) = symmetric_chains(&models[0], method, directions_deg);
+            let cells: Vec<Cell> = models.iter().map(|model| model.cell).collect();
+            chains.par_iter().with_max_len(1).for_each(|chain| {
+                let solved_deg = chain.representative_deg;
+                let open = |k: usize| {
+                    let task = move |&direction_deg: &f64| Task { direction_deg, l2: l2[k] };
+                    chain.directions_deg.iter().map(task).filter(|task| wanted(*task))
+                };
+                if cancel.load(Ordering::Relaxed) || !(0..l2.len()).any(|k| open(k).next().is_some()) {
                     return;
                 }
                 let mut begun = Instant::now();
-                exact.limits(direction_deg, l2, cancel, &mut |k, outcome| {
-                    if wanted(task(k)) {
-                        report(task(k), &outcome, begun);
+                exact.limits(solved_deg, l2, cancel, &mut |k, mut outcome| {
+                    let free = outcome.exact.as_mut().and_then(|figures| figures.free.as_mut());
+                    if let Some(free) = free.filter(|_| mirrored(&operations, solved_deg)) {
+                        // The states with −γ are there, too.
+                        let most = free.shear[1].max(-free.shear[0]);
+                        free.shear = [-most, most];
                     }
-                    begun = Instant::now();
+                    for task in open(k) {
+                        let image = (task.direction_deg != solved_deg)
+                            .then(|| image::image(&operations, models, &outcome, solved_deg, task.direction_deg));
+                        let found = match &image {
+                            Some(image) => Found {
+                                model: &image.model,
+                                outcome: &image.outcome,
+                                cells: &image.cells,
+                                image_of_deg: Some(solved_deg),
+                            },
+                            None => {
+                                let model = &models[outcome.exact.as_ref().map_or(0, |e| e.cell)];
+                                Found { model, outcome: &outcome, cells: &cells, image_of_deg: None }
+                            }
+                        };
+                        finished(report(&found, minor_radius, method, &task, begun.elapsed().as_secs_f64()));
+                        begun = Instant::now();
+                    }
                 });
             });
         }
     }
 }
 
-fn report(
-    model: &Model,
-    minor_radius: Option<f64>,
-    method: &Method,
-    task: &Task,
-    outcome: &LimitOutcome,
-    by_cell: &[String],
-    wall_s: f64,
-) -> (LimitRow, StateRecord) {
+/// What there is to report of a limit.
+struct Found<'a> {
+    /// The model of its state.
+    model: &'a Model,
+    outcome: &'a LimitOutcome,
+    /// The cells that its trend counts.
+    cells: &'a [Cell],
+    /// The direction that was solved, where this is an image.
+    image_of_deg: Option<f64>,
+}
+
+fn report(found: &Found<'_>, minor_radius: Option<f64>, method: &Method, task: &Task, wall_s: f64) -> Finished {
+    let Found { model, outcome, cells, image_of_deg } = *found;
     let f = outcome.gradient;
     let earned = matches!(outcome.status, Status::ThresholdReached | Status::Global | Status::Local);
     let solved = earned || outcome.status == Status::Uncertified;
@@ -186,6 +238,11 @@ fn report(
     let ranges = if across.any() { exact.and_then(|e| e.free) } else { Some(held) }.filter(|_| earned);
     // Inside a model the unit is R.
     let [a1, a2] = model.cell.primitive(outcome.state.a1, outcome.state.a2);
+    let trend = exact.map_or(&[][..], |e| &e.trend);
+    let by_cell: Vec<String> = trend.iter().map(|t| t.words(&cells[t.cell].to_string())).collect();
+    // A proven limit does not grow, whichever cell it is found in.
+    let grows = trend.last().filter(|_| trend.len() > 1).zip(exact);
+    let grows = grows.map(|(last, e)| last.cell == e.cell && outcome.status != Status::Global);
     let row = LimitRow {
         design: model.name.clone(),
         minor_radius,
@@ -229,6 +286,8 @@ fn report(
         a2_y: number(a2.y),
         end: Some(if method.compression() { "least" } else { "largest" }.to_owned()),
         by_cell: (!by_cell.is_empty()).then(|| by_cell.join("; ")),
+        image_of_deg,
+        grows_with_cell: grows,
     };
     let position = |v: Vec3| -> [f64; 3] { (v * model.unit).into() };
     let poses = pose_records(model, &outcome.state);
@@ -265,5 +324,5 @@ fn report(
         chain,
         dual: exact.map_or(Vec::new(), |e| e.dual.iter().map(force).collect()),
     };
-    (row, state)
+    Finished { row, state }
 }

@@ -65,6 +65,17 @@ impl Cell {
         [(m22 * a1 - m12 * a2) / det, (m11 * a2 - m21 * a1) / det]
     }
 
+    /// Whether both have the same translations.
+    pub fn same_lattice(&self, other: &Cell) -> bool {
+        let ([[m11, m12], [m21, m22]], det) = (self.rows.map(|row| row.map(i64::from)), self.det());
+        // Coordinates in this cell: adjugate · row / det.
+        let inside = |[p, q]: [i32; 2]| {
+            let (p, q) = (i64::from(p), i64::from(q));
+            (p * m22 - q * m21) % det == 0 && (q * m11 - p * m12) % det == 0
+        };
+        self.copies() == other.copies() && other.rows.into_iter().all(inside)
+    }
+
     /// One primitive shift for each copy, (0, 0) first, in lexicographic order after it.
     ///
     /// Two primitive shifts are the same copy when they differ by a vector of this cell's lattice: their
@@ -235,6 +246,22 @@ mod tests {
             let cosets = cell.cosets();
             assert_eq!(cosets.len(), n, "{text}: {cosets:?}");
             assert_eq!(cosets[0], [0, 0]);
+        }
+    }
+
+    #[test]
+    fn bases_of_one_lattice_are_the_same() {
+        let cell = |text: &str| text.parse::<Cell>().unwrap();
+        for (a, b, same) in [
+            ("2x1", "2,0;0,-1", true),
+            ("2x1", "2,1;0,1", true),
+            ("2x1", "1x2", false),
+            ("2x1", "1,1;-1,1", false),
+            ("2x2", "0,2;2,0", true),
+            ("2x2", "4x1", false),
+            ("1x1", "1,57;0,1", true),
+        ] {
+            assert_eq!((cell(a).same_lattice(&cell(b)), cell(b).same_lattice(&cell(a))), (same, same), "{a} {b}");
         }
     }
 

@@ -17,4 +17,5 @@ pub mod record;
 pub mod simulate;
 pub mod solve;
 pub mod state;
+pub mod symmetry;
 pub mod topology;

@@ -220,20 +220,58 @@ impl Model {
     pub fn primitive(&self) -> Model {
         let copies = self.cell.copies();
         let mut out = self.clone();
-        if copies == 1 || !self.periodic {
+        if self.cell == Cell::PRIMITIVE || !self.periodic {
             return out;
         }
         // The first copy is that of shift (0, 0).
         out.elements.truncate(self.elements.len() / copies);
         out.rings.truncate(self.rings.len() / copies);
         out.start.poses.truncate(out.elements.len());
-        for element in &mut out.elements {
+        for element in out.elements.iter_mut().filter(|_| copies > 1) {
             element.name.truncate(element.name.rfind('@').unwrap_or(element.name.len()));
         }
         out.cell = Cell::PRIMITIVE;
         let [a1, a2] = self.cell.primitive(self.start.a1, self.start.a2);
         let cell = Matrix2::from_fn(|i, j| f64::from(self.cell.rows()[j][i]));
         (out.start.a1, out.start.a2, out.reference_inverse) = (a1, a2, cell * self.reference_inverse);
+        out.links = topology::links(&out, &out.start, &topology::close_pairs(&out, &out.start, 0.0));
+        out
+    }
+
+    /// The same design in the cell `cell` of a periodic model.
+    pub fn in_cell(&self, cell: Cell) -> Model {
+        let mut out = self.primitive();
+        if cell == Cell::PRIMITIVE || !self.periodic {
+            return out;
+        }
+        let own = out.clone();
+        let [a1, a2] = cell.vectors(own.start.a1, own.start.a2);
+        let columns = Matrix2::new(a1.x, a2.x, a1.y, a2.y);
+        // Dependent rows are no cell.
+        out.reference_inverse = columns.try_inverse().unwrap_or(own.reference_inverse);
+        (out.cell, out.start.a1, out.start.a2) = (cell, a1, a2);
+        (out.elements, out.rings, out.start.poses) = (Vec::new(), Vec::new(), Vec::new());
+        for coset in cell.cosets() {
+            let shift = own.start.translation(coset);
+            let first = out.elements.len();
+            let rings = out.rings.len();
+            out.rings.extend(own.rings.iter().map(|ring| Ring { element: ring.element + first, ..ring.clone() }));
+            for (element, pose) in own.elements.iter().zip(&own.start.poses) {
+                let position = pose.position + shift;
+                let copy = if own.elements.len() > MANY { position } else { shift };
+                let name = match cell.copies() {
+                    1 => element.name.clone(),
+                    _ => format!("{}@{},{}", element.name, coset[0], coset[1]),
+                };
+                out.elements.push(Element {
+                    name,
+                    rings: element.rings.start + rings..element.rings.end + rings,
+                    reach: element.reach,
+                    anchor: (out.reference_inverse * copy.xy()).into(),
+                });
+                out.start.poses.push(Pose { position, ..*pose });
+            }
+        }
         out.links = topology::links(&out, &out.start, &topology::close_pairs(&out, &out.start, 0.0));
         out
     }

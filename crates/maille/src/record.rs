@@ -164,9 +164,16 @@ pub struct LimitRow {
     /// `largest` or `least`: which end of l1 the limit is. Empty in records older than the column, whose limits are largest.
     #[serde(default)]
     pub end: Option<String>,
-    /// Of a least l1: what each cell reached, from how many starts, with how many distinct limits.
+    /// Where larger cells were tried, and of every least l1: what each cell reached, from how many starts, with how many distinct
+    /// limits.
     #[serde(default)]
     pub by_cell: Option<String>,
+    /// Direction that was solved, where the row is its image under a symmetry of the design; empty where the row was solved itself.
+    #[serde(default)]
+    pub image_of_deg: Option<f64>,
+    /// Whether the last cell that was tried still gave more than the smaller ones; empty where no larger one was tried.
+    #[serde(default)]
+    pub grows_with_cell: Option<bool>,
 }
 
 /// Pose of one element: `position + rotation · (offset in the design)`.

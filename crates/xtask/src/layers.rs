@@ -27,7 +27,7 @@ const MODULES: &[&[&str]] = &[
     &["error", "tolerance"],
     &["design"],
     &["lattice"],
-    &["model", "state", "topology"],
+    &["model", "state", "topology", "symmetry"],
     &["contact"],
     &["bound"],
     &["energy", "constraint"],

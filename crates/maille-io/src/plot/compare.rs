@@ -148,15 +148,16 @@ fn labels(parts: &[(&str, Vec<String>)], count: usize) -> Vec<String> {
     (0..count).map(|i| label(i).join(", ")).collect()
 }
 
-/// A paragraph for each record: its label, inputs, directions, and what it has no limits for.
+/// A paragraph for each record: its label, inputs, directions, what it has no limits for, and which limits still grow.
 pub(super) fn captions(records: &[NamedRecord], labels: &[String]) -> Vec<String> {
     let caption = |(named, label): (&NamedRecord, &String)| {
         let (run, rows) = (&named.record.run, &named.record.rows);
         let words = inputs(&run.design, rows, &parameter_words(&run.parameters));
-        let gaps = missing(rows, |row| row.l1).map(|gaps| format!("  {gaps}")).unwrap_or_default();
+        let told = missing(rows, |row| row.l1).into_iter().chain(growing(rows));
+        let told: String = told.map(|words| format!("  {words}")).collect();
         let directions = directions(rows).map(|text| format!("  ·  {text}.")).unwrap_or_default();
         let name = if records.len() > 1 { format!("{label}:  ") } else { String::new() };
-        format!("{name}{words}{directions}{gaps}")
+        format!("{name}{words}{directions}{told}")
     };
     records.iter().zip(labels).map(caption).collect()
 }
@@ -184,6 +185,27 @@ pub(super) fn missing(rows: &[LimitRow], of: impl Fn(&LimitRow) -> Option<f64>) 
     let parts: Vec<_> = by_status.map(|(n, name)| format!("{n} {name}")).collect();
     let (n, total) = (without.len(), rows.len());
     Some(format!("Gaps: {n} of {total} searches gave no limit ({}).", parts.join(", ")))
+}
+
+/// Directions that are named of those that still grow.
+const NAMED: usize = 6;
+
+/// Which limits still grow with the cell: `Still grows with the cell, so that larger cells may go further: 75°, 90° at
+/// l₂ = −0.2.`
+pub(super) fn growing(rows: &[LimitRow]) -> Option<String> {
+    let grows = || rows.iter().filter(|row| row.l1.is_some() && row.grows_with_cell == Some(true));
+    let of = |l2: f64| {
+        let mut at: Vec<f64> = grows().filter(|row| row.l2 == l2).map(|row| row.direction_deg).collect();
+        at.sort_by(f64::total_cmp);
+        let named: Vec<String> = at.iter().take(NAMED).map(|degrees| format!("{degrees}°")).collect();
+        let more = at.len() - named.len();
+        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        format!("{}{more} at l₂ = {}", named.join(", "), l2_label(l2))
+    };
+    let l2 = l2_values(grows());
+    let words: Vec<String> = l2.into_iter().map(of).collect();
+    (!words.is_empty())
+        .then(|| format!("Still grows with the cell, so that larger cells may go further: {}.", words.join("; ")))
 }
 
 /// The l2 of rows, from least to largest, each once.

@@ -1,7 +1,9 @@
 //! Polar plots of limits against the direction of the pull: 0° right, counter-clockwise.
 
 use super::canvas::{Anchor, Canvas, Stroke, TextStyle};
-use super::compare::{captions, differences, directions, heading, inputs, l2_label, l2_values, missing, title};
+use super::compare::{
+    captions, differences, directions, growing, heading, inputs, l2_label, l2_values, missing, title,
+};
 use super::curve::{Curve, CurveKind};
 use super::frame::{Entry, Frame, GRID, INK, Layout, MARGIN, RIM, SOFT, TOP, style};
 use super::look::{self, Look, MARKER};
@@ -149,6 +151,7 @@ impl PolarPlot {
         caption.extend(directions(rows).map(|directions| format!("{directions}. {}", symmetry(quantity))));
         caption.extend(proven(rows));
         caption.extend(missing(rows, |row| quantity.of(row)));
+        caption.extend(growing(rows));
         let curves = l2.iter().map(|&l2| limits(0, rows, l2, quantity));
         let curves = curves.chain(l2.iter().filter(open).map(bound)).collect();
         Self {

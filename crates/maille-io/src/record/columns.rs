@@ -106,11 +106,11 @@ use Unit::{Degree, Length, None as Word, One, Radius, Second};
 use Values::{Count, Flag, Number, Text};
 
 /// Lengths of earlier tables: one that ends after so many columns is read too, the others being empty.
-pub(super) const EARLIER_COLUMNS: [usize; 3] = [30, 36, 40];
+pub(super) const EARLIER_COLUMNS: [usize; 4] = [30, 36, 40, 42];
 
 /// The columns, in order. A later version may add columns at the end; it renames and moves none.
 #[rustfmt::skip] // a table
-pub const LIMIT_COLUMNS: [Column; 42] = [
+pub const LIMIT_COLUMNS: [Column; 44] = [
     column("design", Word, Text(|r| Some(&r.design)), "name of the design; text, also where it looks like a number"),
     column("minor_radius", Length, Number(|r| r.minor_radius), "common minor radius of the rings; empty where each ring gives its own"),
     column("direction_deg", Degree, Number(|r| Some(r.direction_deg)), "direction of the pull, counter-clockwise from x"),
@@ -152,5 +152,7 @@ pub const LIMIT_COLUMNS: [Column; 42] = [
     column("a2_x", Radius, Number(|r| r.a2_x), "second lattice vector of the design's own cell at the limit"),
     column("a2_y", Radius, Number(|r| r.a2_y), "its y"),
     column("end", Word, Text(|r| r.end.as_deref()), "largest or least: which end of l1 the limit is"),
-    column("by_cell", Word, Text(|r| r.by_cell.as_deref()), "of a least l1: what each cell reached, its starts and its distinct certified limits"),
+    column("by_cell", Word, Text(|r| r.by_cell.as_deref()), "where larger cells were tried, and of a least l1: what each cell reached, its starts and its distinct certified limits"),
+    column("image_of_deg", Degree, Number(|r| r.image_of_deg), "the direction that was solved, of which the row is the image under a symmetry of the design; empty where the row was solved itself"),
+    column("grows_with_cell", Word, Flag(|r| r.grows_with_cell), "whether the last cell that was tried still gave more; false where larger cells gave nothing more or the limit is proved; empty where none was tried"),
 ];

@@ -120,6 +120,8 @@ fn row(record: &StringRecord) -> Result<LimitRow, String> {
         a2_y: optional(next())?,
         end: some(next(), "a word")?,
         by_cell: some(next(), "a text")?,
+        image_of_deg: optional(next())?,
+        grows_with_cell: some(next(), "true or false")?,
     })
 }
 

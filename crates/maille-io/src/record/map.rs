@@ -4,7 +4,7 @@ use super::error::RecordError;
 use super::folder::{Record, RecordFolder};
 use super::run::{Counters, RunRecord, input_hash};
 use crate::plot::{Layout, PlotError, PolarPlot, Quantity, parameter_words, polar_svg, svg_to_png};
-use maille::characterize::{CellChoice, Finished, Method, Task, characterize, tasks};
+use maille::characterize::{CellChoice, Finished, Method, Task, chains, characterize, tasks};
 use maille::design::Design;
 use maille::lattice::Cell;
 use maille::model::Model;
@@ -121,23 +121,29 @@ impl OpenMap {
     }
 
     /// The chains of the map, the least that can be asked for alone: the limits along one direction, in the order in which
-    /// they go on from each other. The record of a map of that direction alone has the same rows, bit for bit.
+    /// they go on from each other, with those of its images. The record of a map of these directions alone has the same rows, bit for
+    /// bit.
     pub fn chains(&self) -> impl Iterator<Item = Chain> {
-        let chain = |&direction_deg: &f64| {
-            let mut parameters = self.parameters.clone();
-            parameters["directions_deg"] = json!([direction_deg]);
-            let inputs = json!({ "program_version": VERSION, "parameters": parameters });
-            let left = self.open().filter(|task| task.direction_deg == direction_deg).count();
-            Chain { direction_deg, left, hash: input_hash(&self.design, &inputs) }
+        let chain = |directions_deg: Vec<f64>| {
+            let inputs = json!({ "program_version": VERSION, "parameters": self.parameters_of(&directions_deg) });
+            let left = self.open().filter(|task| directions_deg.contains(&task.direction_deg)).count();
+            Chain { directions_deg, left, hash: input_hash(&self.design, &inputs) }
         };
-        self.map.directions_deg.iter().map(chain)
+        let Map { method, directions_deg, .. } = &self.map;
+        chains(&self.models[0], method, directions_deg).into_iter().map(move |orbit| chain(orbit.directions_deg))
+    }
+
+    /// The parameters of a map of these directions.
+    fn parameters_of(&self, directions_deg: &[f64]) -> Value {
+        let mut parameters = self.parameters.clone();
+        parameters["directions_deg"] = json!(directions_deg);
+        parameters
     }
 
     /// The limits of a chain that are in the record, as a record.
-    pub fn chain(&self, direction_deg: f64) -> Record {
-        let mut parameters = self.parameters.clone();
-        parameters["directions_deg"] = json!([direction_deg]);
-        let found = self.collected.rows.iter().flatten().filter(|(row, _)| row.direction_deg == direction_deg);
+    pub fn chain(&self, directions_deg: &[f64]) -> Record {
+        let parameters = self.parameters_of(directions_deg);
+        let found = self.collected.rows.iter().flatten().filter(|(row, _)| directions_deg.contains(&row.direction_deg));
         let (rows, states): (Vec<_>, Vec<_>) = found.cloned().unzip();
         let counters = Counters::of(&rows);
         Record { run: RunRecord { counters, ..RunRecord::new(&self.design, &parameters, VERSION) }, rows, states }
@@ -199,14 +205,14 @@ impl OpenMap {
     }
 }
 
-/// The limits along one direction.
+/// The limits along one direction, and along those that are its images under the symmetries of the design.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chain {
-    /// Direction of the pull.
-    pub direction_deg: f64,
+    /// Directions of the pull, in the order of the map.
+    pub directions_deg: Vec<f64>,
     /// Its limits that are not in the record yet.
     pub left: usize,
-    /// SHA-256 of all that it depends on: design, parameters, this direction, version of the program.
+    /// SHA-256 of all that it depends on: design, parameters, these directions, version of the program.
     pub hash: String,
 }
 

@@ -14,8 +14,20 @@ pub struct Extent {
 }
 
 /// Columns of a first look, in order of importance.
-const FIRST_LOOK: [&str; 10] =
-    ["design", "minor_radius", "method", "direction_deg", "l2", "l1", "status", "bound_l1", "iterations", "wall_s"];
+const FIRST_LOOK: [&str; 12] = [
+    "design",
+    "minor_radius",
+    "method",
+    "direction_deg",
+    "l2",
+    "l1",
+    "status",
+    "bound_l1",
+    "grows_with_cell",
+    "image_of_deg",
+    "iterations",
+    "wall_s",
+];
 /// Decimals of a rounded number.
 const DECIMALS: usize = 6;
 /// Where the largest number of a column is outside of these, its numbers are shown with powers of ten.

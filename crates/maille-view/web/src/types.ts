@@ -120,6 +120,8 @@ export interface LimitRow {
   a2_y: number | null;
   end: string | null;
   by_cell: string | null;
+  image_of_deg: number | null;
+  grows_with_cell: boolean | null;
 }
 
 export interface Listed {

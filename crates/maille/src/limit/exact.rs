@@ -6,7 +6,7 @@
 //! is better (only an attained bound proves that), nor that a path without overlap leads there from the start.
 
 use super::{
-    ExactFigures, LimitOutcome,
+    CellTrend, ExactFigures, LimitOutcome,
     climb::{ROUNDS, Solve, climb, own_image_force, shaken_from, tiled},
     pull::{Family, Strained},
 };
@@ -235,7 +235,7 @@ impl<'a> ExactMethod<'a> {
         }
         let reached = first.best.as_ref().map(|b| Strained::at(b, 1.0, l2, across));
         let mut tally = first;
-        let mut trend = vec![(0, tally.l1())];
+        let mut trend = vec![tally.trend(0)];
         let mut cell = 0;
         // Under lateral compression a larger cell can fold where this one cannot.
         let asks = tally
@@ -261,7 +261,7 @@ impl<'a> ExactMethod<'a> {
             let own = if across.any() { 0 } else { self.options.starts.min(CELL_STARTS) };
             let starts = shaken.chain(self.fresh(larger, 0..own)).collect();
             let found = self.search(larger, direction_deg, l2, starts, (most, across), cancel);
-            trend.push((larger, found.l1()));
+            trend.push(found.trend(larger));
             let better = found.goes_further(Some(&tally));
             let (runs, iterations) = (tally.runs + found.runs, tally.iterations + found.iterations);
             if better {
@@ -281,16 +281,9 @@ impl<'a> ExactMethod<'a> {
             );
             return ended(Status::L2Unreachable, &note);
         }
-        let mut outcome = self.judge(cell, direction_deg, l2, most, tally, figures, cancel);
-        if trend.len() > 1 && outcome.note.is_none() {
-            let list: Vec<String> = trend
-                .iter()
-                .map(|(k, l1)| format!("{} {}", self.models[*k].cell, l1.map_or("none".into(), |x| format!("{x:.9}"))))
-                .collect();
-            let grows = last > 0 && cell == last;
-            let says = if grows { "the limit still grows with the cell" } else { "cells tried" };
-            outcome.note = Some(format!("{says}: {}", list.join(", ")));
-        }
+        let trend = if trend.len() > 1 { trend } else { Vec::new() };
+        let figures = ExactFigures { trend, ..figures };
+        let outcome = self.judge(cell, direction_deg, l2, most, tally, figures, cancel);
         (outcome, reached)
     }
 
@@ -488,8 +481,10 @@ pub(super) struct Tally {
 }
 
 impl Tally {
-    fn l1(&self) -> Option<f64> {
-        self.best.as_ref().map(|b| b.x.p[0])
+    /// What it found, as that of the cell `cell`.
+    pub(super) fn trend(&self, cell: usize) -> CellTrend {
+        let value = self.best.as_ref().filter(|b| b.certified).map(|b| b.x.p[0]);
+        CellTrend { cell, value, n_starts: self.runs, n_distinct: self.distinct.len() as u64 }
     }
 
     /// Whether it has a better limit than `other`: certified first, and more than the same.

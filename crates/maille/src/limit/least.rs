@@ -76,9 +76,9 @@ impl ExactMethod<'_> {
             if cancel.load(Ordering::Relaxed) {
                 return (self.nothing(Status::Interrupted, ExactFigures::default()), found);
             }
-            let certified = tally.best.as_ref().filter(|b| b.certified).map(|b| -b.x.p[0]);
-            let n_distinct = tally.distinct.len() as u64;
-            trend.push(CellTrend { cell: larger, value: certified, n_starts: tally.runs, n_distinct });
+            // What was maximised is −l1.
+            let found_here = tally.trend(larger);
+            trend.push(CellTrend { value: found_here.value.map(|x| -x), ..found_here });
             found[larger] = tally.best.as_ref().map(|b| Strained::at(b, self.sign(), l2, across));
             (runs, iterations) = (runs + tally.runs, iterations + tally.iterations);
             distinct.extend(tally.distinct.iter().copied());
@@ -88,25 +88,13 @@ impl ExactMethod<'_> {
         }
         let tally = Tally { runs, iterations, distinct: apart(distinct), best: best.and_then(|tally| tally.best) };
         let figures = ExactFigures { trend, ..ExactFigures::default() };
-        let mut outcome = self.judge(cell, direction_deg, l2, f64::INFINITY, tally, figures, cancel);
-        let last = self.models.len() - 1;
-        if outcome.note.is_none() && last > 0 {
-            let says = if cell == last { "it still grows with the cell" } else { "cells tried" };
-            outcome.note = Some(format!("least l1; {says}: {}", self.trend_words(&outcome)));
-        }
+        let outcome = self.judge(cell, direction_deg, l2, f64::INFINITY, tally, figures, cancel);
         (outcome, found)
-    }
-
-    /// What each cell reached, as `1x1 -0.0376 (8 starts, 3 limits)`.
-    fn trend_words(&self, outcome: &LimitOutcome) -> String {
-        let trend = outcome.exact.iter().flat_map(|figures| &figures.trend);
-        let one = |t: &CellTrend| t.words(&self.models[t.cell].cell.to_string());
-        trend.map(one).collect::<Vec<_>>().join("; ")
     }
 }
 
 impl CellTrend {
-    /// In words; `cell` is its name.
+    /// In words, as `1x1 -0.037600000 (8 starts, 3 limits)`; `cell` is its name.
     pub fn words(&self, cell: &str) -> String {
         let value = self.value.map_or("none".to_owned(), |x| format!("{x:.9}"));
         format!("{cell} {value} ({} starts, {} limits)", self.n_starts, self.n_distinct)

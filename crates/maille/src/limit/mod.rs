@@ -79,7 +79,7 @@ pub struct ExactFigures {
     pub l1_uncertified: Option<f64>,
     /// Loaded contacts.
     pub contacts: Vec<Contact>,
-    /// Of a least l1: what each cell's search found.
+    /// Where larger cells were searched, and of a least l1: what each cell's search found.
     pub trend: Vec<CellTrend>,
     /// Where something was free: the ranges in which it can be at the limit.
     pub free: Option<FreeRanges>,

@@ -1,6 +1,7 @@
 """Chains of limits: what a worker does, and the Parquet file of one.
 
-A chain is the limits along one direction, each solved from its neighbour's state: the least that can be asked for alone.
+A chain is the limits along one direction, each solved from its neighbour's state, and along the directions that are its images
+under the symmetries of the design: the least that can be asked for alone.
 """
 
 from __future__ import annotations
@@ -36,11 +37,11 @@ class Solved:
     file: bytes
 
 
-def solve(design: Design, asked: Asked, direction_deg: float, version: str) -> Solved | MailleError:
+def solve(design: Design, asked: Asked, directions_deg: list[float], version: str) -> Solved | MailleError:
     """Solves a chain; what is wrong with the question comes back and is not tried again."""
     if version != _native.__VERSION__:
         return ChainError(f"the worker has maille {_native.__VERSION__}, not {version}")
-    chain: Asked = {**asked, "directions": [direction_deg]}
+    chain: Asked = {**asked, "directions": directions_deg}
     try:
         found = _native.characterize(design._inner, chain, out=None, overwrite=False, progress=None, threads=1)
     except MailleError as error:

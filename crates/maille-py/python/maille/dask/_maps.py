@@ -46,7 +46,8 @@ def characterize(
     retries: int = 2,
     progress: Progress = None,
 ) -> Results:
-    """The map of each design, as `maille.characterize` finds it, with the limits along each direction as one task.
+    """The map of each design, as `maille.characterize` finds it, with the limits along each direction as one task;
+    directions that the symmetries of the design make images of each other are one task together.
 
     `designs` is a list, or names with designs; designs of one name in a list get their minor radius behind it. Limits are
     kept in the folder `out` as they come in, and the same call goes on where an earlier one stopped. A chain whose worker is
@@ -109,7 +110,7 @@ def run(
             for chain in map.left.values():
                 key = f"maille-{chain.hash[:32]}"
                 tasks.setdefault(key, []).append((map, chain))
-                calls[key] = (map.design, asked, chain.direction_deg, _native.__VERSION__)
+                calls[key] = (map.design, asked, chain.directions_deg, _native.__VERSION__)
         try:
             with closing(results(client, solve, calls, retries)) as found:
                 for key, value in found:
@@ -118,7 +119,7 @@ def run(
                         if isinstance(value, Solved):
                             map.take(chain, value)
                         else:
-                            failures.append(Failure(map.name, chain.direction_deg, value))
+                            failures.append(Failure(map.name, chain.directions_deg[0], value))
                             map.give_up(chain)
                         done += chain.left
                         tell(done, total)
@@ -135,7 +136,8 @@ def run(
 
 @dataclass(frozen=True)
 class _Chain:
-    direction_deg: float
+    #: Images of each other under the symmetries of the design.
+    directions_deg: list[float]
     #: Limits of it that are not in the record.
     left: int
     hash: str
@@ -158,8 +160,8 @@ class _Map:
         folder = out / CHAINS / f"record={name}"
         native = _native.OpenMap(design._inner, asked, os.fspath(out / RECORDS / name), overwrite)
         chains = [
-            _Chain(direction, left, hash, folder / f"{direction:g}-{hash[:32]}.parquet")
-            for direction, left, hash in native.chains()
+            _Chain(directions, left, hash, folder / f"{directions[0]:g}-{hash[:32]}.parquet")
+            for directions, left, hash in native.chains()
         ]
         map = cls(name, design, native, len(chains))
         try:
@@ -172,7 +174,7 @@ class _Map:
                         map.left[chain.hash] = chain
                 elif not chain.file.exists():
                     # The program has solved it.
-                    write_whole(chain.file, native.chain(chain.direction_deg).parquet(True))
+                    write_whole(chain.file, native.chain(chain.directions_deg).parquet(True))
         except BaseException:
             native.close()
             raise

@@ -21,7 +21,7 @@ RECORDS, CHAINS, TABLE = "records", "chains", "limits.csv"
 
 @dataclass(frozen=True)
 class Failure:
-    """What could not be computed: a whole map, or the chain of one direction (degrees)."""
+    """What could not be computed: a whole map, or the chain that begins with one direction (degrees)."""
 
     name: str
     direction_deg: float | None

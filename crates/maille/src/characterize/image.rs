@@ -1,0 +1,113 @@
+//! The image of a limit under a symmetry of the design: a limit along another direction, which needs no solve.
+
+use crate::{
+    bound::{BindingChain, DualForce, TieKind},
+    constraint::Contact,
+    lattice::Cell,
+    limit::{ExactFigures, FreeRanges, LimitOutcome},
+    model::Model,
+    state::State,
+    symmetry::{Image, Operation, between},
+};
+use std::borrow::Cow;
+
+/// A limit along the image of the direction that was solved.
+pub(super) struct ImageOutcome<'a> {
+    /// The cell of its state.
+    pub model: Cow<'a, Model>,
+    pub outcome: LimitOutcome,
+    /// The images of the cells that were tried.
+    pub cells: Vec<Cell>,
+}
+
+/// The image of `outcome`, a limit along `solved_deg`, along `direction_deg`. Of several operations the first is taken that leads to
+/// one of the cells of `models`.
+///
+/// Panics if none of `operations` takes the one direction to the other.
+pub(super) fn image<'a>(
+    operations: &[Operation],
+    models: &'a [Model],
+    outcome: &LimitOutcome,
+    solved_deg: f64,
+    direction_deg: f64,
+) -> ImageOutcome<'a> {
+    let from = &models[outcome.exact.as_ref().map_or(0, |figures| figures.cell)];
+    let known = |cell: Cell| models.iter().find(|model| model.cell.same_lattice(&cell));
+    let possible = || between(operations, solved_deg, direction_deg).filter_map(|o| Some((o, o.cell(from.cell)?)));
+    let (operation, model) = possible()
+        .find_map(|(operation, cell)| Some((operation, Cow::Borrowed(known(cell)?))))
+        .or_else(|| possible().next().map(|(operation, cell)| (operation, Cow::Owned(from.in_cell(cell)))))
+        .unwrap_or_else(|| panic!("{direction_deg}° is no image of {solved_deg}°"));
+    let cell_of = |model: &Model| operation.cell(model.cell).map(|cell| known(cell).map_or(cell, |model| model.cell));
+    let cells = models.iter().map(|model| cell_of(model).unwrap_or(model.cell)).collect();
+    let outcome = {
+        let primitive = models[0].primitive();
+        let maps = |from, to| {
+            Image::new(operation, from, to).unwrap_or_else(|| panic!("an operation does not map its own design"))
+        };
+        let (own, first, image) = (maps(&primitive, &primitive), maps(&models[0], &models[0]), maps(from, &model));
+        mapped(&own, &first, &image, from, outcome, solved_deg)
+    };
+    ImageOutcome { model, outcome, cells }
+}
+
+/// What a limit becomes; `first` maps the first cell, whose rings the chain counts, and `own` the design's own, whose rings the
+/// ties count. All that is written of a state passes here.
+fn mapped(
+    own: &Image<'_>,
+    first: &Image<'_>,
+    image: &Image<'_>,
+    from: &Model,
+    outcome: &LimitOutcome,
+    solved_deg: f64,
+) -> LimitOutcome {
+    let to = image.model();
+    // A search that ends without a state has the start.
+    let (state, gradient) = if outcome.state == from.start {
+        (to.start.clone(), outcome.gradient)
+    } else {
+        let state = image.state(&outcome.state);
+        let gradient = state.deformation_gradient(to);
+        (state, gradient)
+    };
+    LimitOutcome {
+        gradient,
+        note: outcome.note.as_ref().map(|note| format!("image of {solved_deg}°: {note}")),
+        exact: outcome.exact.as_ref().map(|figures| ExactFigures {
+            chain: figures.chain.as_ref().map(|chain| mapped_chain(first, chain)),
+            dual: figures.dual.iter().map(|tie| mapped_tie(own, first, tie)).collect(),
+            contacts: figures.contacts.iter().map(|contact| mapped_contact(image, contact, &state)).collect(),
+            free: figures.free.map(|free| mapped_ranges(image, free)),
+            ..figures.clone()
+        }),
+        state,
+        ..outcome.clone()
+    }
+}
+
+fn mapped_contact(image: &Image<'_>, contact: &Contact, state: &State) -> Contact {
+    let (pair, [point_a, point_b]) = image.contact(&contact.pair, [contact.point_a, contact.point_b], state);
+    Contact { pair, point_a, point_b, force: contact.force }
+}
+
+/// The chain goes on from the same cell.
+fn mapped_chain(first: &Image<'_>, chain: &BindingChain) -> BindingChain {
+    let rings: Vec<_> = chain.rings.iter().map(|&(ring, shift)| first.ring(ring, shift)).collect();
+    let [p, q] = rings.first().map_or([0, 0], |(_, shift)| *shift);
+    BindingChain {
+        vector: first.shift(chain.vector),
+        length: chain.length,
+        rings: rings.into_iter().map(|(ring, [m, n])| (ring, [m - p, n - q])).collect(),
+    }
+}
+
+fn mapped_tie(own: &Image<'_>, first: &Image<'_>, tie: &DualForce) -> DualForce {
+    let counted = if tie.kind == TieKind::Chain { first } else { own };
+    let rings = tie.rings.iter().map(|&(ring, shift)| counted.ring(ring, shift)).collect();
+    DualForce { kind: tie.kind, rings, force: own.vector(&tie.force) }
+}
+
+fn mapped_ranges(image: &Image<'_>, free: FreeRanges) -> FreeRanges {
+    let [least, most] = free.shear;
+    FreeRanges { shear: if image.mirrors() { [-most, -least] } else { free.shear }, ..free }
+}
