@@ -222,6 +222,7 @@ impl House {
         let mut make = Command::new(program::cargo());
         make.args(["run", "--quiet", "-p", "maille-io", "--example", "random_designs", "--", "--seed", SEED]);
         make.args(["--count", count, "--doubled", doubled]).arg(&folder).current_dir(root);
+        println!("making {count} random designs and {doubled} doubled ones");
         let made = make.status().map_err(|e| format!("cargo did not start: {e}"))?;
         if !made.success() {
             return Err(format!("the random designs were not made: {made}"));

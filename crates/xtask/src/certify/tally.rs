@@ -115,6 +115,7 @@ impl Tally {
     /// Compares each row with the rows of the same l2 along the images of its direction.
     fn compare(&mut self, rows: &[Value], sheet: &Sheet) {
         let number = |row: &Value, key: &str| row[key].as_f64();
+        let rows: Vec<&Value> = rows.iter().filter(|row| row["status"] != "interrupted").collect();
         for (k, row) in rows.iter().enumerate() {
             let Some(direction_deg) = number(row, "direction_deg") else { continue };
             let images = sheet.images(direction_deg);
@@ -276,6 +277,7 @@ mod tests {
             row(60.0, 0.0, "local", Some(7.0)),
             row(0.0, 0.0, "local", Some(1.0)),
             row(180.0, 0.0, "l2-not-reached", None),
+            row(150.0, 0.0, "interrupted", None),
         ];
         let tally = Tally::of(&table(rows), &verified).unwrap();
         assert_eq!((tally.symmetric_pairs, tally.symmetric_missing), (1, 1));
