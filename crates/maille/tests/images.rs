@@ -30,6 +30,14 @@ fn gyroscopes_keep_their_distance() {
     assert!(thick > thin + 0.2, "{thick}");
 }
 
+/// Wire too thin for the cubes near 0 proves less, and nothing wrong.
+#[test]
+fn thin_wire_proves_less() {
+    let [thin, thinnest] = [0.0015, 0.001].map(|r| ImageBound::new(&gyroscopes(r)).least(0));
+    assert!(thin > 2.0 / 3f64.sqrt() && thin < 2f64.sqrt() + 0.02, "{thin}");
+    assert_eq!(thinnest, 0.0);
+}
+
 /// Single rings can lie flat on each other.
 #[test]
 fn rings_can_be_stacked() {

@@ -1,5 +1,6 @@
 //! `cargo xtask gallery`: a picture, a plot and the numbers of every built-in design, as the program gives them.
 
+use crate::program;
 use serde_json::Value;
 use std::{
     fmt::Write,
@@ -27,7 +28,7 @@ const SOME_MISSING: i32 = 5;
 pub fn write(root: &Path, quick: bool, program: Option<&str>) -> Result<(), String> {
     let program = match program {
         Some(program) => PathBuf::from(program),
-        None => build(root)?,
+        None => program::build(root, "release")?,
     };
     let (folder, pulls) = if quick { (QUICK_FOLDER, QUICK_PULLS) } else { (FOLDER, PULLS) };
     let scratch = root.join("maille-out/gallery-records");
@@ -48,18 +49,6 @@ pub fn write(root: &Path, quick: bool, program: Option<&str>) -> Result<(), Stri
     fs::write(&readme, text).map_err(|e| format!("{} cannot be written: {e}", readme.display()))?;
     println!("{folder}/README.md");
     Ok(())
-}
-
-/// Builds the program and says where it lies.
-fn build(root: &Path) -> Result<PathBuf, String> {
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let arguments = ["build", "--release", "--package", "maille-cli", "--message-format", "json-render-diagnostics"];
-    let output = Command::new(cargo).args(arguments).current_dir(root).stderr(Stdio::inherit()).output();
-    let output = output.map_err(|e| format!("cargo did not start: {e}"))?;
-    let messages = String::from_utf8_lossy(&output.stdout);
-    let executables = messages.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
-    let executable = executables.filter_map(|message| message["executable"].as_str().map(PathBuf::from)).next_back();
-    executable.filter(|_| output.status.success()).ok_or_else(|| "the program was not built".to_string())
 }
 
 struct House {

@@ -3,9 +3,11 @@
 //! It depends on `serde_json` alone, so that the first command after a clone starts soon.
 
 mod bench;
+mod certify;
 mod gallery;
 mod layers;
 mod paths;
+mod program;
 mod steps;
 mod tokens;
 mod uses;
@@ -30,6 +32,12 @@ cargo xtask COMMAND
   gallery  write docs/gallery: pictures, plots and numbers of every built-in design, by the program
            --quick         few directions, into maille-out/gallery
            --program PATH  this program; otherwise it is built
+  certify  maps of all built-in designs and of random ones, each row verified, as validation/certified.csv; hours; goes on
+           where it was stopped
+           --quick         few designs and directions, in minutes, beside their records in maille-out/certify
+           --program PATH  this program; otherwise it is built
+           --limit-s N     time for one map and for its verification, each [default: 1800]
+           --threads N     threads of the program [default: all cores]
   bench    every bench, and docs/performance.md from it; close other programs first
            --from FILE     from what `cargo bench` has printed to FILE
 ";
@@ -57,6 +65,7 @@ fn main() -> ExitCode {
         ["gallery", "--quick", "--program", program] => steps::gallery(&root, true, Some(program)),
         ["bench"] => steps::bench(&root, None),
         ["bench", "--from", file] => steps::bench(&root, Some(file)),
+        ["certify", ref options @ ..] => steps::certify(&root, options),
         [] | ["help" | "--help" | "-h"] => {
             print!("{HELP}");
             return ExitCode::SUCCESS;

@@ -1,6 +1,6 @@
 //! The steps of `ci`, each announced and timed.
 
-use crate::{Finding, bench, gallery, layers, paths, view, wheel::Environment};
+use crate::{Finding, bench, certify, gallery, layers, paths, view, wheel::Environment};
 use std::{
     path::Path,
     process::{Command, Stdio},
@@ -25,13 +25,14 @@ pub fn ci(root: &Path) -> Result<(), Failed> {
 pub fn test(root: &Path) -> Result<(), Failed> {
     let python = timed("Python package", || failed(Environment::new(root, false).and_then(|python| python.test())));
     let viewer = timed("viewer", || failed(view::test(root)));
+    let certify = timed("certify --quick", || self::certify(root, &["--quick"]));
     let tests = rust_tests(root);
-    for (of, done) in [("the Python package", &python), ("the viewer", &viewer)] {
+    for (of, done) in [("the Python package", &python), ("the viewer", &viewer), ("certify --quick", &certify)] {
         if done.is_err() {
             eprintln!("\nxtask: the tests of {of} failed, see above");
         }
     }
-    python.and(viewer).and(tests)
+    python.and(viewer).and(certify).and(tests)
 }
 
 fn rust_tests(root: &Path) -> Result<(), Failed> {
@@ -85,6 +86,11 @@ pub fn gallery(root: &Path, quick: bool, program: Option<&str>) -> Result<(), Fa
         eprintln!("xtask: {problem}");
         Failed
     })
+}
+
+/// Maps of many designs, each row verified.
+pub fn certify(root: &Path, options: &[&str]) -> Result<(), Failed> {
+    failed(certify::Options::read(options).and_then(|options| certify::run(root, &options)))
 }
 
 /// The benches, and the page of their figures.

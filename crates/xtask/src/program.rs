@@ -1,0 +1,90 @@
+//! The program, built and run as a user runs it.
+
+use serde_json::Value;
+use std::{
+    fs::File,
+    path::{Path, PathBuf},
+    process::{Command, ExitStatus, Stdio},
+    thread::sleep,
+    time::{Duration, Instant},
+};
+
+/// Builds the program with a profile of cargo and says where it lies.
+pub fn build(root: &Path, profile: &str) -> Result<PathBuf, String> {
+    let arguments = ["build", "--profile", profile, "--package", "maille-cli", "--message-format"];
+    let mut command = Command::new(cargo());
+    command.args(arguments).arg("json-render-diagnostics").current_dir(root).stderr(Stdio::inherit());
+    let output = command.output().map_err(|e| format!("cargo did not start: {e}"))?;
+    let messages = String::from_utf8_lossy(&output.stdout);
+    let executables = messages.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
+    let executable = executables.filter_map(|message| message["executable"].as_str().map(PathBuf::from)).next_back();
+    executable.filter(|_| output.status.success()).ok_or_else(|| "the program was not built".to_string())
+}
+
+/// The cargo that started this, or the one in the path.
+pub fn cargo() -> std::ffi::OsString {
+    std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
+}
+
+/// How a command ended that had a time limit.
+pub struct Ended {
+    /// Its own status.
+    pub status: ExitStatus,
+    /// Whether it was asked to stop as its time was over.
+    pub stopped: bool,
+    /// Time that it took.
+    pub wall_s: f64,
+}
+
+/// What a command may need to write its results after it was asked to stop.
+const GRACE: Duration = Duration::from_secs(60);
+
+/// Runs a command with standard output and error in files; after `limit` it gets an interrupt, as by Ctrl-C, and is killed
+/// where that does not end it.
+pub fn run(command: &mut Command, output: &Path, errors: &Path, limit: Duration) -> Result<Ended, String> {
+    let file = |path: &Path| File::create(path).map_err(|e| format!("{} cannot be made: {e}", path.display()));
+    command.stdin(Stdio::null()).stdout(file(output)?).stderr(file(errors)?);
+    let begun = Instant::now();
+    let mut child = command.spawn().map_err(|e| format!("{command:?} did not start: {e}"))?;
+    let mut stopped = false;
+    let status = loop {
+        if let Some(status) = child.try_wait().map_err(|e| format!("{command:?}: {e}"))? {
+            break status;
+        }
+        if begun.elapsed() > limit && !stopped {
+            stopped = true;
+            let asked = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+            if !asked.is_ok_and(|status| status.success()) {
+                child.kill().map_err(|e| format!("{command:?} cannot be stopped: {e}"))?;
+            }
+        }
+        if begun.elapsed() > limit + GRACE {
+            child.kill().map_err(|e| format!("{command:?} cannot be stopped: {e}"))?;
+        }
+        sleep(Duration::from_millis(20));
+    };
+    Ok(Ended { status, stopped, wall_s: begun.elapsed().as_secs_f64() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_command_is_stopped_after_its_time() {
+        let folder = std::env::temp_dir().join(format!("maille-xtask-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let (out, errors) = (folder.join("out"), folder.join("errors"));
+        let shell = |script: &str, limit_s: f64| {
+            run(Command::new("sh").args(["-c", script]), &out, &errors, Duration::from_secs_f64(limit_s)).unwrap()
+        };
+        let quick = shell("echo said; echo warned >&2; exit 5", 60.0);
+        assert_eq!((quick.status.code(), quick.stopped), (Some(5), false));
+        assert_eq!(std::fs::read_to_string(&out).unwrap(), "said\n");
+        assert_eq!(std::fs::read_to_string(&errors).unwrap(), "warned\n");
+        let slow = shell("trap 'exit 7' INT; while :; do sleep 0.02; done", 0.2);
+        assert_eq!((slow.status.code(), slow.stopped), (Some(7), true));
+        assert!(slow.wall_s < 30.0, "{}", slow.wall_s);
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+}
