@@ -2,14 +2,18 @@
 //!
 //! Two equal, parallel rings with offset e of their axes touch along the circle where e = 0, and at the two points across e
 //! elsewhere. Sixteen heights of the one over the other's plane are smooth rows for both, exact where e = 0; elsewhere they are
-//! stricter than the gap, by (e·u)²/2s in direction u. So what they lock with e ≠ 0 may be no limit: such pairs are
-//! released, and solved on by their gaps.
+//! stricter than the gap, by (e·u)²/2s in direction u. So what they lock with e ≠ 0 may be no limit. Forces are found
+//! on points that are closed by their gap; where there are none, or where e is large, the pair is released and solved on by its gaps.
 
 use super::{
     Posed, SheetProgram,
-    pair::{pair_key, pair_of_key},
+    metric::Factored,
+    pair::{height_angles_rad, pair_key, pair_of_key},
 };
-use crate::{solve::rows::Multiplier, topology};
+use crate::{
+    solve::rows::{Multiplier, Row},
+    topology::{self, near::NearPair},
+};
 use maille_geometry::Vec3;
 use std::collections::BTreeSet;
 
@@ -17,8 +21,13 @@ use std::collections::BTreeSet;
 const FLAT_TILT: f64 = 0.08;
 /// Offset of the axes below which a pair can be flat, in radii.
 const FLAT_APART: f64 = 0.08;
-/// Offset of the axes up to which heights are gaps, in radii.
-const COAXIAL: f64 = 1e-6;
+/// Offset of the axes in radii above which a pair that carries is not left to its heights: its two contacts stand well apart
+/// from what is open.
+pub const SHIFTED: f64 = 1e-2;
+/// The same where no forces on closed points balance.
+pub const COAXIAL: f64 = 1e-6;
+/// Pairs are released by the order of their offsets: Newton's method hardly converges on two contacts that are nearly a circle.
+const MUCH_LESS: f64 = 0.1;
 /// Gap of a closed point, in units of the reference radius.
 const CLOSED: f64 = 1e-9;
 
@@ -49,20 +58,19 @@ impl SheetProgram<'_> {
         changed
     }
 
-    /// Releases the flat pairs that carry and whose axes are apart at `x`: from now on they are pairs like all others, and
-    /// their forces in `multipliers` are shared by their closed points. Returns whether there was one.
-    pub fn release_shifted_pairs(&mut self, x: &Posed, multipliers: &mut Vec<Multiplier>) -> bool {
-        let mut shifted = Vec::new();
-        for &key in &self.flat {
+    /// Releases the flat pairs that carry and whose axes at `x` are more than `beyond` radii apart, and more than
+    /// [`MUCH_LESS`] of the largest such offset: from now on they are pairs like all others, and their forces in
+    /// `multipliers` are shared by their closed points. Returns whether there was one.
+    pub fn release_flat_pairs(&mut self, x: &Posed, multipliers: &mut Vec<Multiplier>, beyond: f64) -> bool {
+        let carrying = self.flat.iter().filter_map(|&key| {
             let force: f64 = multipliers.iter().filter(|m| m.key == key).map(|m| m.value.max(0.0)).sum();
-            let pair = pair_of_key(key);
-            let a = x.state.circle(self.model, pair.ring_a, [0, 0]);
-            let between = x.state.circle(self.model, pair.ring_b, pair.shift).center - a.center;
-            let apart = (between - a.normal.into_inner() * between.dot(&a.normal)).norm();
-            if force > 0.0 && apart > COAXIAL * a.radius {
-                shifted.push((key, force));
-            }
-        }
+            let offset = self.offset(x, key) / self.model.rings[pair_of_key(key).ring_a].major_radius;
+            (force > 0.0 && offset > beyond).then_some((key, force, offset))
+        });
+        let carrying: Vec<(u64, f64, f64)> = carrying.collect();
+        let largest = carrying.iter().map(|(.., offset)| *offset).fold(0.0, f64::max);
+        let shifted = carrying.into_iter().filter(|(.., offset)| *offset > MUCH_LESS * largest);
+        let shifted: Vec<(u64, f64)> = shifted.map(|(key, force, _)| (key, force)).collect();
         for &(key, force) in &shifted {
             self.flat.remove(&key);
             self.released.insert(key);
@@ -75,6 +83,36 @@ impl SheetProgram<'_> {
             multipliers.extend(closed.iter().map(|&angle| Multiplier { key, angle, minimum: true, value }));
         }
         !shifted.is_empty()
+    }
+
+    /// Distance of the axes of the pair at `x`, measured in the plane of its first ring.
+    fn offset(&self, x: &Posed, key: u64) -> f64 {
+        let pair = pair_of_key(key);
+        let a = x.state.circle(self.model, pair.ring_a, [0, 0]);
+        let between = x.state.circle(self.model, pair.ring_b, pair.shift).center - a.center;
+        (between - a.normal.into_inner() * between.dot(&a.normal)).norm()
+    }
+
+    /// Angles of B's points where a flat pair may be closed: those of its heights, its minima, and points beside these where
+    /// (e·u)²/2s is still nearly 0.
+    fn closed_angles_rad(&self, x: &Posed, near: &NearPair) -> Vec<f64> {
+        let opens = self.offset(x, pair_key(&near.pair)).max(f64::MIN_POSITIVE);
+        let beside = ((2.0 * near.touching * CLOSED).sqrt() / opens).min(1.0);
+        let minima = near.minima().iter().map(|m| m.angle_b_rad());
+        let around = minima.flat_map(|m| [-1.0, -0.5, 0.0, 0.5, 1.0].map(|part| m + part * beside));
+        height_angles_rad().chain(around).collect()
+    }
+
+    /// Gaps at the points of the flat pair `near` that are closed.
+    pub(super) fn closed_gaps(
+        &self,
+        x: &Posed,
+        near: &NearPair,
+        at: (&[Vec<Vec3>], Option<&Factored>),
+        rows: &mut Vec<Row>,
+    ) {
+        let found = self.gaps_at(x, near, at, &self.closed_angles_rad(x, near));
+        rows.extend(found.into_iter().filter(|row| row.gap < CLOSED));
     }
 
     /// Takes back that pairs were released: for a solve from elsewhere.

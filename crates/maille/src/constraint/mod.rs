@@ -7,7 +7,7 @@
 //! [`metric`]). The core distance s that two rings must keep is affine: s = (r_a + r_b)(1 + Σ p_m thicken_m) + Σ p_m
 //! widen_m.
 
-mod flat;
+pub mod flat;
 pub mod metric;
 mod pair;
 
@@ -18,7 +18,7 @@ use self::{
 use crate::{
     model::Model,
     solve::{
-        rows::{Derivatives, Multiplier, Row},
+        rows::{Derivatives, Loads, Multiplier, Row},
         sqp::Program,
     },
     state::State,
@@ -282,16 +282,18 @@ impl Program for SheetProgram<'_> {
         rows
     }
 
-    fn gap_rows(&self, x: &Posed, band: f64) -> Option<Vec<Row>> {
-        if self.flat.is_empty() {
+    fn closed_rows(&self, x: &Posed, band: f64, loads: &Loads) -> Option<Vec<Row>> {
+        let flat: Vec<&NearPair> =
+            self.near(x).iter().filter(|near| self.flat.contains(&pair_key(&near.pair))).collect();
+        if !flat.iter().any(|near| loads.carries(pair_key(&near.pair))) {
             return None;
         }
         let mut rows = self.rows(x, band, Derivatives::First);
+        rows.retain(|row| !self.flat.contains(&row.key) && loads.of(row) != 0.0);
         let turns = self.all_turns(&x.state);
         let factored = self.pull.factored(&x.p);
-        rows.retain(|row| !self.flat.contains(&row.key));
-        for near in self.near(x).iter().filter(|near| self.flat.contains(&pair_key(&near.pair))) {
-            self.gaps_of_flat_pair(x, near, (&turns, factored.as_ref()), &mut rows);
+        for near in flat.into_iter().filter(|near| loads.carries(pair_key(&near.pair))) {
+            self.closed_gaps(x, near, (&turns, factored.as_ref()), &mut rows);
         }
         Some(rows)
     }

@@ -121,26 +121,27 @@ impl SheetProgram<'_> {
         out
     }
 
-    /// Adds the gaps of a flat pair at the points whose heights are its rows.
-    pub(super) fn gaps_of_flat_pair(
+    /// The gaps of a pair at the points of B at `angles_rad`.
+    pub(super) fn gaps_at(
         &self,
         x: &Posed,
         near: &NearPair,
         (turns, factored): (&[Vec<Vec3>], Option<&Factored>),
-        rows: &mut Vec<Row>,
-    ) {
+        angles_rad: &[f64],
+    ) -> Vec<Row> {
         let frame = self.frame(x, near);
         let map = self.pair_map(&near.pair, turns, factored);
         let required = self.required(x, near.touching);
-        for angle in height_angles_rad() {
+        let gap = |&angle: &f64| {
             let (distance, grad) = frame.distance_gradient(angle);
-            rows.push(Row {
+            Row {
                 minimum: false,
                 columns: map.columns.clone(),
                 gradient: self.gap_gradient(&map, near, &grad),
                 ..Row::value(pair_key(&near.pair), angle, distance - required)
-            });
-        }
+            }
+        };
+        angles_rad.iter().map(gap).collect()
     }
 
     /// Adds the rows of a pair up to `band`, with first derivatives, and second ones where they are asked for.
@@ -201,7 +202,7 @@ impl SheetProgram<'_> {
 }
 
 /// The angles of a flat pair's heights.
-fn height_angles_rad() -> impl Iterator<Item = f64> {
+pub(super) fn height_angles_rad() -> impl Iterator<Item = f64> {
     (0..HEIGHTS).map(|k| std::f64::consts::TAU * k as f64 / HEIGHTS as f64)
 }
 

@@ -1,7 +1,10 @@
 //! The best that one start leads to: maximise, polish, certify, and kick where no certificate holds.
 
 use crate::{
-    constraint::{Contact, Posed, SheetProgram},
+    constraint::{
+        Contact, Posed, SheetProgram,
+        flat::{COAXIAL, SHIFTED},
+    },
     model::Model,
     solve::{
         certificate::{Certificate, measure_curvature, measure_gaps},
@@ -96,25 +99,25 @@ impl Climber<'_> {
             let (polished, mut certificate) = polish(program, &end);
             let locked = certificate.holds();
             let mut carrying = certificate.multipliers.clone();
-            measure_gaps(program, &polished, &mut certificate);
+            let shifted = locked && program.release_flat_pairs(&polished, &mut carrying, SHIFTED);
+            if !shifted {
+                measure_gaps(program, &polished, &mut certificate);
+            }
             let links_ok = topology::links_kept(self.model, &polished.state);
-            let certified = certificate.holds() && links_ok;
+            let certified = !shifted && certificate.holds() && links_ok;
             let contacts = program.contacts(&polished, &certificate.multipliers);
-            let solve = Solve { x: polished, certificate, contacts, links_ok, certified };
-            (x, known) = (end.point, end.multipliers);
+            // Where heights of flat pairs lock what their gaps do not: on from there by gaps.
+            let on = shifted || locked && !certified && program.release_flat_pairs(&polished, &mut carrying, COAXIAL);
+            (x, known) = if on { (polished.clone(), carrying) } else { (end.point, end.multipliers) };
+            last = Some(Solve { x: polished, certificate, contacts, links_ok, certified });
             if certified {
-                last = Some(solve);
                 break;
             }
-            // Where heights of flat pairs lock what their gaps do not: on from there by gaps.
-            if locked && program.release_shifted_pairs(&solve.x, &mut carrying) {
-                (x, known) = (solve.x.clone(), carrying);
+            if on {
                 (pause_at, first_radius) = (1e-2, 0.03);
-                last = Some(solve);
                 continue;
             }
-            last = Some(solve);
-            if end.settled && program.release_shifted_pairs(&x, &mut known) || program.take_flat_pairs(&x) {
+            if end.settled && program.release_flat_pairs(&x, &mut known, COAXIAL) || program.take_flat_pairs(&x) {
                 known.clear();
                 (pause_at, first_radius) = (1e-2, 0.03);
                 continue;

@@ -38,6 +38,9 @@ pub const RESIDUAL_TOLERANCE: f64 = 1e-9;
 /// Overlaps below this can be cleared by what carries nothing, see the polish.
 const ALMOST: f64 = 0.03;
 
+/// Share of the largest multiplier above which one found with a sign counts.
+const CARRIES: f64 = 1e-8;
+
 /// Rows within this gap are looked at.
 pub(super) const BAND: f64 = 1e-2;
 
@@ -117,40 +120,47 @@ fn dual_residual(c: &[f64], rows: &[Row], multipliers: &[f64]) -> f64 {
 /// others: see [`measure_curvature`].
 pub(super) fn certify<P: Program>(program: &P, x: &P::Point, active: &[Multiplier]) -> Certificate {
     let rows = program.rows(x, BAND, Derivatives::First);
+    let chosen: Vec<Row> = matched(&rows, &Loads::new(active)).iter().map(|(k, _)| rows[*k].clone()).collect();
     let smallest_gap = program.rows(x, 0.0, Derivatives::None).iter().map(|r| r.gap).fold(0.0, f64::min);
-    first_order(&program.objective(), &rows, active, smallest_gap)
+    first_order(&program.objective(), &chosen, smallest_gap)
 }
 
-/// The figures of first order from true gaps: what a certificate claims. Where the program solves by stricter rows, they
-/// replace those of the rows.
+/// The figures of first order from true gaps, which are what a certificate claims: where the program solves by stricter rows,
+/// forces are sought on closed points instead.
 pub fn measure_gaps<P: Program>(program: &P, x: &P::Point, certificate: &mut Certificate) {
-    if let Some(rows) = program.gap_rows(x, BAND) {
+    if let Some(rows) = program.closed_rows(x, BAND, &Loads::new(&certificate.multipliers)) {
         let (min_curvature, zero_modes) = (certificate.min_curvature, certificate.zero_modes);
-        let by_gaps = first_order(&program.objective(), &rows, &certificate.multipliers, certificate.smallest_gap);
+        let by_gaps = first_order(&program.objective(), &rows, certificate.smallest_gap);
         *certificate = Certificate { min_curvature, zero_modes, ..by_gaps };
     }
 }
 
-fn first_order(c: &[f64], rows: &[Row], active: &[Multiplier], smallest_gap: f64) -> Certificate {
-    let chosen_rows: Vec<Row> = matched(rows, &Loads::new(active)).iter().map(|(k, _)| rows[*k].clone()).collect();
-    // Least squares first: exact to rounding. Where signs are wrong, the constrained ones.
-    let mut multipliers = least_squares_multipliers(c, &chosen_rows);
+/// The figures of first order with the best multipliers of `chosen`.
+fn first_order(c: &[f64], chosen: &[Row], smallest_gap: f64) -> Certificate {
+    // Least squares first: exact to rounding. Where signs are wrong, the constrained ones, made exact where they carry.
+    let mut multipliers = least_squares_multipliers(c, chosen);
     let least = |mu: &[f64]| mu.iter().copied().fold(f64::INFINITY, f64::min);
     if least(&multipliers) < -RESIDUAL_TOLERANCE {
         let most = multipliers.iter().fold(0.0f64, |a, m| a.max(m.abs()));
-        let signed = non_negative_multipliers(c, &chosen_rows, most);
-        if dual_residual(c, &chosen_rows, &signed) <= RESIDUAL_TOLERANCE {
-            multipliers = signed;
-        }
+        let signed = non_negative_multipliers(c, chosen, most);
+        let carrying: Vec<usize> = (0..chosen.len()).filter(|&k| signed[k] > CARRIES * most).collect();
+        let rows: Vec<Row> = carrying.iter().map(|&k| chosen[k].clone()).collect();
+        let mut exact = vec![0.0; chosen.len()];
+        carrying.iter().zip(least_squares_multipliers(c, &rows)).for_each(|(&k, mu)| exact[k] = mu);
+        let better = [exact, signed]
+            .into_iter()
+            .find(|mu| least(mu) >= -RESIDUAL_TOLERANCE && dual_residual(c, chosen, mu) <= RESIDUAL_TOLERANCE);
+        multipliers = better.unwrap_or(multipliers);
     }
+    let complementarity = chosen.iter().zip(&multipliers).map(|(r, mu)| (r.gap * mu).abs()).fold(0.0, f64::max);
     Certificate {
         smallest_gap,
-        dual_residual: dual_residual(c, &chosen_rows, &multipliers),
-        complementarity: chosen_rows.iter().zip(&multipliers).map(|(r, mu)| (r.gap * mu).abs()).fold(0.0, f64::max),
+        dual_residual: dual_residual(c, chosen, &multipliers),
+        complementarity,
         min_multiplier: least(&multipliers),
         min_curvature: Some(f64::NAN),
         zero_modes: 0,
-        multipliers: labelled(&chosen_rows, &multipliers),
+        multipliers: labelled(chosen, &multipliers),
     }
 }
 

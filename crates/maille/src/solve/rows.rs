@@ -72,6 +72,12 @@ impl Loads {
         Loads { sorted }
     }
 
+    /// Whether a row with this key has a positive multiplier.
+    pub fn carries(&self, key: u64) -> bool {
+        let of_key = self.sorted[self.sorted.partition_point(|m| m.key < key)..].iter().take_while(|m| m.key == key);
+        of_key.into_iter().any(|m| m.value > 0.0)
+    }
+
     /// Multiplier of `row`: that of the nearest angle under the same key, or 0.
     pub fn of(&self, row: &Row) -> f64 {
         self.at(row.key, row.angle, row.minimum)

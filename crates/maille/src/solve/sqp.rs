@@ -26,8 +26,9 @@ pub trait Program {
     fn value(&self, x: &Self::Point) -> f64;
     /// All rows with a gap of at most `band`, with the derivatives that are asked for.
     fn rows(&self, x: &Self::Point, band: f64, derivatives: Derivatives<'_>) -> Vec<Row>;
-    /// The same with gradients, as true gaps where some of [`Program::rows`] are stricter ones; `None` where none is.
-    fn gap_rows(&self, x: &Self::Point, band: f64) -> Option<Vec<Row>>;
+    /// Where some of the rows that `loads` names are stricter than the gaps they stand for: the rows that can carry instead, true
+    /// gaps at closed points, with gradients; those of [`Program::rows`] that `loads` names for all else.
+    fn closed_rows(&self, x: &Self::Point, band: f64, loads: &Loads) -> Option<Vec<Row>>;
     /// Data for [`Program::largest_step`] at `x`.
     fn guard(&self, x: &Self::Point) -> Self::Guard;
     /// Largest fraction of `step` (at most 1) that is allowed.
