@@ -64,6 +64,29 @@ fn a_new_design_names_the_schema_beside_it() {
     done(folder, "new cuff --weave kings-mail --major 6 --minor 0.4 --overwrite --quiet", b"");
 }
 
+/// The rings that are written have the wire and the inner diameter that were asked for.
+#[test]
+fn a_new_design_has_the_inner_diameter_that_was_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let cases = [
+        ("--wire 16swg --id 5/16in", 1.6256, 7.9375),
+        ("--wire 1.6mm --id 17/64in", 1.6, 6.746875),
+        ("--wire 0.041in --id 1/4in", 1.0414, 6.35),
+        ("--wire 18awg --id 6mm", 1.0237, 6.0),
+    ];
+    for (size, wire, inner) in cases {
+        let text = done(folder.path(), &format!("new shirt --weave european-4-in-1 {size} -o -"), b"");
+        let text = String::from_utf8(text).unwrap();
+        let value = |key: &str| -> f64 {
+            let line = text.lines().find(|line| line.starts_with(&format!("{key} = "))).unwrap();
+            line.rsplit(' ').next().unwrap().parse().unwrap()
+        };
+        let (major, minor) = (value("reference_radius"), value("minor_radius"));
+        assert!((2.0 * minor - wire).abs() < 1e-12, "{size}: {text}");
+        assert!((2.0 * (major - minor) - inner).abs() < 1e-12, "{size}: {text}");
+    }
+}
+
 /// 1.1 in steel: three rings of R = 1 mm and r = 0.1 mm on 2.5 mm by 2.5 mm.
 #[test]
 fn wire_and_weight_are_those_of_tori() {
