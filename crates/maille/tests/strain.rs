@@ -63,6 +63,27 @@ fn freeing_more_is_never_less() {
     assert!((all.l1.unwrap() - 0.44).abs() < 1e-9);
 }
 
+/// The width at a limit is found with l1 given way a little, but no width is reported that is proved to be out of reach.
+#[test]
+fn no_width_lies_above_what_is_proved() {
+    for name in ["3.1", "1.1", "european-4-in-1"] {
+        let model = model(name);
+        // The largest stretch across the pull, whatever becomes of the length.
+        let most = rows(&model, &[90.0], &[0.0], Across { lateral_free: true, shear_free: true })[0].bound_l1.unwrap();
+        for across in [LATERAL, Across { lateral_free: true, shear_free: true }] {
+            let row = &rows(&model, &[0.0], &[0.0], across)[0];
+            let [least, largest] = [row.l2_min, row.l2_max].map(Option::unwrap);
+            assert!(largest <= most + 1e-12, "{name}: l2 up to {largest}, proved {most}");
+            assert!(least <= largest, "{name}: {least} {largest}");
+            let [low, high] = [row.shear_min, row.shear_max].map(Option::unwrap);
+            assert!(low <= 1e-12 && high >= -1e-12, "{name}: shear {low} to {high}");
+        }
+    }
+    // It is reached: 3.1 is as wide at 0° as it can be at all.
+    let row = &rows(&model("3.1"), &[0.0], &[0.0], LATERAL)[0];
+    assert!((row.l2_max.unwrap() - 0.44).abs() < 1e-6, "{:?}", row.l2_max);
+}
+
 fn unit(i: usize, j: usize) -> Matrix2<f64> {
     let mut e = Matrix2::zeros();
     (e[(i, j)], e[(j, i)]) = (1.0, 1.0);

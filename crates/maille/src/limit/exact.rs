@@ -450,7 +450,8 @@ impl<'a> ExactMethod<'a> {
         let gradient = family.gradient(&best.x.p, l2);
         if across.any() && best.certified {
             let (free, more) = family.ranges(model, &best, l2, cancel);
-            figures.free = Some(free);
+            let at = family.free_of(&best.x.p, l2);
+            figures.free = Some(family.attainable(free, (&self.chain, &self.link), direction_deg, l1, at));
             iterations += more;
         }
         let residual = Some((-best.certificate.smallest_gap).max(0.0));
