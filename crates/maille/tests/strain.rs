@@ -121,6 +121,28 @@ fn green_strains_of_known_limits() {
     assert_eq!(solve(&model, &impossible).status, Status::L2Unreachable);
 }
 
+/// Where a straight chain binds, the free strains of the state that is found are some of many; where rings lock they are not.
+#[test]
+fn free_strains_that_are_not_unique_have_a_range() {
+    let model = model("1.1");
+    let query = StrainQuery { held: Matrix2::zeros(), free: vec![unit(0, 0), unit(1, 1), unit(0, 1)] };
+    let found = solve(&model, &query);
+    let [yy, xy] = found.ranges[..] else { panic!("{:?}", found.ranges) };
+    // As wide as the sheet can be, by its own chain, and narrow by folding.
+    assert!((yy[1] - (0.44 + 0.5 * 0.44 * 0.44)).abs() < 1e-5 && yy[1] <= 0.5368 + 1e-9, "{yy:?}");
+    assert!(yy[0] < -0.25, "{yy:?}");
+    for (range, value) in [(yy, found.strain[(1, 1)]), (xy, found.strain[(0, 1)])] {
+        assert!(range[0] <= value + 1e-9 && value <= range[1] + 1e-9, "{value} of {range:?}");
+    }
+    // The largest E_yy of European 4-in-1 with all else free: a single state, but for the slack's root.
+    let model = self::model("european-4-in-1");
+    let query = StrainQuery { held: Matrix2::zeros(), free: vec![unit(1, 1), unit(0, 0), unit(0, 1)] };
+    let found = solve(&model, &query);
+    assert_eq!(found.ranges.len(), 2);
+    assert!(found.ranges.iter().all(|range| range[1] - range[0] < 2e-3), "{:?}", found.ranges);
+    assert!(solve(&model, &StrainQuery { held: Matrix2::zeros(), free: vec![unit(1, 1)] }).ranges.is_empty());
+}
+
 /// Published marks of the sheet of European 4-in-1, each strain with the other two free.
 #[test]
 fn european_4_in_1_reaches_the_published_strains() {
