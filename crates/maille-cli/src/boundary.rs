@@ -93,9 +93,10 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let cancel = interrupt::flag()?;
     let begun = Instant::now();
     let progress = Progress::new(0, args.quiet);
-    let kept = Mutex::new((folder, None));
+    let kept = Mutex::new((folder, None, 0));
     let found = |vertex: &BoundaryVertex| {
         let mut kept = kept.lock().unwrap_or_else(|e| e.into_inner());
+        kept.2 += 1;
         if kept.1.is_none()
             && let Err(error) = kept.0.keep(std::slice::from_ref(vertex))
         {
@@ -110,13 +111,13 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let surface = pool.install(|| boundary(&model, &options, &known, &cancel, &mut planned, &found));
     progress.finish();
     // The folder is this run's alone until all is written.
-    let (_folder, failure) = kept.into_inner().unwrap_or_else(|e| e.into_inner());
+    let (_folder, failure, now) = kept.into_inner().unwrap_or_else(|e| e.into_inner());
     if let Some(error) = failure {
         return Err(error.into());
     }
     write(&out, &input, &surface, &options)?;
     if !args.quiet {
-        summary(&out, &input, &surface, &options, known.len(), begun.elapsed().as_secs_f64());
+        summary(&out, &input, &surface, &options, now, begun.elapsed().as_secs_f64());
     }
     let interrupted = !surface.complete;
     if interrupted && !args.quiet {
@@ -165,7 +166,7 @@ fn accuracy(surface: &Boundary, options: &BoundaryOptions) -> String {
     }
 }
 
-fn summary(out: &Path, input: &Input, surface: &Boundary, options: &BoundaryOptions, known: usize, wall_s: f64) {
+fn summary(out: &Path, input: &Input, surface: &Boundary, options: &BoundaryOptions, now: usize, wall_s: f64) {
     let vertices = &surface.vertices;
     say!("{}: {} rays, {} triangles", input.design.name, vertices.len(), surface.triangles.len());
     for (k, name) in ["exx", "eyy", "exy"].into_iter().enumerate() {
@@ -190,9 +191,5 @@ fn summary(out: &Path, input: &Input, surface: &Boundary, options: &BoundaryOpti
     if holes > 0 {
         say!("  {holes} rays were not reached: holes in the mesh");
     }
-    say!(
-        "{} rays in {wall_s:.1} s; look at {}",
-        vertices.len().saturating_sub(known),
-        out.join("boundary.png").display()
-    );
+    say!("{now} rays in {wall_s:.1} s; look at {}", out.join("boundary.png").display());
 }

@@ -4,7 +4,7 @@ use crate::{
     exit::{self, wrong},
     input::{Input, file_name},
     interrupt,
-    map::{self, RunArgs, pool, unanswered},
+    map::{self, RunArgs, Tally, pool, unanswered},
     numbers::{Numbers, parse, parse_cell, parse_l2, positive},
     output,
     plot::Shown,
@@ -20,7 +20,7 @@ use maille::{
         energy::{EnergyOptions, Minimiser},
         exact::ExactOptions,
     },
-    record::{LimitRow, Status},
+    record::LimitRow,
 };
 use maille_io::{
     numbers::{USUAL_DIRECTIONS, USUAL_L2},
@@ -318,8 +318,8 @@ fn once(args: &Args) -> Result<ExitCode> {
     let rows = rows?;
 
     let interrupted = cancel.load(std::sync::atomic::Ordering::Relaxed);
-    let solved = rows.iter().filter(|r| r.status != Status::Interrupted).count() - (total - left);
-    let summary = Summary::new(&input.design.name, &rows, solved, begun.elapsed(), interrupted, &out);
+    let tally = Tally::of(&rows, total - left);
+    let summary = Summary::new(&input.design.name, &rows, tally.now, begun.elapsed(), interrupted, &out);
     if args.json {
         output::print_json(&summary)?;
     } else if !args.quiet {

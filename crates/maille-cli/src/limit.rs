@@ -142,6 +142,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     }))
 }
 
+/// A free strain with a wider range than this has no value of its own: what the slack of a millionth alone can make is its root.
+const UNIQUE: f64 = 2e-3;
+
 fn print(answer: &StrainAnswer<'_>, wall_s: f64) {
     let found = answer.found;
     let most = answer.most();
@@ -163,8 +166,15 @@ fn print(answer: &StrainAnswer<'_>, wall_s: f64) {
     }
     for strain in Strain::ALL {
         // Rounding shows no sign of a 0.
-        let value = (strain.of(&found.strain, answer.direction_deg) * 1e9).round() / 1e9 + 0.0;
-        say!("  {}   {value:>15.9}  {}", strain.name(), answer.role(strain));
+        let round = |x: f64, digits: f64| (x * digits).round() / digits + 0.0;
+        let value = round(strain.of(&found.strain, answer.direction_deg), 1e9);
+        match answer.range(strain).map(|range| range.map(|x| round(x, 1e6))) {
+            // One of many states, which says nothing of the others.
+            Some([least, largest]) if largest - least > UNIQUE => {
+                say!("  {}   {:>15}  free: {least:.6} to {largest:.6}", strain.name(), "");
+            }
+            _ => say!("  {}   {value:>15.9}  {}", strain.name(), answer.role(strain)),
+        }
     }
     if let Some(l1) = answer.stretch() {
         say!("  l1    {l1:>15.9}  of lines along {}", answer.goal.name());

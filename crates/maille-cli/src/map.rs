@@ -74,6 +74,29 @@ pub fn unanswered(row: &LimitRow) -> bool {
     }
 }
 
+/// What a run has come to, counted in the rows of its records and not in what was asked for: a run may be stopped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tally {
+    /// Limits that are in the records.
+    pub there: usize,
+    /// Those of them that this run has put there.
+    pub now: usize,
+    /// Those of them that have no answer.
+    pub unanswered: usize,
+}
+
+impl Tally {
+    /// Of the `rows` in the records, of which `before` were there already. Limits that a stop cut short are not there.
+    pub fn of<'a>(rows: impl IntoIterator<Item = &'a LimitRow>, before: usize) -> Tally {
+        let (mut there, mut without) = (0, 0);
+        for row in rows.into_iter().filter(|row| row.status != Status::Interrupted) {
+            there += 1;
+            without += usize::from(unanswered(row));
+        }
+        Tally { there, now: there.saturating_sub(before), unanswered: without }
+    }
+}
+
 /// The threads of a run: as many as asked for, or as there are cores.
 pub fn pool(threads: Option<u16>) -> Result<rayon::ThreadPool> {
     rayon::ThreadPoolBuilder::new()

@@ -147,7 +147,8 @@ pub fn run(args: &Args) -> Result<()> {
 fn rings(args: &Args) -> Result<Rings> {
     let (major, minor, unit) = match (args.wire.zip(args.id), args.major.zip(args.minor)) {
         (Some((wire, id)), _) => {
-            (tenth_of_micrometre((id.mm + wire.mm) / 2.0), tenth_of_micrometre(wire.mm / 2.0), "mm")
+            // The rounding of sums alone, so that the inner diameter is the one that was asked for.
+            (nine_decimals((id.mm + wire.mm) / 2.0), nine_decimals(wire.mm / 2.0), "mm")
         }
         (None, Some((major, minor))) => (major, minor, args.unit.as_str()),
         (None, None) => {
@@ -158,8 +159,8 @@ fn rings(args: &Args) -> Result<Rings> {
     Ok(Rings { major, minor, unit: Some(unit.into()) })
 }
 
-fn tenth_of_micrometre(mm: f64) -> f64 {
-    (mm * 1e4).round() / 1e4
+fn nine_decimals(mm: f64) -> f64 {
+    (mm * 1e9).round() / 1e9
 }
 
 /// Where wire and inner diameter are given, the help speaks of them.

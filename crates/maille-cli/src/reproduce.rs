@@ -4,7 +4,7 @@ use crate::{
     exit::{self, wrong},
     input::Input,
     interrupt,
-    map::{self, pool, run_all, unanswered},
+    map::{self, Tally, pool, run_all},
     output::{self, say},
     progress::Progress,
     records,
@@ -117,9 +117,10 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let progress = Progress::new(left as u64, args.quiet);
     let rows = run_all(open, &pool, &cancel, &progress);
     progress.finish();
-    let without = rows?.iter().flatten().filter(|row| unanswered(row)).count();
+    let Tally { there, now, unanswered } = Tally::of(rows?.iter().flatten(), total - left);
     if cancel.load(Ordering::Relaxed) {
         if !args.quiet {
+            eprintln!("{there} of {total} limits are in the records, {now} of them now");
             eprintln!("interrupted; the same command goes on from here");
         }
         return Ok(ExitCode::from(exit::INTERRUPTED));
@@ -134,10 +135,10 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         if unmeasured > 0 {
             say!("{unmeasured} need other designs than these");
         }
-        say!("{total} limits in {} records; {without} were not found", plan.len());
+        say!("{there} limits are in {} records, {now} of them now; {unanswered} were not found", plan.len());
         say!("look at {}", out.join("index.html").display());
     }
-    Ok(ExitCode::from(if without > 0 { exit::INCOMPLETE } else { exit::DONE }))
+    Ok(ExitCode::from(if unanswered > 0 { exit::INCOMPLETE } else { exit::DONE }))
 }
 
 /// The designs that are asked for, in the order of the thesis.

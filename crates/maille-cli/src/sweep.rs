@@ -4,7 +4,7 @@ use crate::{
     exit::{self, wrong},
     input::{Input, file_name},
     interrupt,
-    map::{self, RunArgs, pool, run_all, unanswered},
+    map::{self, RunArgs, Tally, pool, run_all},
     output::{self, say},
     progress::Progress,
     records,
@@ -124,14 +124,15 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         output::write(&out.join("limits.csv"), Table::new(&records, Field::all(true)).csv().as_bytes())?;
     }
     let interrupted = cancel.load(Ordering::Relaxed);
-    let without = rows.iter().flatten().filter(|row| unanswered(row)).count();
+    let Tally { there, now, unanswered } = Tally::of(rows.iter().flatten(), total - left);
     if !args.quiet {
         for (name, report) in &unused {
             eprintln!("{name} could not be used:\n{report:?}");
         }
         let seconds = begun.elapsed().as_secs_f64();
+        let of_total = if there < total { format!(" of {total}") } else { String::new() };
         say!(
-            "{total} limits in {} records, {left} of them now in {seconds:.1} s; {without} were not found",
+            "{there}{of_total} limits are in {} records, {now} of them now in {seconds:.1} s; {unanswered} were not found",
             used.len()
         );
         say!("all rows are in {}", out.join("limits.csv").display());
@@ -141,7 +142,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     }
     Ok(ExitCode::from(match () {
         () if interrupted => exit::INTERRUPTED,
-        () if without > 0 || !unused.is_empty() => exit::INCOMPLETE,
+        () if unanswered > 0 || !unused.is_empty() => exit::INCOMPLETE,
         () => exit::DONE,
     }))
 }

@@ -14,7 +14,7 @@ const SWG_MIL: [f64; 41] = [
 pub enum Gauge {
     /// British Standard Wire Gauge.
     Swg,
-    /// American Wire Gauge: 0.127 mm · 92^((36 − n)/39).
+    /// American Wire Gauge: 0.127 mm · 92^((36 − n)/39), to the tenth of a micrometre.
     Awg,
 }
 
@@ -29,7 +29,9 @@ impl Gauge {
     fn millimetres(self, number: usize) -> Option<f64> {
         match self {
             Gauge::Swg => SWG_MIL.get(number).map(|mil| mil * 0.0254),
-            Gauge::Awg if number <= 40 => Some(0.127 * 92.0_f64.powf((36.0 - number as f64) / 39.0)),
+            Gauge::Awg if number <= 40 => {
+                Some((0.127 * 92.0_f64.powf((36.0 - number as f64) / 39.0) * 1e4).round() / 1e4)
+            }
             Gauge::Awg => None,
         }
     }

@@ -321,3 +321,47 @@ fn records_are_the_same_on_any_number_of_threads() {
         }
     }
 }
+
+/// Ctrl-C in the middle: what is said is what is on the disk.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_counts_what_is_on_the_disk() {
+    let study = "directions = \"0:179:1\"\nl2 = \"-0.25:0.25:0.05\"\ncell = \"1x1\"\n[[designs]]\n\
+                 design = \"european-4-in-1\"\nminor_radius = [0.5, 0.6, 0.7]\n";
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let mut before = 0;
+    for line in ["sweep long.toml --out out --threads 2", "sweep long.toml --out out --threads 2"] {
+        let mut child = command(folder, line);
+        fs::write(folder.join("long.toml"), study).unwrap();
+        let child = child.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let begun = std::time::Instant::now();
+        while rows_kept(&folder.join("out/records")) < before + 5 {
+            assert!(begun.elapsed() < Duration::from_secs(60), "no limit was found");
+            sleep(Duration::from_millis(5));
+        }
+        let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+        assert!(killed.success());
+        let (code, text) = said(&child.wait_with_output().unwrap());
+        assert_eq!(code, 130, "{text}");
+        let mut table = csv::Reader::from_path(folder.join("out/limits.csv")).unwrap();
+        let status = table.headers().unwrap().iter().position(|name| name == "status").unwrap();
+        let there = table.records().filter(|row| row.as_ref().unwrap()[status] != *"interrupted").count();
+        // 180 directions, 11 widths, 3 radii.
+        assert!(before < there && there < 5940, "{there} limits");
+        let counted = format!("{there} of 5940 limits are in 3 records, {} of them now in ", there - before);
+        assert!(text.contains(&counted), "not \"{counted}\": {text}");
+        before = there;
+    }
+}
+
+/// Limits in the tables and journals below a folder, one a line; a table's head counts for none.
+#[cfg(unix)]
+fn rows_kept(records: &Path) -> usize {
+    let Ok(entries) = fs::read_dir(records) else { return 0 };
+    let lines = |path: std::path::PathBuf| fs::read_to_string(path).map_or(0, |text| text.lines().count());
+    let of = |folder: std::path::PathBuf| {
+        lines(folder.join("limits.csv")).saturating_sub(1) + lines(folder.join("limits.journal"))
+    };
+    entries.map(|entry| of(entry.unwrap().path())).sum()
+}

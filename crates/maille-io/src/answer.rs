@@ -59,6 +59,11 @@ impl StrainAnswer<'_> {
         }
     }
 
+    /// Least and largest value found of a strain that was left to the sheet, with the one that was sought given way by a millionth.
+    pub fn range(&self, strain: Strain) -> Option<[f64; 2]> {
+        self.found.ranges.get(self.free.iter().position(|free| *free == strain)?).copied()
+    }
+
     /// What each cell reached, with the sign of the strain.
     pub fn by_cell(&self) -> impl Iterator<Item = CellTrend> {
         self.found.trend.iter().map(|t| CellTrend { value: t.value.map(|p| self.sign * p), ..*t })
@@ -76,7 +81,8 @@ impl StrainAnswer<'_> {
         let solved = found.value.is_some();
         let strain = |s: Strain| {
             let value = solved.then(|| s.of(&found.strain, self.direction_deg));
-            (s.name().to_owned(), json!({ "value": value, "is": self.role(s) }))
+            let [least, largest] = self.range(s).map_or([None; 2], |range| range.map(Some));
+            (s.name().to_owned(), json!({ "value": value, "is": self.role(s), "min": least, "max": largest }))
         };
         let cell = |t: CellTrend| {
             let name = self.cells[t.cell].to_string();

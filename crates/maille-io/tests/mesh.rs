@@ -9,8 +9,8 @@ use maille::{
 };
 use maille_geometry::{Circle, Vec3, point_circle_distance};
 use maille_io::mesh::{
-    Colours, Fineness, Format, MeshError, MeshFile, Objects, Scene, Tile, WriteOptions, between, state_of, too_close,
-    write_pvd,
+    Colours, Fineness, Format, MeshError, MeshFile, Objects, Scene, Segments, Tile, WriteOptions, between,
+    smallest_clearance, state_of, too_close, write_pvd,
 };
 use nalgebra::{Isometry3, Matrix4, Point3, Quaternion, Translation3, UnitQuaternion};
 use serde_json::Value;
@@ -313,37 +313,50 @@ fn a_state_of_a_record_is_the_state_that_was_recorded() {
 fn the_advice_on_clearance_is_right() {
     let (mm, tile) = (2.0, Tile([3, 3]));
     let base = design("1.1");
-    let start = |design: &Design| {
-        let model = Model::compile(design, Cell::PRIMITIVE).unwrap();
-        let state = model.start.clone();
-        (model, state)
+    let compiled = |design: &Design| Model::compile(design, Cell::PRIMITIVE).unwrap();
+    let close = |model: &Model, fineness: Fineness, mm: f64, wanted: f64| {
+        let scene = Scene::new(model, &model.start, tile, fineness, mm).unwrap();
+        too_close(&scene, model, &model.start, tile, fineness, wanted)
     };
-    let (model, state) = start(&base);
-    let gap = maille::topology::smallest_gap(&model, &state).unwrap().0 * model.unit * mm;
-    assert!(too_close(&model, &state, tile, 0.999 * gap, mm).is_none());
-    let wanted = 1.2 * gap;
-    let close = too_close(&model, &state, tile, wanted, mm).unwrap();
-    assert!((close.gap - gap).abs() < 1e-12);
-    // The place is half way between the two tori, so half of the gap from either.
-    let [cell_a, cell_b] = close.cells;
-    assert!(close.cells.as_flattened().iter().all(|k| (0..3).contains(k)));
-    for (ring, shift) in [(close.pair.ring_a, cell_a), (close.pair.ring_b, cell_b)] {
+    let model = compiled(&base);
+    let state = &model.start;
+    let gap = maille::topology::smallest_gap(&model, state).unwrap().0 * model.unit * mm;
+    for fineness in [Fineness::Tolerance(0.02), Fineness::Segments(12, None), Fineness::Segments(40, Some(9))] {
+        let scene = Scene::new(&model, state, tile, fineness, mm).unwrap();
+        let clearance = smallest_clearance(&scene, &model, state, tile).unwrap();
+        assert!((clearance - gap).abs() <= 2.0 * scene.chordal_error(), "{clearance} of {gap}");
+        assert!(close(&model, fineness, mm, 0.999 * clearance).is_none());
+        let wanted = 1.2 * gap.max(clearance);
+        let found = close(&model, fineness, mm, wanted).unwrap();
+        assert!((found.gap - clearance).abs() < 1e-12 && (found.torus_gap - gap).abs() < 0.1 * gap);
+        let thinner = compiled(&base.with_minor_radius(0.1 * found.minor_radius_factor.unwrap()));
+        assert!(close(&thinner, fineness, mm, wanted).is_none());
+        let scale = mm * found.scale_factor.unwrap();
+        assert!(
+            close(&model, fineness, scale, wanted).is_none()
+                && close(&model, fineness, 0.999 * scale, wanted).is_some()
+        );
+        // The tori themselves are nearer than that; a little more than the mesh has, they are not.
+        assert_eq!(found.segments, None);
+        if clearance < 0.99 * gap {
+            let Segments { around, across } = close(&model, fineness, mm, 0.99 * gap).unwrap().segments.unwrap();
+            assert!(close(&model, Fineness::Segments(around, Some(across)), mm, 0.99 * gap).is_none());
+        }
+        // Nothing is thin enough; and a tile of one cell has fewer neighbours than a sheet.
+        assert_eq!(close(&model, fineness, mm, 10.0).unwrap().minor_radius_factor, None);
+        let pairs = |tile: Tile| too_close(&scene, &model, state, tile, fineness, wanted).unwrap().pairs;
+        assert!(pairs(Tile([1, 1])) < pairs(tile));
+    }
+    // The place is half way between the two tori, so half of their gap from either.
+    let found = close(&model, Fineness::Tolerance(0.02), mm, 1.2 * gap).unwrap();
+    let [cell_a, cell_b] = found.cells;
+    assert!(found.cells.as_flattened().iter().all(|k| (0..3).contains(k)));
+    for (ring, shift) in [(found.pair.ring_a, cell_a), (found.pair.ring_b, cell_b)] {
         let circle = state.circle(&model, ring, shift);
         let circle = Circle::new(circle.center * mm, circle.normal, circle.radius * mm);
-        let distance = point_circle_distance(&close.place, &circle).distance;
-        assert!((distance - 0.1 * mm - 0.5 * gap).abs() < 1e-9);
+        let distance = point_circle_distance(&found.place, &circle).distance;
+        assert!((distance - 0.1 * mm - 0.5 * found.torus_gap).abs() < 1e-9);
     }
-    let thinner = base.with_minor_radius(0.1 * close.minor_radius_factor.unwrap());
-    let (model, state) = start(&thinner);
-    assert!(too_close(&model, &state, tile, wanted, mm).is_none());
-    assert!(too_close(&model, &state, tile, wanted * 1.001, mm).is_some());
-    let (model, state) = start(&base);
-    assert!(too_close(&model, &state, tile, wanted, mm * close.scale_factor.unwrap()).is_none());
-    assert!(too_close(&model, &state, tile, wanted, mm * close.scale_factor.unwrap() * 0.999).is_some());
-    // Nothing thin enough; and a tile of one cell has fewer neighbours than a sheet.
-    assert_eq!(too_close(&model, &state, tile, 10.0, mm).unwrap().minor_radius_factor, None);
-    let pairs = |tile: Tile| too_close(&model, &state, tile, wanted, mm).unwrap().pairs;
-    assert!(pairs(Tile([1, 1])) < pairs(tile));
 }
 
 #[test]

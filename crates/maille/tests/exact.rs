@@ -243,3 +243,46 @@ fn contact_forces_predict_the_limit_of_thicker_rings() {
         assert!((slope - predicted).abs() < 1e-4 * slope.abs(), "{name}: {slope} {predicted}");
     }
 }
+
+/// A chain of linked rings with R = 1: two wires go through each hole, so r is at most R/3.
+fn thick_chain(minor_radius: f64, cell: &str) -> Model {
+    let text = format!(
+        "schema = 1\nname = \"thick\"\nminor_radius = {minor_radius}\nreference_radius = 1.0\n\
+         allow_initial_overlap = true\n[lattice]\na1 = [2.4, 0.0, 0.0]\na2 = [0.0, 3.0, 0.0]\n\
+         [[elements]]\nname = \"flat\"\ncenter = [0.0, 0.0, 0.0]\n\
+         rings = [{{ major_radius = 1.0, normal = [0.0, 0.0, 1.0] }}]\n\
+         [[elements]]\nname = \"upright\"\ncenter = [1.2, 0.0, 0.0]\n\
+         rings = [{{ major_radius = 1.0, normal = [0.0, 1.0, 0.0] }}]\n"
+    );
+    let design = maille_io::read_design("thick", &text).unwrap();
+    Model::compile(&design, cell.parse().unwrap()).unwrap()
+}
+
+/// A start that overlaps beyond repair is said to be one, at once and for every l2; one that can be freed is solved.
+#[test]
+fn starts_that_overlap_beyond_repair_are_told() {
+    let (directions, l2) = ([0.0, 30.0], [-0.25, 0.0, 0.25]);
+    let options = ExactOptions::default();
+    for cell in ["1x1", "6x1"] {
+        let model = thick_chain(0.6, cell);
+        assert_eq!(model.elements.len(), 2 * model.cell.copies());
+        for compression in [false, true] {
+            let options = ExactOptions { compression, ..options.clone() };
+            for found in map(std::slice::from_ref(&model), &directions, &l2, &options) {
+                assert_eq!(found.row.status, Status::InfeasibleStart, "{cell}: {}", what(&found.row));
+                assert!(found.row.l1.is_none() && found.row.iterations == 0);
+                assert!(found.state.note.unwrap().contains("nothing is proved"));
+            }
+        }
+    }
+    // What is proved stays proved: along 90° nothing holds it, and a chain of 1.6 is shorter than 2.4 (1 + 0.25).
+    let model = thick_chain(0.6, "1x1");
+    let across = map(std::slice::from_ref(&model), &[90.0], &[0.25], &options);
+    assert_eq!(across[0].row.status, Status::L2Unreachable);
+    // Neighbours of a ring overlap by 0.2 and give way. 4 R − 4 r = 2.8 of 2.4.
+    let model = thick_chain(0.3, "1x1");
+    assert!(maille::topology::smallest_gap(&model, &model.start).unwrap().0 < -0.19);
+    let freed = map(std::slice::from_ref(&model), &[0.0], &[0.0], &options);
+    assert_eq!(freed[0].row.status, Status::Global);
+    assert!((freed[0].row.l1.unwrap() - (2.8 / 2.4 - 1.0)).abs() < 1e-9);
+}

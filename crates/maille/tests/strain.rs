@@ -63,6 +63,27 @@ fn freeing_more_is_never_less() {
     assert!((all.l1.unwrap() - 0.44).abs() < 1e-9);
 }
 
+/// The width at a limit is found with l1 given way a little, but no width is reported that is proved to be out of reach.
+#[test]
+fn no_width_lies_above_what_is_proved() {
+    for name in ["3.1", "1.1", "european-4-in-1"] {
+        let model = model(name);
+        // The largest stretch across the pull, whatever becomes of the length.
+        let most = rows(&model, &[90.0], &[0.0], Across { lateral_free: true, shear_free: true })[0].bound_l1.unwrap();
+        for across in [LATERAL, Across { lateral_free: true, shear_free: true }] {
+            let row = &rows(&model, &[0.0], &[0.0], across)[0];
+            let [least, largest] = [row.l2_min, row.l2_max].map(Option::unwrap);
+            assert!(largest <= most + 1e-12, "{name}: l2 up to {largest}, proved {most}");
+            assert!(least <= largest, "{name}: {least} {largest}");
+            let [low, high] = [row.shear_min, row.shear_max].map(Option::unwrap);
+            assert!(low <= 1e-12 && high >= -1e-12, "{name}: shear {low} to {high}");
+        }
+    }
+    // It is reached: 3.1 is as wide at 0° as it can be at all.
+    let row = &rows(&model("3.1"), &[0.0], &[0.0], LATERAL)[0];
+    assert!((row.l2_max.unwrap() - 0.44).abs() < 1e-6, "{:?}", row.l2_max);
+}
+
 fn unit(i: usize, j: usize) -> Matrix2<f64> {
     let mut e = Matrix2::zeros();
     (e[(i, j)], e[(j, i)]) = (1.0, 1.0);
@@ -98,6 +119,28 @@ fn green_strains_of_known_limits() {
     assert_eq!(with_width.status, Status::Global);
     let impossible = StrainQuery { held: unit(1, 1) * 0.6, free: vec![unit(0, 0), unit(0, 1)] };
     assert_eq!(solve(&model, &impossible).status, Status::L2Unreachable);
+}
+
+/// Where a straight chain binds, the free strains of the state that is found are some of many; where rings lock they are not.
+#[test]
+fn free_strains_that_are_not_unique_have_a_range() {
+    let model = model("1.1");
+    let query = StrainQuery { held: Matrix2::zeros(), free: vec![unit(0, 0), unit(1, 1), unit(0, 1)] };
+    let found = solve(&model, &query);
+    let [yy, xy] = found.ranges[..] else { panic!("{:?}", found.ranges) };
+    // As wide as the sheet can be, by its own chain, and narrow by folding.
+    assert!((yy[1] - (0.44 + 0.5 * 0.44 * 0.44)).abs() < 1e-5 && yy[1] <= 0.5368 + 1e-9, "{yy:?}");
+    assert!(yy[0] < -0.25, "{yy:?}");
+    for (range, value) in [(yy, found.strain[(1, 1)]), (xy, found.strain[(0, 1)])] {
+        assert!(range[0] <= value + 1e-9 && value <= range[1] + 1e-9, "{value} of {range:?}");
+    }
+    // The largest E_yy of European 4-in-1 with all else free: a single state, but for the slack's root.
+    let model = self::model("european-4-in-1");
+    let query = StrainQuery { held: Matrix2::zeros(), free: vec![unit(1, 1), unit(0, 0), unit(0, 1)] };
+    let found = solve(&model, &query);
+    assert_eq!(found.ranges.len(), 2);
+    assert!(found.ranges.iter().all(|range| range[1] - range[0] < 2e-3), "{:?}", found.ranges);
+    assert!(solve(&model, &StrainQuery { held: Matrix2::zeros(), free: vec![unit(1, 1)] }).ranges.is_empty());
 }
 
 /// Published marks of the sheet of European 4-in-1, each strain with the other two free.

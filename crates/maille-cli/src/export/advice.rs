@@ -5,7 +5,8 @@ use crate::{
     output,
     source::Source,
 };
-use maille_io::mesh::{self, Scene};
+use maille::{model::Model, state::State};
+use maille_io::mesh::{self, Scene, Tile};
 use miette::Report;
 
 /// What would fuse, and what would help.
@@ -15,7 +16,12 @@ pub fn fuse(close: &mesh::TooClose, clearance: f64, mm: f64, source: &Source) ->
     let [x, y, z] = [close.place.x, close.place.y, close.place.z].map(|x| (x * 1e3).round() / 1e3 + 0.0);
     let how = match close.gap < 0.0 {
         true => format!("overlap by {:.3} mm", -close.gap),
-        false => format!("are {:.3} mm apart", close.gap),
+        false => format!("are {} mm apart", short(close.gap)),
+    };
+    // Where the facets have taken more than a thousandth of what is asked for.
+    let facets = match close.gap >= 0.0 && close.torus_gap - close.gap > 1e-3 * clearance {
+        true => format!(" as meshes, {} mm as tori,", short(close.torus_gap)),
+        false => String::new(),
     };
     let more = match close.pairs {
         1 => "no other pair of the cell is".to_owned(),
@@ -32,19 +38,35 @@ pub fn fuse(close: &mesh::TooClose, clearance: f64, mm: f64, source: &Source) ->
         Some(f) => format!("--scale {} would leave it (now {mm})", up(f * mm)),
         None => "rings touch, so no --scale would leave it".to_owned(),
     };
+    let finer =
+        close.segments.map_or(String::new(), |s| format!("\n--segments {}x{} would leave it", s.around, s.across));
     let state = match (&source.locked, &source.extreme) {
         (Some(_), _) => "\nin a locked state rings touch: print the starting state",
         (None, None) => "\n--at roomiest is the state with the widest gaps",
         (None, Some(_)) => "",
     };
-    let help = format!("{thinner}\n{larger}\n--warn writes all the same{state}");
+    let help = format!("{thinner}\n{larger}{finer}\n--warn writes all the same{state}");
     wrong(
         exit::USAGE,
         format!(
-            "rings would fuse: {a} and {b} {how} at ({x}, {y}, {z}) mm, less than --min-clearance {clearance}; {more} too close"
+            "rings would fuse: {a} and {b} {how}{facets} at ({x}, {y}, {z}) mm, less than --min-clearance {clearance}; {more} too close"
         ),
         help,
     )
+}
+
+/// A distance with three decimals, and with four digits below a tenth.
+fn short(x: f64) -> String {
+    if x < 0.1 && x > 0.0 { format!("{}", format!("{x:.3e}").parse().unwrap_or(x)) } else { format!("{x:.3}") }
+}
+
+/// The smallest distance of the meshes of two elements.
+pub fn clearance(scene: &Scene, model: &Model, state: &State, tile: Tile) {
+    match mesh::smallest_clearance(scene, model, state, tile) {
+        Some(0.0) => output::say!("clearance 0 mm: meshes of different elements touch or overlap"),
+        Some(gap) => output::say!("clearance {} mm between the meshes of different elements", short(gap)),
+        None => {}
+    }
 }
 
 /// Four digits, rounded so that the clearance stays.

@@ -8,7 +8,7 @@ use crate::{
     output,
     source::{Frame, Source, SourceArgs, Wanted},
 };
-use advice::{fuse, size, summary};
+use advice::{clearance, fuse, size, summary};
 use destination::{Destination, FormatArg, destination, with_ending};
 use maille::topology;
 use maille_io::mesh::{self, Colours, Fineness, MeshFile, Objects, Scene, Tile, WriteOptions};
@@ -79,7 +79,7 @@ pub struct Args {
     /// glb: instances by EXT_mesh_gpu_instancing; smaller and faster, but only for viewers that know it
     #[arg(long)]
     gpu_instancing: bool,
-    /// Refuse if rings of different elements come closer than this many millimetres
+    /// Refuse if the meshes of different elements come closer than this many millimetres
     #[arg(long, value_parser = positive, value_name = "MM", conflicts_with = "frames")]
     min_clearance: Option<f64>,
     /// Only warn of rings closer than --min-clearance
@@ -167,15 +167,6 @@ pub fn run(args: &Args) -> Result<()> {
     }
 
     let frames = source.frames(args.frames);
-    if let Some(clearance) = args.min_clearance
-        && let Some(close) = mesh::too_close(model, &frames[0].state, tile, clearance, mm)
-    {
-        let problem = fuse(&close, clearance, mm, &source);
-        match args.warn {
-            false => return Err(problem),
-            true => eprintln!("{:?}", problem.wrap_err("warning: written all the same (--warn)")),
-        }
-    }
     if args.frames.is_some() && source.simulated.is_none() {
         interpolation_note(&source, &frames, mm).into_iter().for_each(note);
     }
@@ -192,6 +183,15 @@ pub fn run(args: &Args) -> Result<()> {
             match frame.time < 1.0 {
                 true => scene.add_loads(model, &record.contacts),
                 false => scene.add_contacts(model, &frame.state, tile, &record.contacts),
+            }
+        }
+        if let Some(wanted) = args.min_clearance
+            && let Some(close) = mesh::too_close(&scene, model, &frame.state, tile, fineness, wanted)
+        {
+            let problem = fuse(&close, wanted, mm, &source);
+            match args.warn {
+                false => return Err(problem),
+                true => eprintln!("{:?}", problem.wrap_err("warning: written all the same (--warn)")),
             }
         }
         let triangles = scene.triangle_count();
@@ -213,6 +213,9 @@ pub fn run(args: &Args) -> Result<()> {
         }
         if !args.quiet && frame.time == frames[frames.len() - 1].time {
             summary(&scene);
+            if args.frames.is_none() {
+                clearance(&scene, model, &frame.state, tile);
+            }
         }
     }
     if let Destination::Files(prefix) = &destination

@@ -14,6 +14,7 @@
 
 mod clearance;
 mod colour;
+mod distance;
 mod glb;
 mod number;
 mod obj;
@@ -24,7 +25,7 @@ mod three_mf;
 mod torus;
 mod vtk;
 
-pub use clearance::{TooClose, too_close};
+pub use clearance::{TooClose, smallest_clearance, too_close};
 pub use scene::{
     Kind, KindRing, Placed, PlacedContact, PlacedRing, Scene, Tile, between, millimetres, state_of, state_words,
 };

@@ -23,7 +23,7 @@ pub struct Segments {
 }
 
 /// Most segments of a circle: what needs more is a slip of the unit.
-const MOST: usize = 4096;
+pub(super) const MOST: usize = 4096;
 
 impl Fineness {
     /// The segments for a torus of radii R and r, in the tolerance's unit.
@@ -50,13 +50,25 @@ impl Fineness {
     }
 }
 
+impl Fineness {
+    /// No mesh of this fineness lies farther than this outside a torus of the major radius R, in the tolerance's unit; see
+    /// [`TorusMesh::protrusion`].
+    pub fn protrusion(self, major_radius: f64) -> f64 {
+        match self {
+            // Half of it is left to the segments around a larger circle.
+            Fineness::Tolerance(tolerance) => 0.5 * tolerance,
+            Fineness::Segments(around, _) => sagitta(major_radius, around),
+        }
+    }
+}
+
 /// Height of a circle's arc over its chord, the circle cut into `n`: ϱ (1 − cos π/n).
 fn sagitta(radius: f64, n: usize) -> f64 {
     radius * 2.0 * (PI / (2.0 * n as f64)).sin().powi(2)
 }
 
 /// Least number of chords, at least 3, that stay within `tolerance` of a circle.
-fn polygon(radius: f64, tolerance: f64) -> usize {
+pub(super) fn polygon(radius: f64, tolerance: f64) -> usize {
     let half_angle_rad = 2.0 * (0.5 * tolerance / radius).min(1.0).sqrt().asin();
     // A whole number that rounding lifted by 1e-12 stays that number.
     ((PI / half_angle_rad * (1.0 - 1e-12)).ceil() as usize).max(3)
@@ -134,6 +146,15 @@ impl TorusMesh {
         sagitta(outer, self.segments.around) + sagitta(self.minor_radius, self.segments.across)
     }
 
+    /// The mesh lies no farther than this outside the torus: R (1 − cos π/n).
+    ///
+    /// A point of the mesh lies on a chord between two slices, at a point (ϱ, z) of their polygon, which is inside the wire:
+    /// (ϱ − R)² + z² ≤ r². There its distance from the axis is ϱ′, with ϱ cos π/n ≤ ϱ′ ≤ ϱ. If ϱ ≤ R, or ϱ′ ≤ R, the distance
+    /// from the core circle is at most r + R (1 − cos π/n); else it is at most r.
+    pub fn protrusion(&self) -> f64 {
+        sagitta(self.major_radius, self.segments.around)
+    }
+
     /// Volume of the mesh, by the formula.
     pub fn volume(&self) -> f64 {
         let (n, m) = (self.segments.around as f64, self.segments.across as f64);
@@ -206,6 +227,26 @@ mod tests {
             }
         }
         assert!(worst <= mesh.chordal_error() && worst > 0.9 * mesh.chordal_error(), "{worst}");
+    }
+
+    #[test]
+    fn the_mesh_lies_outside_its_torus_by_no_more_than_it_says() {
+        for (big, small, around, across) in [(1.0, 0.25, 8, 6), (1.0, 0.05, 12, 40), (1.0, 0.9, 5, 7)] {
+            let mesh = TorusMesh::new(big, small, Segments { around, across });
+            let mut worst = f64::NEG_INFINITY;
+            for corners in mesh.triangles() {
+                let [a, b, c] = corners.map(|i| mesh.vertices[i]);
+                for (s, t) in
+                    (0..=20).flat_map(|s| (0..=20 - s).map(move |t| (f64::from(s) / 20.0, f64::from(t) / 20.0)))
+                {
+                    let p = a + (b - a) * s + (c - a) * t;
+                    worst = worst.max((p.x.hypot(p.y) - big).hypot(p.z) - small);
+                }
+            }
+            // At the bore it is (R − r) (1 − cos π/n).
+            let bore = (1.0 - small / big) * mesh.protrusion();
+            assert!(worst <= mesh.protrusion() && worst >= bore - 1e-12, "{worst} of {}", mesh.protrusion());
+        }
     }
 
     #[test]

@@ -8,6 +8,7 @@
 use super::{
     CellTrend, ExactFigures, LimitOutcome,
     climb::{ROUNDS, Solve, climb, own_image_force, shaken_from, tiled},
+    overlap::{Overlapping, beyond_repair},
     pull::{Family, Strained},
 };
 use crate::{
@@ -148,6 +149,8 @@ pub struct ExactMethod<'a> {
     pub(super) link: LinkBound,
     /// Found where a limit is not reached.
     image: OnceLock<ImageBound>,
+    /// Where no search can begin.
+    pub(super) overlapping: Option<Overlapping>,
 }
 
 impl<'a> ExactMethod<'a> {
@@ -158,7 +161,8 @@ impl<'a> ExactMethod<'a> {
         // A larger cell's program is convex and symmetric under the shifts of the design's own cell: the mean of a solution over
         // them is one too, so that the own cell has the same bound.
         let link = LinkBound::new(&models[0].primitive(), &chain);
-        ExactMethod { models, options, chain, link, image: OnceLock::new() }
+        let overlapping = beyond_repair(&models[0], options.seed);
+        ExactMethod { models, options, chain, link, image: OnceLock::new(), overlapping }
     }
 
     /// The limits along one direction, in the order of `l2`. Solved outwards from l2 = 0, each from its neighbour's state.
@@ -214,6 +218,9 @@ impl<'a> ExactMethod<'a> {
             outcome.note = (!note.is_empty()).then(|| note.to_owned());
             (outcome, None)
         };
+        if let (Some(overlapping), Bound::Unbounded | Bound::Finite { .. }) = (&self.overlapping, &bound) {
+            return ended(Status::InfeasibleStart, &overlapping.words());
+        }
         let most = match bound {
             Bound::Unbounded => return self.unlinked(direction_deg, l2, neighbour, cancel),
             Bound::L2Unreachable { .. } => return ended(Status::L2Unreachable, ""),
@@ -439,7 +446,8 @@ impl<'a> ExactMethod<'a> {
         let gradient = family.gradient(&best.x.p, l2);
         if across.any() && best.certified {
             let (free, more) = family.ranges(model, &best, l2, cancel);
-            figures.free = Some(free);
+            let at = family.free_of(&best.x.p, l2);
+            figures.free = Some(family.attainable(free, (&self.chain, &self.link), direction_deg, l1, at));
             iterations += more;
         }
         let residual = Some((-best.certificate.smallest_gap).max(0.0));

@@ -164,11 +164,7 @@ pub fn extreme(model: &Model, what: Extreme, options: &ExtremeOptions, cancel: &
             _ => shaken_from(model, &model.start, SHAKES[(k - 1) % SHAKES.len()], &mut rng),
         };
         let mut p = vec![0.0; pull.parameters.len()];
-        p[0] = match what {
-            Extreme::ThickestWire => THIN - 1.0,
-            // Below every gap of the start.
-            Extreme::WidestGap => topology::smallest_gap(model, &state).map_or(0.0, |(gap, _)| gap.min(0.0)),
-        };
+        p[0] = first_parameter(model, what, &state);
         let mut program = SheetProgram::new(model, &pull);
         let start = program.posed(state, p);
         let Climbed { best, iterations } = climb(model, &mut program, start, KICKS, &mut rng, cancel);
@@ -227,8 +223,16 @@ pub fn extreme(model: &Model, what: Extreme, options: &ExtremeOptions, cancel: &
     }
 }
 
+/// p at a start: thin wire, or below every gap.
+pub(super) fn first_parameter(model: &Model, what: Extreme, state: &State) -> f64 {
+    match what {
+        Extreme::ThickestWire => THIN - 1.0,
+        Extreme::WidestGap => topology::smallest_gap(model, state).map_or(0.0, |(gap, _)| gap.min(0.0)),
+    }
+}
+
 /// p first, then the lattice where it is free.
-fn pull(model: &Model, what: Extreme, lattice_free: bool) -> Pull {
+pub(super) fn pull(model: &Model, what: Extreme, lattice_free: bool) -> Pull {
     let base = [model.start.a1, model.start.a2];
     let goal = match what {
         Extreme::ThickestWire => Parameter { thicken: 1.0, weight: 1.0, ..Parameter::default() },

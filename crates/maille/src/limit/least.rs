@@ -59,6 +59,10 @@ impl ExactMethod<'_> {
         if let Bound::L2Unreachable { .. } = bound {
             return (self.nothing(Status::L2Unreachable, ExactFigures::of_bound(&bound)), found);
         }
+        if let Some(overlapping) = &self.overlapping {
+            let outcome = self.nothing(Status::InfeasibleStart, ExactFigures::default());
+            return (LimitOutcome { note: Some(overlapping.words()), ..outcome }, found);
+        }
         let mut trend = Vec::new();
         let (mut cell, mut best): (usize, Option<Tally>) = (0, None);
         let (mut runs, mut iterations, mut distinct) = (0, 0, Vec::new());

@@ -6,6 +6,7 @@ pub mod energy;
 pub mod exact;
 pub mod extreme;
 mod least;
+mod overlap;
 mod pull;
 pub mod sphere;
 pub mod strain;

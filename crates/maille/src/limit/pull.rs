@@ -6,6 +6,7 @@
 
 use super::{FreeRanges, climb::Solve, exact::FREE_SLACK};
 use crate::{
+    bound::{Bound, ChainBound, LinkBound, best_bound_across},
     constraint::{Parameter, Pull, SheetProgram},
     lattice::{Across, direction},
     model::Model,
@@ -52,6 +53,26 @@ pub(super) struct Family {
     pub across: Across,
     /// 1 where l1 is maximised, −1 where it is minimised: the first parameter is this times l1.
     sign: f64,
+}
+
+/// How far the first parameter of `pull` can be raised from 0, beginning with `state`; with the quadratic programs that it took.
+/// Not certified: it is where a state was found, so a range that ends there is an inner one. `None` where none was found.
+pub(super) fn farthest(model: &Model, pull: &Pull, state: &State, cancel: &AtomicBool) -> (Option<f64>, u64) {
+    let program = SheetProgram::new(model, pull);
+    let mut x = program.posed(state.clone(), vec![0.0; pull.parameters.len()]);
+    let (mut known, mut iterations, mut end) = (Vec::new(), 0, None);
+    for _ in 0..ROUNDS {
+        let found = maximize(&program, x, known, &SqpOptions::default(), cancel);
+        iterations += found.iterations as u64;
+        (x, known) = (found.point, found.multipliers);
+        if found.violation < FEASIBLE && topology::links_kept(model, &x.state) {
+            end = Some(x.p[0].max(0.0));
+        }
+        if found.settled {
+            break;
+        }
+    }
+    (end, iterations)
 }
 
 impl Family {
@@ -151,24 +172,51 @@ impl Family {
                     ..Parameter::default()
                 });
                 let pull = Pull { base: self.lattice(l1, l2, shear), parameters: parameters.collect(), metric: None };
-                let program = SheetProgram::new(model, &pull);
-                // Not certified: each end is a state that was found, so the range is an inner one.
-                let mut x = program.posed(limit.x.state.clone(), vec![0.0; pull.parameters.len()]);
-                let mut known = Vec::new();
-                for _ in 0..ROUNDS {
-                    let found = maximize(&program, x, known, &SqpOptions::default(), cancel);
-                    iterations += found.iterations as u64;
-                    (x, known) = (found.point, found.multipliers);
-                    if found.violation < FEASIBLE && topology::links_kept(model, &x.state) {
-                        end[side] = from + sign * x.p[0].max(0.0);
-                    }
-                    if found.settled {
-                        break;
-                    }
-                }
+                let (moved, more) = farthest(model, &pull, &limit.x.state, cancel);
+                iterations += more;
+                end[side] = moved.map_or(from, |moved| from + sign * moved);
             }
         }
         let [l2, shear] = ends;
         (FreeRanges { l2, shear }, iterations)
+    }
+    /// `ranges` without what the bounds exclude at the limit `l1` itself, where `at` are l2 and γ: with l1 given way an end can
+    /// lie beyond, by the slack or, where two chains hold it, by the root of the slack.
+    ///
+    /// l2 is bounded as l1 is, in the direction across: with l1 held there if γ is 0, else with all else free. γ is bounded by
+    /// the chains, |F x| ≤ 1 with x = v/d: |(1 + l1) D·x + γ D⊥·x|² ≤ 1 − ((1 + l2) D⊥·x)², with l2 = −1 where it is free.
+    pub fn attainable(
+        &self,
+        ranges: FreeRanges,
+        (chain, link): (&ChainBound, &LinkBound),
+        direction_deg: f64,
+        l1: f64,
+        at: [f64; 2],
+    ) -> FreeRanges {
+        let FreeRanges { mut l2, mut shear } = ranges;
+        if self.across.lateral_free {
+            let free =
+                if self.across.shear_free { Across { lateral_free: true, shear_free: true } } else { Across::HELD };
+            let most = match best_bound_across(chain, Some(link), direction_deg + 90.0, l1, free) {
+                Bound::Finite { l1: most, .. } => most,
+                // l1 is above what is proved by rounding: no more room than the limit's own.
+                Bound::L2Unreachable { .. } => at[0],
+                Bound::Unbounded => f64::INFINITY,
+            };
+            l2[1] = l2[1].min(most).max(at[0]);
+        }
+        if self.across.shear_free {
+            let width = if self.across.lateral_free { 0.0 } else { 1.0 + at[0] };
+            // A chain along D holds no shear.
+            let leaning = chain.directions().filter(|x| self.side().xy().dot(x).abs() > 1e-9 * x.norm());
+            for x in leaning {
+                let (along, side) = (self.along.xy().dot(&x) * (1.0 + l1), self.side().xy().dot(&x));
+                let room = (1.0 - (width * side).powi(2)).max(0.0).sqrt();
+                let mut ends = [(-room - along) / side, (room - along) / side];
+                ends.sort_by(f64::total_cmp);
+                shear = [shear[0].max(ends[0]).min(at[1]), shear[1].min(ends[1]).max(at[1])];
+            }
+        }
+        FreeRanges { l2, shear }
     }
 }

@@ -9,6 +9,8 @@
 use super::{
     CellTrend,
     climb::{Solve, climb, own_image_force, shaken_from, tiled},
+    exact::FREE_SLACK,
+    pull::farthest,
 };
 use crate::{
     bound::{ChainBound, MetricBound, metric_bound},
@@ -142,6 +144,10 @@ pub struct StrainOutcome {
     pub bound: Option<f64>,
     /// E at the state.
     pub strain: Matrix2<f64>,
+    /// Least and largest value found of each free parameter after the first, with p₀ given way by [`FREE_SLACK`] (1 + |p₀|) and
+    /// the others free; cut off where the bound excludes them at p₀ itself. A range of some width: the state is not the only one.
+    /// Empty where the answer is not certified.
+    pub ranges: Vec<[f64; 2]>,
     /// The state.
     pub state: State,
     /// Which of the cells.
@@ -203,6 +209,7 @@ impl<'a> StrainMethod<'a> {
             first: None,
             bound: None,
             strain: query.held,
+            ranges: Vec::new(),
             state: self.models[0].start.clone(),
             cell: 0,
             certificate: None,
@@ -271,11 +278,46 @@ impl<'a> StrainMethod<'a> {
         if out.value.is_none() {
             out.status = Status::L2NotReached;
         }
+        if let (Status::Global | Status::Local, Some(value)) = (out.status, out.value) {
+            self.ranges(query, value, &mut out, cancel);
+        }
         // Without a bound, and where no contact pushes back: this is no limit, only where the search was stopped.
         if out.status == Status::Uncertified && out.bound.is_none() && out.contacts.is_empty() {
             (out.value, out.first) = (None, None);
         }
         out
+    }
+
+    /// Finds [`StrainOutcome::ranges`] at the value of p₀.
+    fn ranges(&self, query: &StrainQuery, value: f64, out: &mut StrainOutcome, cancel: &AtomicBool) {
+        let model = &self.models[out.cell];
+        let given = value - FREE_SLACK * (1.0 + value.abs());
+        let at = out.strain + query.free[0] * (given - value);
+        for (m, rate) in query.free.iter().enumerate().skip(1) {
+            let from = (out.strain - query.held).dot(rate) / rate.norm_squared();
+            let others = || query.free[1..].iter().enumerate().filter(|(k, _)| k + 1 != m).map(|(_, other)| *other);
+            let end = |sign: f64| {
+                let wanted = Parameter { metric: rate * (2.0 * sign), weight: 1.0, ..Parameter::default() };
+                let rest = others().map(|other| Parameter { metric: other * 2.0, ..Parameter::default() });
+                let pull = Pull {
+                    base: [model.start.a1, model.start.a2],
+                    parameters: std::iter::once(wanted).chain(rest).collect(),
+                    metric: Some(Matrix2::identity() + at * 2.0),
+                };
+                let (moved, iterations) = farthest(model, &pull, &out.state, cancel);
+                let free = std::iter::once(rate * sign).chain(others()).collect();
+                let held = query.held + query.free[0] * value;
+                let most = match self.bound(&StrainQuery { held, free }) {
+                    MetricBound::Finite(most) => most,
+                    MetricBound::Nothing | MetricBound::Unreachable => f64::INFINITY,
+                };
+                // The state itself has its value, whatever rounding does to the bound.
+                (sign * (sign * from + moved.unwrap_or(0.0)).min(most.max(sign * from)), iterations)
+            };
+            let [(least, some), (largest, more)] = [-1.0, 1.0].map(end);
+            out.iterations += some + more;
+            out.ranges.push([least, largest]);
+        }
     }
 
     fn take(&self, out: &mut StrainOutcome, cell: usize, query: &StrainQuery, solve: Solve) {

@@ -1,0 +1,81 @@
+//! Starts that overlap beyond repair.
+//!
+//! A design may say that its start overlaps (`allow_initial_overlap`). A limit is then sought from states that overlap, and where
+//! no arrangement of such rings exists, every search for it ends in vain, after a long time. So the rings are asked first, with the
+//! lattice free: by the two programs of [`super::extreme`], the widest gap and the thickest wire, from a few shaken starts each,
+//! and each is stopped as soon as there is no overlap. Where none gets there nothing is proved: the answer is
+//! [`Status::InfeasibleStart`](crate::record::Status::InfeasibleStart), which says what was tried.
+
+use super::{
+    climb::shaken_from,
+    extreme::{Extreme, first_parameter, pull},
+};
+use crate::{
+    constraint::SheetProgram,
+    model::Model,
+    solve::sqp::{SqpOptions, maximize},
+    topology,
+};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use std::sync::atomic::AtomicBool;
+
+/// An overlap below this, in reference radii, is left to the search of a limit, which starts from such states.
+const SLIGHT: f64 = 1e-6;
+/// Starts of each of the two programs.
+const STARTS: usize = 4;
+/// Amplitudes of the shaken ones, in reference radii and radians; the first is the start itself.
+const SHAKES: [f64; STARTS] = [0.0, 0.03, 0.1, 0.3];
+
+/// A start that overlaps, and no state without overlap was found.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Overlapping {
+    /// The widest gap that was found, in reference radii: negative.
+    widest: f64,
+    /// Starts that were solved.
+    starts: usize,
+}
+
+impl Overlapping {
+    /// In words.
+    pub(super) fn words(&self) -> String {
+        let Overlapping { widest, starts } = self;
+        format!(
+            "the start overlaps, and {starts} starts with the lattice free led to no state without overlap: {:.6} R was the \
+             least; nothing is proved",
+            -widest
+        )
+    }
+}
+
+/// Looks for a state of the model's links without overlap, its lattice free; `None` where there is one, or the start is one.
+pub(super) fn beyond_repair(model: &Model, seed: u64) -> Option<Overlapping> {
+    let cancel = AtomicBool::new(false);
+    let gap = |state: &crate::state::State| topology::smallest_gap(model, state).map_or(f64::INFINITY, |(gap, _)| gap);
+    let mut widest = gap(&model.start);
+    if widest >= -SLIGHT {
+        return None;
+    }
+    let options = SqpOptions { enough: 0.0, ..SqpOptions::default() };
+    let mut starts = 0;
+    for what in [Extreme::WidestGap, Extreme::ThickestWire] {
+        let pull = pull(model, what, true);
+        for (k, size) in SHAKES.into_iter().enumerate() {
+            let mut rng = ChaCha8Rng::seed_from_u64(seed.wrapping_mul(0x9e37_79b9).wrapping_add(k as u64));
+            let state = shaken_from(model, &model.start, size, &mut rng);
+            let mut p = vec![0.0; pull.parameters.len()];
+            p[0] = first_parameter(model, what, &state);
+            let program = SheetProgram::new(model, &pull);
+            let end = maximize(&program, program.posed(state, p), Vec::new(), &options, &cancel);
+            starts += 1;
+            if !topology::links_kept(model, &end.point.state) {
+                continue;
+            }
+            widest = widest.max(gap(&end.point.state));
+            if widest >= -SLIGHT {
+                return None;
+            }
+        }
+    }
+    Some(Overlapping { widest, starts })
+}
