@@ -289,6 +289,12 @@ impl Verifier {
     /// A row that claims that no state has its l2.
     fn unreachable(&self, row: &Row, state: &State) -> Finding {
         let say = |verdict, words: String| Finding::new(Check::Bound, verdict, None, words);
+        if self.has_its_l2(row, state) {
+            return say(
+                Verdict::False,
+                "the state has this l2, without overlap and with the links of the design".into(),
+            );
+        }
         let (means, most) = match self.derived(row, state) {
             Ok(Some((means, most))) if most < -1.0 => {
                 return say(Verdict::Proved, format!("{means} forbids this l2"));
@@ -302,16 +308,35 @@ impl Verifier {
                 let name = &state.poses[element].element;
                 say(Verdict::Proved, format!("\"{name}\" would overlap its image at {shift:?}, or be linked with it"))
             }
-            // Where the chain is to prove it the row has no bound; where images do, it has that of l1.
-            Ok(None) if row.bound_l1.is_none() => {
-                say(Verdict::False, format!("{means} allows this l2, with l1 ≤ {most:?}"))
-            }
+            // Older versions wrote no forces where the links together forbid it.
             Ok(None) => {
                 let words = format!("{means} allows this l2, and no images of an element are shown to be too near");
                 say(Verdict::Open, words)
             }
             Err((verdict, words)) => say(verdict, words),
         }
+    }
+
+    /// Whether the state is one of this sheet with the row's l2.
+    fn has_its_l2(&self, row: &Row, state: &State) -> bool {
+        let unit = self.run.design.reference_radius;
+        let (Ok(start), Some(cell)) = (&self.starts[&row.cell], sheet::cell(&row.cell)) else { return false };
+        let own = Sheet::start(&self.run.design, &cell, &names(state));
+        let Ok(here) = own.and_then(|own| own.at(state, unit)) else { return false };
+        // What a limit in this state would have to show.
+        let limit = Row {
+            status: "local".into(),
+            max_overlap: None,
+            min_gap: None,
+            links_ok: None,
+            l1: None,
+            l1_uncertified: None,
+            ..row.clone()
+        };
+        let mut found = Vec::new();
+        self.overlap_and_links(&limit, &here, start, &mut found);
+        strain::deformation(&limit, state, here.lattice, start.sheet.lattice, &cell).is_ok()
+            && found.iter().all(|finding| finding.verdict == Verdict::Proved)
     }
 
     /// An element of the row's cell whose image would be too near at every l1 up to `most`.
@@ -459,6 +484,11 @@ fn balance_finding(row: &Row, found: &Balance) -> Finding {
     let residual = found.residual.max(found.slope);
     if residual.is_nan() || residual > RESIDUAL {
         return wrong(residual, format!("the recorded forces do not balance the pull: {residual:.3e} is left"));
+    }
+    // Contacts that carry next to nothing are not in the state: the least can be below all that are.
+    if let Some(least) = row.min_multiplier.filter(|least| *least > found.least_force + RESIDUAL) {
+        let words = format!("min_multiplier is {least:?}, a force of the state {:?}", found.least_force);
+        return wrong(found.least_force, words);
     }
     if row.own_image_force.is_some_and(|written| (written - found.own_image).abs() > RESIDUAL) {
         let words = format!("own_image_force is {:?}, {:?} in the state", row.own_image_force, found.own_image);
