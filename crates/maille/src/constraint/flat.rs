@@ -1,4 +1,9 @@
 //! Pairs of rings that touch along nearly the whole circle.
+//!
+//! Two equal, parallel rings with offset e of their axes touch along the circle where e = 0, and at the two points across e
+//! elsewhere. Sixteen heights of the one over the other's plane are smooth rows for both, exact where e = 0; elsewhere they are
+//! stricter than the gap, by (e·u)²/2s in direction u. So what they lock with e ≠ 0 may be no limit: such pairs are
+//! released, and solved on by their gaps.
 
 use super::{
     Posed, SheetProgram,
@@ -12,12 +17,16 @@ use std::collections::BTreeSet;
 const FLAT_TILT: f64 = 0.08;
 /// Offset of the axes below which a pair can be flat, in radii.
 const FLAT_APART: f64 = 0.08;
+/// Offset of the axes up to which heights are gaps, in radii.
+const COAXIAL: f64 = 1e-6;
+/// Gap of a closed point, in units of the reference radius.
+const CLOSED: f64 = 1e-9;
 
 impl SheetProgram<'_> {
     /// Takes the pairs of `x` that touch along nearly the whole circle as flat: equal radii, nearly parallel and
     /// coaxial. Their one gap is a cone there, h − s − R |tilt|, with its tip at the limit; from now on sixteen heights
     /// of B's points over A's plane must be at least s, which implies the gap, is smooth, and is exact where the rings
-    /// are parallel. Returns whether the set of flat pairs has changed.
+    /// are parallel and coaxial. Returns whether the set of flat pairs has changed.
     pub fn take_flat_pairs(&mut self, x: &Posed) -> bool {
         let (model, state) = (self.model, &x.state);
         let mut flat = BTreeSet::new();
@@ -30,13 +39,47 @@ impl SheetProgram<'_> {
             let apart = (between - a.normal.into_inner() * height).norm();
             let tilt = a.normal.cross(&b.normal).norm();
             let equal = (a.radius - b.radius).abs() < 1e-9 * a.radius;
-            if equal && tilt < FLAT_TILT && apart < FLAT_APART * a.radius && height.abs() < touching * 1.1 {
+            let near = tilt < FLAT_TILT && apart < FLAT_APART * a.radius && height.abs() < touching * 1.1;
+            if equal && near && !self.released.contains(&pair_key(&pair)) {
                 flat.insert(pair_key(&pair));
             }
         }
         let changed = flat != self.flat;
         self.flat = flat;
         changed
+    }
+
+    /// Releases the flat pairs that carry and whose axes are apart at `x`: from now on they are pairs like all others, and
+    /// their forces in `multipliers` are shared by their closed points. Returns whether there was one.
+    pub fn release_shifted_pairs(&mut self, x: &Posed, multipliers: &mut Vec<Multiplier>) -> bool {
+        let mut shifted = Vec::new();
+        for &key in &self.flat {
+            let force: f64 = multipliers.iter().filter(|m| m.key == key).map(|m| m.value.max(0.0)).sum();
+            let pair = pair_of_key(key);
+            let a = x.state.circle(self.model, pair.ring_a, [0, 0]);
+            let between = x.state.circle(self.model, pair.ring_b, pair.shift).center - a.center;
+            let apart = (between - a.normal.into_inner() * between.dot(&a.normal)).norm();
+            if force > 0.0 && apart > COAXIAL * a.radius {
+                shifted.push((key, force));
+            }
+        }
+        for &(key, force) in &shifted {
+            self.flat.remove(&key);
+            self.released.insert(key);
+            multipliers.retain(|m| m.key != key);
+            let near = self.near(x).iter().filter(|near| pair_key(&near.pair) == key);
+            let minima = near.flat_map(|near| near.minima().iter().map(|m| (m, self.required(x, near.touching))));
+            let closed: Vec<f64> =
+                minima.filter(|(m, required)| m.distance - required < CLOSED).map(|(m, _)| m.angle_b_rad()).collect();
+            let value = force / closed.len() as f64;
+            multipliers.extend(closed.iter().map(|&angle| Multiplier { key, angle, minimum: true, value }));
+        }
+        !shifted.is_empty()
+    }
+
+    /// Takes back that pairs were released: for a solve from elsewhere.
+    pub fn forget_released_pairs(&mut self) {
+        self.released.clear();
     }
 
     /// A flat pair with offset e of its axes: the true gap at B's direction u is (e·u)²/2s above the height. Of all ways

@@ -119,7 +119,10 @@ pub struct SheetProgram<'a> {
     columns: Vec<(Option<usize>, usize)>,
     spins_freely: Vec<bool>,
     first_parameter: usize,
+    /// Pairs whose rows are heights, see [`flat`].
     flat: BTreeSet<u64>,
+    /// Pairs that were flat, and are not to be again.
+    released: BTreeSet<u64>,
 }
 
 /// Rows are asked for up to this gap, in units of the reference radius.
@@ -163,7 +166,8 @@ impl<'a> SheetProgram<'a> {
             .map(|(e, &free)| ((e > 0).then(|| take(3)), take(if free { 2 } else { 3 })))
             .collect();
         let first_parameter = next;
-        SheetProgram { model, pull, columns, spins_freely, first_parameter, flat: BTreeSet::new() }
+        let (flat, released) = Default::default();
+        SheetProgram { model, pull, columns, spins_freely, first_parameter, flat, released }
     }
 
     /// Poses of `state` with the lattice of the parameters `p`.
@@ -276,6 +280,20 @@ impl Program for SheetProgram<'_> {
             self.pair_rows(x, near, band, (&turns, factored.as_ref()), derivatives, &mut rows);
         }
         rows
+    }
+
+    fn gap_rows(&self, x: &Posed, band: f64) -> Option<Vec<Row>> {
+        if self.flat.is_empty() {
+            return None;
+        }
+        let mut rows = self.rows(x, band, Derivatives::First);
+        let turns = self.all_turns(&x.state);
+        let factored = self.pull.factored(&x.p);
+        rows.retain(|row| !self.flat.contains(&row.key));
+        for near in self.near(x).iter().filter(|near| self.flat.contains(&pair_key(&near.pair))) {
+            self.gaps_of_flat_pair(x, near, (&turns, factored.as_ref()), &mut rows);
+        }
+        Some(rows)
     }
 
     fn guard(&self, x: &Posed) -> StepBound {

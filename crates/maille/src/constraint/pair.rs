@@ -104,6 +104,45 @@ impl SheetProgram<'_> {
         bounded.map(row).collect()
     }
 
+    fn frame(&self, x: &Posed, near: &NearPair) -> PairFrame {
+        let (pair, state) = (&near.pair, &x.state);
+        let reference_a = state.poses[self.model.rings[pair.ring_a].element].position;
+        let reference_b = state.poses[self.model.rings[pair.ring_b].element].position + state.translation(pair.shift);
+        PairFrame::new(&near.a, &reference_a, &near.b, &reference_b)
+    }
+
+    /// Gradient of a gap in the unknowns of `map`, from that of the distance.
+    fn gap_gradient(&self, map: &PairMap, near: &NearPair, distance: &Grad) -> Vec<f64> {
+        let mut out = map.gradient(distance);
+        let parameters = out.iter_mut().zip(&map.columns).filter(|(_, column)| **column >= self.first_parameter);
+        for (entry, column) in parameters {
+            *entry -= self.pull.parameters[column - self.first_parameter].keeps(near.touching);
+        }
+        out
+    }
+
+    /// Adds the gaps of a flat pair at the points whose heights are its rows.
+    pub(super) fn gaps_of_flat_pair(
+        &self,
+        x: &Posed,
+        near: &NearPair,
+        (turns, factored): (&[Vec<Vec3>], Option<&Factored>),
+        rows: &mut Vec<Row>,
+    ) {
+        let frame = self.frame(x, near);
+        let map = self.pair_map(&near.pair, turns, factored);
+        let required = self.required(x, near.touching);
+        for angle in height_angles_rad() {
+            let (distance, grad) = frame.distance_gradient(angle);
+            rows.push(Row {
+                minimum: false,
+                columns: map.columns.clone(),
+                gradient: self.gap_gradient(&map, near, &grad),
+                ..Row::value(pair_key(&near.pair), angle, distance - required)
+            });
+        }
+    }
+
     /// Adds the rows of a pair up to `band`, with first derivatives, and second ones where they are asked for.
     pub(super) fn pair_rows(
         &self,
@@ -114,22 +153,10 @@ impl SheetProgram<'_> {
         derivatives: Derivatives<'_>,
         rows: &mut Vec<Row>,
     ) {
-        let (pair, state) = (&near.pair, &x.state);
-        let key = pair_key(pair);
-        let reference_a = state.poses[self.model.rings[pair.ring_a].element].position;
-        let reference_b = state.poses[self.model.rings[pair.ring_b].element].position + state.translation(pair.shift);
-        let frame = PairFrame::new(&near.a, &reference_a, &near.b, &reference_b);
-        let map = self.pair_map(pair, turns, factored);
+        let key = pair_key(&near.pair);
+        let frame = self.frame(x, near);
+        let map = self.pair_map(&near.pair, turns, factored);
         let required = self.required(x, near.touching);
-        let gradient = |grad: &Grad| {
-            let mut out = map.gradient(grad);
-            for (entry, column) in
-                out.iter_mut().zip(&map.columns).filter(|(_, column)| **column >= self.first_parameter)
-            {
-                *entry -= self.pull.parameters[column - self.first_parameter].keeps(near.touching);
-            }
-            out
-        };
         let loaded = |angle: f64, minimum: bool| match derivatives {
             Derivatives::Second(loads) => loads.at(key, angle, minimum) != 0.0,
             _ => false,
@@ -138,15 +165,14 @@ impl SheetProgram<'_> {
             rows.push(Row {
                 minimum,
                 columns: map.columns.clone(),
-                gradient: gradient(grad),
+                gradient: self.gap_gradient(&map, near, grad),
                 hessian: hess.map_or_else(Vec::new, |h| map.hessian(grad, h)),
                 ..Row::value(key, angle, distance - required)
             });
         };
         if self.flat.contains(&key) {
             let side = (near.b.center - near.a.center).dot(&near.a.normal).signum();
-            for k in 0..HEIGHTS {
-                let angle = std::f64::consts::TAU * k as f64 / HEIGHTS as f64;
+            for angle in height_angles_rad() {
                 let (z, grad, hess) = frame.height(angle);
                 let hess = loaded(angle, false).then(|| hess * side);
                 add(angle, false, side * z, &(grad * side), hess.as_ref());
@@ -172,6 +198,11 @@ impl SheetProgram<'_> {
             }
         }
     }
+}
+
+/// The angles of a flat pair's heights.
+fn height_angles_rad() -> impl Iterator<Item = f64> {
+    (0..HEIGHTS).map(|k| std::f64::consts::TAU * k as f64 / HEIGHTS as f64)
 }
 
 /// Number of a pair that stays the same from state to state.

@@ -4,7 +4,7 @@ use crate::{
     constraint::{Contact, Posed, SheetProgram},
     model::Model,
     solve::{
-        certificate::{Certificate, measure_curvature},
+        certificate::{Certificate, measure_curvature, measure_gaps},
         kkt::polish,
         rows::{Derivatives, Multiplier, violation},
         sqp::{Program, SqpOptions, maximize},
@@ -56,6 +56,7 @@ pub(super) fn climb(
     for kick in 0..=kicks {
         if kick > 0 {
             let size = KICK * kick as f64;
+            program.forget_released_pairs();
             x = program.posed(shaken_from(model, &x.state, size, rng), x.p.clone());
         }
         let (end, solve) = climber.round(program, x);
@@ -92,17 +93,28 @@ impl Climber<'_> {
             let options = SqpOptions { pause_at, first_radius, ..SqpOptions::default() };
             let end = maximize(program, x, known, &options, self.cancel);
             self.iterations += end.iterations as u64;
-            let (polished, certificate) = polish(program, &end);
+            let (polished, mut certificate) = polish(program, &end);
+            let locked = certificate.holds();
+            let mut carrying = certificate.multipliers.clone();
+            measure_gaps(program, &polished, &mut certificate);
             let links_ok = topology::links_kept(self.model, &polished.state);
             let certified = certificate.holds() && links_ok;
             let contacts = program.contacts(&polished, &certificate.multipliers);
             let solve = Solve { x: polished, certificate, contacts, links_ok, certified };
             (x, known) = (end.point, end.multipliers);
-            last = Some(solve);
             if certified {
+                last = Some(solve);
                 break;
             }
-            if program.take_flat_pairs(&x) {
+            // Where heights of flat pairs lock what their gaps do not: on from there by gaps.
+            if locked && program.release_shifted_pairs(&solve.x, &mut carrying) {
+                (x, known) = (solve.x.clone(), carrying);
+                (pause_at, first_radius) = (1e-2, 0.03);
+                last = Some(solve);
+                continue;
+            }
+            last = Some(solve);
+            if end.settled && program.release_shifted_pairs(&x, &mut known) || program.take_flat_pairs(&x) {
                 known.clear();
                 (pause_at, first_radius) = (1e-2, 0.03);
                 continue;

@@ -116,9 +116,23 @@ fn dual_residual(c: &[f64], rows: &[Row], multipliers: &[f64]) -> f64 {
 /// The figures at a point with the multipliers of its active rows, but for the curvature, which costs far more than the
 /// others: see [`measure_curvature`].
 pub(super) fn certify<P: Program>(program: &P, x: &P::Point, active: &[Multiplier]) -> Certificate {
-    let c = &program.objective()[..];
     let rows = program.rows(x, BAND, Derivatives::First);
-    let chosen_rows: Vec<Row> = matched(&rows, &Loads::new(active)).iter().map(|(k, _)| rows[*k].clone()).collect();
+    let smallest_gap = program.rows(x, 0.0, Derivatives::None).iter().map(|r| r.gap).fold(0.0, f64::min);
+    first_order(&program.objective(), &rows, active, smallest_gap)
+}
+
+/// The figures of first order from true gaps: what a certificate claims. Where the program solves by stricter rows, they
+/// replace those of the rows.
+pub fn measure_gaps<P: Program>(program: &P, x: &P::Point, certificate: &mut Certificate) {
+    if let Some(rows) = program.gap_rows(x, BAND) {
+        let (min_curvature, zero_modes) = (certificate.min_curvature, certificate.zero_modes);
+        let by_gaps = first_order(&program.objective(), &rows, &certificate.multipliers, certificate.smallest_gap);
+        *certificate = Certificate { min_curvature, zero_modes, ..by_gaps };
+    }
+}
+
+fn first_order(c: &[f64], rows: &[Row], active: &[Multiplier], smallest_gap: f64) -> Certificate {
+    let chosen_rows: Vec<Row> = matched(rows, &Loads::new(active)).iter().map(|(k, _)| rows[*k].clone()).collect();
     // Least squares first: exact to rounding. Where signs are wrong, the constrained ones.
     let mut multipliers = least_squares_multipliers(c, &chosen_rows);
     let least = |mu: &[f64]| mu.iter().copied().fold(f64::INFINITY, f64::min);
@@ -130,7 +144,7 @@ pub(super) fn certify<P: Program>(program: &P, x: &P::Point, active: &[Multiplie
         }
     }
     Certificate {
-        smallest_gap: program.rows(x, 0.0, Derivatives::None).iter().map(|r| r.gap).fold(0.0, f64::min),
+        smallest_gap,
         dual_residual: dual_residual(c, &chosen_rows, &multipliers),
         complementarity: chosen_rows.iter().zip(&multipliers).map(|(r, mu)| (r.gap * mu).abs()).fold(0.0, f64::max),
         min_multiplier: least(&multipliers),

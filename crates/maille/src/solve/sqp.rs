@@ -26,6 +26,8 @@ pub trait Program {
     fn value(&self, x: &Self::Point) -> f64;
     /// All rows with a gap of at most `band`, with the derivatives that are asked for.
     fn rows(&self, x: &Self::Point, band: f64, derivatives: Derivatives<'_>) -> Vec<Row>;
+    /// The same with gradients, as true gaps where some of [`Program::rows`] are stricter ones; `None` where none is.
+    fn gap_rows(&self, x: &Self::Point, band: f64) -> Option<Vec<Row>>;
     /// Data for [`Program::largest_step`] at `x`.
     fn guard(&self, x: &Self::Point) -> Self::Guard;
     /// Largest fraction of `step` (at most 1) that is allowed.
