@@ -5,22 +5,27 @@
 
 mod apart;
 mod balance;
+mod bounds;
 mod chain;
 mod claims;
 mod curvature;
 mod dual;
 mod endless;
 mod files;
+mod forces;
+mod gaps;
 mod image;
 mod linking;
 mod record;
 mod report;
 mod sheet;
+mod start;
 mod strain;
 mod tie;
 mod verifier;
 
 pub use balance::{COMPLEMENTARITY, RESIDUAL};
+pub use gaps::OVERLAP;
 pub use record::{Texts, Unreadable};
 pub use report::{Check, Finding, RowReport, Verdict};
-pub use verifier::{OVERLAP, Verifier};
+pub use verifier::Verifier;

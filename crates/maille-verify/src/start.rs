@@ -1,0 +1,71 @@
+//! The design's start in a cell, with its links.
+
+use crate::{
+    apart::some_distance,
+    linking::linking_number,
+    record::{Run, State},
+    report::Verdict,
+    sheet::{Cell, Pair, Ring, Sheet},
+    tie::Linked,
+};
+use maille_geometry::Circle;
+
+/// A start with its links.
+pub(crate) struct Start {
+    pub sheet: Sheet,
+    pub links: Result<Links, String>,
+}
+
+/// The linked pairs with their linking numbers, in order.
+pub(crate) type Links = Vec<(Pair, i32)>;
+
+/// The start in `cell`, with the elements in the order of `poses`.
+pub(crate) fn start(run: &Run, cell: &Cell, names: &[&str]) -> Result<Start, String> {
+    let sheet = Sheet::start(&run.design, cell, names)?;
+    let mut links = Ok(Vec::new());
+    match sheet.pairs(|_, _| 0.0) {
+        Ok(pairs) => {
+            for pair in pairs {
+                let circles = (&sheet.circle(pair.0, [0, 0]), &sheet.circle(pair.1, pair.2));
+                add_link(&mut links, pair, circles, None, sheet.slack(pair));
+            }
+        }
+        Err(words) => links = Err(words),
+    }
+    Ok(Start { sheet, links })
+}
+
+/// Names of the elements in a state.
+pub(crate) fn names(state: &State) -> Vec<&str> {
+    state.poses.iter().map(|pose| pose.element.as_str()).collect()
+}
+
+/// Adds the pair if it is linked. `proved` is a distance that the circles are known to keep.
+pub(crate) fn add_link(
+    links: &mut Result<Links, String>,
+    pair: Pair,
+    (one, other): (&Circle, &Circle),
+    proved: Option<f64>,
+    slack: f64,
+) {
+    let Ok(known) = links else { return };
+    let apart = proved.or_else(|| some_distance(one, other, slack)).ok_or("core circles meet".to_owned());
+    match apart.and_then(|apart| linking_number(one, other, apart)) {
+        Ok(0) => {}
+        Ok(number) => known.push((pair, number)),
+        Err(words) => *links = Err(format!("rings {} and {} at {:?}: {words}", pair.0, pair.1, pair.2)),
+    }
+}
+
+/// The start with its links, or why they are not known.
+pub(crate) fn linked(start: &Result<Start, String>) -> Result<Linked<'_>, (Verdict, String)> {
+    let start = start.as_ref().map_err(|words| (Verdict::False, words.clone()))?;
+    let links = start.links.as_ref().map_err(|words| (Verdict::Open, words.clone()))?;
+    Ok(Linked { sheet: &start.sheet, links })
+}
+
+/// Whether two sheets have the same elements in the same order.
+pub(crate) fn same_rings(a: &Sheet, b: &Sheet) -> bool {
+    let same = |(x, y): (&Ring, &Ring)| x.element == y.element && x.arm == y.arm && x.normal == y.normal;
+    a.rings.len() == b.rings.len() && a.rings.iter().zip(&b.rings).all(same)
+}
