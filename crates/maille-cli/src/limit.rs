@@ -10,12 +10,9 @@ use crate::{
 };
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use maille::{
-    characterize::{CellChoice, Method},
+    characterize::{CellChoice, Method, strain::StrainQuestion},
     lattice::Cell,
-    limit::{
-        exact::ExactOptions,
-        strain::{Strain, StrainMethod, StrainOptions, StrainQuery},
-    },
+    limit::{exact::ExactOptions, strain::Strain},
     model::Model,
     record::Status,
 };
@@ -27,7 +24,8 @@ use std::{process::ExitCode, str::FromStr, time::Instant};
 ///
 /// Strains are Green strains of the sheet, E = (C - 1)/2 with C = F^T F, relative to the spacing of the design: exx and eyy
 /// along its axes, or with --direction along axes turned by an angle; exy is the tensor shear (half the engineering shear). exx = s + s^2/2 where lines along x are stretched by 1 + s.
-/// What is named by neither --fix nor --free is held at 0. With --minimize all cells up to 3x3 are solved and listed with
+/// What is named by neither --fix nor --free is held at 0. The largest exx or eyy with no shear, or with width and shear free, is a
+/// pull: the limit is that of `characterize` along that direction. With --minimize all cells up to 3x3 are solved and listed with
 /// their starts and the distinct limits that these led to; as a still larger cell can fold further, such an answer is the best
 /// that was found, and never global.
 #[derive(clap::Args)]
@@ -65,9 +63,10 @@ pub struct Args {
     /// up to 3x3 with --minimize
     #[arg(long, default_value = "auto", value_parser = cell_choice)]
     cell: CellChoice,
-    /// Starts of a query whose bound is not attained; with --minimize of each cell
-    #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=10_000))]
-    starts: u32,
+    /// Starts of a query whose bound is not attained; with --minimize of each cell [default: 8, and those of `characterize` where
+    /// the question is a pull]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    starts: Option<u32>,
     /// Seed of the shaking
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -105,31 +104,41 @@ fn cell_choice(text: &str) -> Result<CellChoice, String> {
     if text == "auto" { Ok(CellChoice::Auto) } else { parse_cell(text).map(CellChoice::One) }
 }
 
-/// The query, the wanted strain, and 1 or −1 for the largest or the least.
-fn query(args: &Args) -> Result<(StrainQuery, Strain, f64)> {
+fn question(args: &Args) -> Result<StrainQuestion> {
     let Some((goal, sign)) = args.maximize.map(|s| (s, 1.0)).or(args.minimize.map(|s| (s, -1.0))) else {
         return Err(wrong(exit::USAGE, "no strain is named", "give --maximize exx, or --minimize exx"));
     };
-    let fix: Vec<(Strain, f64)> = args.fix.iter().map(|held| (held.strain, held.value)).collect();
-    let query = StrainQuery::of(goal, sign, &fix, &args.free, args.direction)
-        .map_err(|e| wrong(exit::USAGE, e.problem, e.help))?;
-    Ok((query, goal, sign))
+    Ok(StrainQuestion {
+        goal,
+        sign,
+        fix: args.fix.iter().map(|held| (held.strain, held.value)).collect(),
+        free: args.free.clone(),
+        direction_deg: args.direction,
+        starts: args.starts.map(|starts| starts as usize),
+        seed: args.seed,
+    })
 }
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    let (query, goal, sign) = query(args)?;
+    let question = question(args)?;
+    question.query().map_err(|e| wrong(exit::USAGE, e.problem, e.help))?;
     let input = Input::read(&args.design, args.minor_radius)?;
     let cells = args.cell.cells(&Method::Exact(ExactOptions::default()), input.design.elements.len());
     let models = cells.iter().map(|cell: &Cell| input.compile(&input.design, *cell)).collect::<Result<Vec<Model>>>()?;
     let cancel = interrupt::flag()?;
     let begun = Instant::now();
-    let options = StrainOptions { starts: args.starts as usize, seed: args.seed, compression: args.minimize.is_some() };
-    let found = StrainMethod::new(&models, options).solve(&query, &[], &cancel);
-    let model = &models[found.cell];
-    let (direction_deg, free) = (args.direction, &args.free[..]);
-    let design = &input.design.name;
-    let answer = StrainAnswer { design, goal, sign, free, direction_deg, cells: &cells, model, found: &found };
+    let found = question.answer(&models, &cancel).map_err(|e| wrong(exit::USAGE, e.problem, e.help))?;
+    let answer = StrainAnswer {
+        design: &input.design.name,
+        goal: question.goal,
+        sign: question.sign,
+        free: &question.free,
+        direction_deg: question.direction_deg,
+        cells: &cells,
+        model: &models[found.cell],
+        found: &found,
+    };
     let wall_s = begun.elapsed().as_secs_f64();
     match args.json {
         true => output::print_json(&output::timed(answer.json(), wall_s))?,
@@ -155,6 +164,8 @@ fn print(answer: &StrainAnswer<'_>, wall_s: f64) {
     say!("{}, {most} {}{turned}: {}", answer.design, answer.goal.name(), answer.status());
     match found.status {
         Status::L2Unreachable => return say!("  proved: no state of the sheet has the strains that are held"),
+        Status::Unbounded => return say!("  nothing holds the sheet along this direction: it comes apart"),
+        Status::InfeasibleStart => return say!("  the rings of the design overlap, and could not be freed of that"),
         Status::L2NotReached => {
             return say!("  {} starts did not reach the strains that are held; nothing is proved", found.n_starts);
         }

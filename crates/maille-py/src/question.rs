@@ -2,12 +2,12 @@
 
 use crate::{design::Design, error, map::cell_choice, wait::wait};
 use maille::{
-    characterize::Method,
+    characterize::{Method, strain::StrainQuestion},
     lattice::Cell,
     limit::{
         exact::ExactOptions,
         extreme::{Extreme, ExtremeOptions},
-        strain::{Strain, StrainMethod, StrainOptions, StrainQuery},
+        strain::Strain,
     },
     model::Model,
 };
@@ -31,21 +31,29 @@ pub fn limit(
     free: Vec<String>,
     direction_deg: f64,
     cell: &str,
-    starts: usize,
+    starts: Option<usize>,
     seed: u64,
 ) -> PyResult<String> {
     let goal = strain(if sign > 0.0 { "maximize" } else { "minimize" }, goal)?;
     let fix: Vec<_> = fix.iter().map(|(name, x)| Ok((strain("fix", name)?, *x))).collect::<PyResult<_>>()?;
     let free: Vec<_> = free.iter().map(|name| strain("free", name)).collect::<PyResult<_>>()?;
-    let query = StrainQuery::of(goal, sign, &fix, &free, direction_deg).map_err(|e| error::invalid(&e))?;
+    let question = StrainQuestion { goal, sign, fix, free, direction_deg, starts: starts.map(|n| n.max(1)), seed };
+    question.query().map_err(|e| error::invalid(&e))?;
     let exact = Method::Exact(ExactOptions::default());
     let cells = cell_choice(cell)?.cells(&exact, design.design.elements.len());
     let models: Vec<Model> = cells.iter().map(|cell| design.compile(*cell)).collect::<PyResult<_>>()?;
-    let options = StrainOptions { starts: starts.max(1), seed, compression: sign < 0.0 };
-    let found = wait(py, Some(1), None, |cancel, _| StrainMethod::new(&models, options).solve(&query, &[], cancel))?;
-    let model = &models[found.cell];
-    let design = &design.design.name;
-    let answer = StrainAnswer { design, goal, sign, free: &free, direction_deg, cells: &cells, model, found: &found };
+    let found = wait(py, Some(1), None, |cancel, _| question.answer(&models, cancel))?;
+    let found = found.map_err(|e| error::invalid(&e))?;
+    let answer = StrainAnswer {
+        design: &design.design.name,
+        goal,
+        sign,
+        free: &question.free,
+        direction_deg,
+        cells: &cells,
+        model: &models[found.cell],
+        found: &found,
+    };
     Ok(answer.json().to_string())
 }
 

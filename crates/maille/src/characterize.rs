@@ -1,6 +1,7 @@
 //! Characterisation: limits over directions and lateral strains, as rows and states of a record.
 
 mod image;
+pub mod strain;
 
 use crate::{
     bound::DualForce,

@@ -96,7 +96,7 @@ def limit(
     free: list[str],
     direction_deg: float,
     cell: str,
-    starts: int,
+    starts: int | None,
     seed: int,
 ) -> str: ...
 def extreme(

@@ -113,13 +113,14 @@ def limit(
     direction: float = 0.0,
     cell: str = "auto",
     minor_radius: float | None = None,
-    starts: int = 8,
+    starts: int | None = None,
     seed: int = 1,
 ) -> StrainLimit:
     """One strain (exx, eyy or exy) as large or as small as can be: what `maille limit` does.
 
     Strains of `fix` are held at their values, those of `free` left to the sheet, the others held at 0. Their x axis is turned by
-    `direction`, degrees counter-clockwise from that of the design.
+    `direction`, degrees counter-clockwise from that of the design. The largest exx or eyy with no shear, or with width and shear
+    free, is a pull: the limit is that of `characterize`.
 
     >>> limit("1.1", maximize="exx").status
     'global'
@@ -142,7 +143,7 @@ def limit(
         free=_sequence(free),
         direction_deg=float(direction),
         cell=cell,
-        starts=_whole("starts", starts, 1),
+        starts=None if starts is None else _whole("starts", starts, 1),
         seed=_whole("seed", seed, 0),
     )
     found = json.loads(text)

@@ -134,7 +134,7 @@ impl Default for StrainOptions {
 #[derive(Clone, Debug)]
 pub struct StrainOutcome {
     /// `global`, `local`, `uncertified`, `l2-unreachable` (what is held is proved impossible), `l2-not-reached` (it was not
-    /// reached) or `interrupted`.
+    /// reached), `interrupted`; of a pull also `unbounded` and `infeasible-start`.
     pub status: Status,
     /// Largest p₀; none where nothing was found that holds it.
     pub value: Option<f64>,
@@ -289,7 +289,7 @@ impl<'a> StrainMethod<'a> {
     }
 
     /// Finds [`StrainOutcome::ranges`] at the value of p₀.
-    fn ranges(&self, query: &StrainQuery, value: f64, out: &mut StrainOutcome, cancel: &AtomicBool) {
+    pub(crate) fn ranges(&self, query: &StrainQuery, value: f64, out: &mut StrainOutcome, cancel: &AtomicBool) {
         let model = &self.models[out.cell];
         let given = value - FREE_SLACK * (1.0 + value.abs());
         let at = out.strain + query.free[0] * (given - value);
