@@ -355,11 +355,12 @@ fn an_interrupted_run_counts_what_is_on_the_disk() {
     }
 }
 
-/// Limits in the tables and journals below a folder, one a line; a table's head counts for none.
+/// Limits in the tables and journals below a folder, one a line; a table's head and what a stop cut short count for none.
 #[cfg(unix)]
 fn rows_kept(records: &Path) -> usize {
     let Ok(entries) = fs::read_dir(records) else { return 0 };
-    let lines = |path: std::path::PathBuf| fs::read_to_string(path).map_or(0, |text| text.lines().count());
+    let found = |text: String| text.lines().filter(|line| !line.contains("interrupted")).count();
+    let lines = |path: std::path::PathBuf| fs::read_to_string(path).map_or(0, found);
     let of = |folder: std::path::PathBuf| {
         lines(folder.join("limits.csv")).saturating_sub(1) + lines(folder.join("limits.journal"))
     };

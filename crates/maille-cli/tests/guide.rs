@@ -141,6 +141,6 @@ fn checks_are_read() {
     assert_eq!((found[0].line, found[1].line, found[0].run, found[1].run), (3, 5, true, false));
     assert_eq!(found[0].commands, [vec!["x", "a b"], vec!["!", "y", "--z"]]);
     assert_eq!(found[0].numbers, ["0.50", "-1"]);
-    assert_eq!(numbers("l1=0.25, (-1e-3) 4x4 at 90°: \u{2212}0.5."), [0.25, -1e-3, 4.0, 4.0, 90.0, -0.5]);
+    assert_eq!(numbers("l1=0.25, (-1e-3) 4x4 at 90°: \u{2212}0.5."), [1.0, 0.25, -1e-3, 4.0, 4.0, 90.0, -0.5]);
     assert!(rounds_to(0.604_565_6, "0.604566") && !rounds_to(0.605_026, "0.604566") && rounds_to(-0.5, "\u{2212}0.5"));
 }

@@ -145,7 +145,7 @@ mod tests {
         }
         // Every range of thousandths, against its own decimals.
         for step in 1..100 {
-            let range = format!("-1:1:{}", f64::from(step) / 1000.0);
+            let range = format!("-1:1:{}", step as f64 / 1000.0);
             let shown: Vec<String> = parse(&range).unwrap().0.iter().map(f64::to_string).collect();
             let expected: Vec<String> = (-1000..=1000).step_by(step).map(thousandths).collect();
             assert_eq!(shown, expected, "{range}");

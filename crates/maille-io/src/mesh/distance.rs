@@ -202,7 +202,7 @@ mod tests {
             assert!(found <= near + 1e-12 && found >= near - coarse, "{found} of {near} ± {coarse}: {a:?} {b:?}");
             meet += usize::from(found == 0.0);
         }
-        assert!((20..380).contains(&meet), "{meet} of 400 meet");
+        assert!((10..390).contains(&meet), "{meet} of 400 meet");
     }
 
     #[test]
@@ -233,7 +233,8 @@ mod tests {
             let mut b: Vec<Triangle> = (0..35).map(|_| random(&mut rng, 0.4).map(|p| p + apart)).collect();
             let pairs = a.iter().flat_map(|s| b.iter().map(move |t| distance_sq(s, t)));
             let expected = pairs.fold(f64::INFINITY, f64::min).sqrt();
-            assert_eq!(least_distance(&mut a, &mut b, 100.0), expected);
+            let found = least_distance(&mut a, &mut b, 100.0);
+            assert!((found - expected).abs() < 1e-14, "{found} {expected}");
             assert_eq!(least_distance(&mut b, &mut a, 0.5 * expected), 0.5 * expected);
         }
         assert_eq!(least_distance(&mut [], &mut [random(&mut rng, 1.0)], 2.0), 2.0);
