@@ -13,8 +13,8 @@
 //! orders is the second derivative in rotation vectors.
 //!
 //! **Flat pairs.** Equal rings that lie on one another are closed along the whole circle, d_θθ = 0. Such a pair keeps its contacts
-//! only without tilt, if its force N = Σ μ and the moment T = Σ μ u, u the directions of the points, have |T| < N: a height h + R τ·u that is nowhere negative and whose weighted sum N h
-//! + R τ·T is 0 has τ = 0. With the offset e of the axes the gap is (e·u)²/2s above the height, which is linear in u: each way to spread
+//! only without tilt, if its force N = Σ μ and the moment T = Σ μ u, u the directions of the points, have |T| < N: a height h + R τ·u that is nowhere negative and whose weighted
+//! sum N h + R τ·T is 0 has τ = 0. With the offset e of the axes the gap is (e·u)²/2s above the height, which is linear in u: each way to spread
 //! the force over the circle with the same N and T balances. Of all ways the one with the least Σ μ (δe·u)² = (T·δe)²/N counts for a motion with
 //! δe = v_b − v_a − ω_a × (c_b − c_a); it stands in place of the recorded points' own.
 
