@@ -10,6 +10,7 @@ use crate::{
     sheet::{self, Sheet},
     start::{Start, linked, names},
     strain,
+    tie::Place,
     verifier::Verifier,
 };
 
@@ -117,7 +118,7 @@ impl Verifier {
     }
 
     /// An element of the row's cell whose image would be too near at every l1 up to `most`.
-    fn images(&self, row: &Row, most: f64) -> Result<Option<(usize, [i32; 2])>, (Verdict, String)> {
+    fn images(&self, row: &Row, most: f64) -> Result<Option<Place>, (Verdict, String)> {
         if [&row.lateral, &row.shear].iter().any(|word| word.as_deref() == Some("free")) {
             return Ok(None);
         }

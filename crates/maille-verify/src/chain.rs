@@ -9,7 +9,7 @@
 use crate::{
     record::Chain,
     strain::{ACROSS, axes},
-    tie::{Linked, Place},
+    tie::{Linked, Place, between},
 };
 
 /// What a chain proves of l1, where l2 is held and the shear is 0.
@@ -25,10 +25,9 @@ pub(crate) fn length(start: Linked<'_>, rings: &[Place]) -> Result<([i32; 2], f6
     let (Some(first), Some(last)) = (rings.first(), rings.last()) else {
         return Err("the chain is empty".into());
     };
-    let vector = [last.1[0] - first.1[0], last.1[1] - first.1[1]];
-    if first.0 != last.0 || vector == [0, 0] {
+    let Some(vector) = between(first.1, last.1).filter(|vector| first.0 == last.0 && *vector != [0, 0]) else {
         return Err("the chain does not lead from a ring to its image".into());
-    }
+    };
     let mut length = 0.0;
     let count = start.sheet.rings.len();
     for pair in rings.windows(2) {

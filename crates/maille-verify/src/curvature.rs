@@ -13,8 +13,8 @@
 //! orders is the second derivative in rotation vectors.
 //!
 //! **Flat pairs.** Equal rings that lie on one another are closed along the whole circle, d_θθ = 0. Such a pair keeps its contacts
-//! only without tilt, if its force N = Σ μ and the moment T = Σ μ u, u the directions of the points, have |T| < N: a height h + R τ·u that is nowhere negative and whose weighted sum N h
-//! + R τ·T is 0 has τ = 0. With the offset e of the axes the gap is (e·u)²/2s above the height, which is linear in u: each way to spread
+//! only without tilt, if its force N = Σ μ and the moment T = Σ μ u, u the directions of the points, have |T| < N: a height h + R τ·u that is nowhere negative and whose weighted
+//! sum N h + R τ·T is 0 has τ = 0. With the offset e of the axes the gap is (e·u)²/2s above the height, which is linear in u: each way to spread
 //! the force over the circle with the same N and T balances. Of all ways the one with the least Σ μ (δe·u)² = (T·δe)²/N counts for a motion with
 //! δe = v_b − v_a − ω_a × (c_b − c_a); it stands in place of the recorded points' own.
 
@@ -33,11 +33,11 @@ const LOADED: f64 = 1e-8;
 const DEPENDENT: f64 = 1e-12;
 /// Curvature below this share of the largest is none.
 pub(crate) const ZERO_MODE: f64 = 1e-7;
-/// d_θθ below which a pair can lie flat.
+/// d_θθ below which a contact has no place of its own.
 const FLATTEST: f64 = 1e-6;
 /// Tilt, and distance of the axes and difference of the radii in radii, of a pair that lies flat.
 const FLAT: f64 = 1e-3;
-/// |T|/N of a pair that lies flat, at most.
+/// |T|/N of a pair that is held flat, at most.
 const ROCKING: f64 = 0.99;
 /// The matrices are dense.
 const MOST_UNKNOWNS: usize = 3000;
@@ -234,15 +234,22 @@ pub(crate) fn curvature(
         }
     };
     let mut flat: BTreeMap<Pair, FlatPair> = BTreeMap::new();
+    for (point, force) in points.iter().filter(|(point, _)| lies_flat(sheet, point.pair)) {
+        flat.entry(point.pair).or_default().add(sheet, point, *force);
+    }
+    // One that is held on one side alone has a least distance as any other pair.
+    flat.retain(|_, found| found.moment.norm() <= ROCKING * found.force);
     for (point, force) in points {
         let columns = unknowns.of_pair(sheet, point.pair);
         let mut h = hessian(point);
         let bend = h[(12, 12)];
         let aside = h.column(12).into_owned();
-        if bend > FLATTEST {
+        if !flat.contains_key(&point.pair) {
+            if bend.is_nan() || bend <= FLATTEST {
+                let (a, b, shift) = point.pair;
+                return Err(format!("rings {a} and {b} at {shift:?} touch along an arc, and are not held flat"));
+            }
             h -= aside * aside.transpose() / bend;
-        } else {
-            of_flat(sheet, point, *force, flat.entry(point.pair).or_default())?;
         }
         h.row_mut(12).fill(0.0);
         h.column_mut(12).fill(0.0);
@@ -252,9 +259,6 @@ pub(crate) fn curvature(
         }
     }
     for (pair, found) in &flat {
-        if found.moment.norm() > ROCKING * found.force {
-            return Err(format!("rings {} and {} lie flat and could rock about one side", pair.0, pair.1));
-        }
         let columns = unknowns.of_pair(sheet, *pair);
         let touching = sheet.touching(pair.0, pair.1);
         let least = found.drift * found.drift.transpose() / found.force;
@@ -293,30 +297,34 @@ pub(crate) fn curvature(
     Ok(Curvature { values, idle, flat: !flat.is_empty() })
 }
 
-/// Adds a contact of a pair that lies flat, if it does.
-fn of_flat(sheet: &Sheet, point: &Closed<'_>, force: f64, out: &mut FlatPair) -> Result<(), String> {
-    let (a, b, shift) = point.pair;
+/// Whether two rings are equal, parallel and coaxial, nearly.
+fn lies_flat(sheet: &Sheet, (a, b, shift): Pair) -> bool {
     let (one, other) = (sheet.circle(a, [0, 0]), sheet.circle(b, shift));
     let x = other.center - one.center;
     let apart = (x - one.normal.into_inner() * x.dot(&one.normal)).norm();
     let tilt = one.normal.cross(&other.normal).norm();
-    let unequal = (one.radius - other.radius).abs();
-    if tilt > FLAT || apart.max(unequal) > FLAT * one.radius {
-        return Err(format!("rings {a} and {b} at {shift:?} touch along an arc, and do not lie flat"));
+    tilt <= FLAT && apart.max((one.radius - other.radius).abs()) <= FLAT * one.radius
+}
+
+impl FlatPair {
+    /// Adds a contact of the pair.
+    fn add(&mut self, sheet: &Sheet, point: &Closed<'_>, force: f64) {
+        let (a, b, shift) = point.pair;
+        let (one, other) = (sheet.circle(a, [0, 0]), sheet.circle(b, shift));
+        let x = other.center - one.center;
+        let (u, v) = frame(&other.normal);
+        let u = u * point.angle.cos() + v * point.angle.sin();
+        let at = |ring: usize| sheet.bodies[sheet.rings[ring].element].position;
+        let (arm_a, arm_b) = (one.center - at(a), other.center - at(b) - sheet.translation(shift));
+        let (of_a, of_b) = (arm_a.cross(&u) + x.cross(&u), arm_b.cross(&u));
+        let drift = Local::from_column_slice(&[
+            -u.x, -u.y, -u.z, -of_a.x, -of_a.y, -of_a.z, u.x, u.y, u.z, of_b.x, of_b.y, of_b.z, 0.0,
+        ]);
+        self.force += force;
+        self.moment += u * force;
+        self.drift += drift * force;
+        self.drift_sq += drift * drift.transpose() * force;
     }
-    let (u, v) = frame(&other.normal);
-    let u = u * point.angle.cos() + v * point.angle.sin();
-    let at = |ring: usize| sheet.bodies[sheet.rings[ring].element].position;
-    let (arm_a, arm_b) = (one.center - at(a), other.center - at(b) - sheet.translation(shift));
-    let (of_a, of_b) = (arm_a.cross(&u) + x.cross(&u), arm_b.cross(&u));
-    let drift = Local::from_column_slice(&[
-        -u.x, -u.y, -u.z, -of_a.x, -of_a.y, -of_a.z, u.x, u.y, u.z, of_b.x, of_b.y, of_b.z, 0.0,
-    ]);
-    out.force += force;
-    out.moment += u * force;
-    out.drift += drift * force;
-    out.drift_sq += drift * drift.transpose() * force;
-    Ok(())
 }
 
 #[cfg(test)]

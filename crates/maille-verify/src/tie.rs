@@ -21,6 +21,11 @@ const THICKEST: f64 = 0.125;
 /// A ring and its cell.
 pub(crate) type Place = (usize, [i32; 2]);
 
+/// The way from one cell to another, if it is a number.
+pub(crate) fn between(from: [i32; 2], to: [i32; 2]) -> Option<[i32; 2]> {
+    Some([to[0].checked_sub(from[0])?, to[1].checked_sub(from[1])?])
+}
+
 /// A tie, derived from the links of a start.
 pub(crate) struct Tie {
     /// Rings with their weights; none for a chain.
@@ -40,8 +45,10 @@ pub(crate) struct Linked<'a> {
 impl<'a> Linked<'a> {
     /// Whether two rings are linked.
     pub fn linked(&self, a: Place, b: Place) -> bool {
-        let shift @ [m, n] = [b.1[0] - a.1[0], b.1[1] - a.1[1]];
-        let same = |(x, y, s): &Pair| (*x, *y, *s) == (a.0, b.0, shift) || (*x, *y, *s) == (b.0, a.0, [-m, -n]);
+        let same = |(x, y, shift): &Pair| {
+            (*x, *y, Some(*shift)) == (a.0, b.0, between(a.1, b.1))
+                || (*x, *y, Some(*shift)) == (b.0, a.0, between(b.1, a.1))
+        };
         self.links.iter().any(|(pair, _)| same(pair))
     }
 
