@@ -196,13 +196,20 @@ impl Weave {
         }
     }
 
+    /// Whether its coordinates have √3 in them.
+    fn is_triangular(self) -> bool {
+        matches!(self, Weave::Japanese6In1 | Weave::Japanese12In2)
+    }
+
     /// The design of these rings, called `name`; refused where they would fuse.
     pub fn design(self, name: &str, rings: &Rings) -> Result<Design, WeaveError> {
         let (major, minor) = (rings.major, rings.minor);
         if !(minor > 0.0 && minor < major && major.is_finite()) {
             return Err(WeaveError::NoRing { major, minor });
         }
-        let digits = (5.0 - major.log10().floor()).clamp(0.0, 300.0) as i32;
+        let digits = |most: f64| (most - major.log10().floor()).clamp(0.0, 300.0) as i32;
+        // A triangular grid that is rounded to fewer has no turn by 60° any more.
+        let (digits, of_normals) = if self.is_triangular() { (digits(13.0), 14) } else { (digits(5.0), 6) };
         let length = |x: f64| round(x * major, digits);
         let (lattice, placed) = self.placement();
         let element = |Placed(name, center, normal): Placed| ElementSpec {
@@ -210,7 +217,7 @@ impl Weave {
             center: center.map(length),
             rings: vec![RingSpec {
                 major_radius: major,
-                normal: normal.map(|x| round(x, 6)),
+                normal: normal.map(|x| round(x, of_normals)),
                 offset: [0.0; 3],
                 minor_radius: None,
             }],
