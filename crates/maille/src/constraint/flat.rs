@@ -142,9 +142,16 @@ impl SheetProgram<'_> {
             }
             let weight = (force * self.required(x, model.contact_distance(pair.ring_a, pair.ring_b))).sqrt();
             let map = self.pair_map(&pair, &self.all_turns(state), factored.as_ref());
+            let reference = |ring: usize| state.poses[model.rings[ring].element].position;
+            // From the element's reference point: to B's centre on B, and on A.
+            let own = b.center - reference(pair.ring_b) - state.translation(pair.shift);
+            let seen = b.center - reference(pair.ring_a);
             let mut term = vec![0.0; n];
             for (&column, motion) in map.columns.iter().zip(&map.motions) {
-                term[column] = (0..3).map(|axis| motion[axis] * moment[axis]).sum::<f64>() / weight;
+                let part = |k: usize| Vec3::new(motion[3 * k], motion[3 * k + 1], motion[3 * k + 2]);
+                // The axes come apart by what B's centre moves in A's frame.
+                let apart = part(0) + part(2).cross(&own) - part(1).cross(&seen);
+                term[column] = apart.dot(&moment) / weight;
             }
             out.push(term);
         }
