@@ -1,6 +1,6 @@
 //! Whether a small motion could raise l1, to second order: the curvature of −Σ μ g on the motions that keep the loaded contacts.
 //!
-//! **Unknowns.** A translation and a turn of every element, but no translation of the first one and no spin of a single ring about its own axis, which
+//! **Unknowns.** A translation and a turn of every element, but no translation of one of them, the first of the cell that was solved, and no spin of a single ring about its own axis, which
 //! change nothing; then l1 and what is free. The lattice carries the copies of the design's cell along.
 //!
 //! **A contact.** The distance d(y, θ) of the point θ of ring b from the circle of ring a, as the elements move by y. Its gradient is the
@@ -149,7 +149,7 @@ struct Unknowns {
 }
 
 impl Unknowns {
-    fn new(sheet: &Sheet, anchors: Vec<[f64; 2]>, rates: &[[Vec3; 2]]) -> Self {
+    fn new(sheet: &Sheet, anchors: Vec<[f64; 2]>, rates: &[[Vec3; 2]], still: usize) -> Self {
         let axes = [Vec3::x(), Vec3::y(), Vec3::z()];
         let mut next = 0;
         let mut of_element = Vec::new();
@@ -162,7 +162,7 @@ impl Unknowns {
                 }
                 _ => axes.to_vec(),
             };
-            let shifts = axes.iter().filter(|_| element > 0).map(|axis| [*axis, Vec3::zeros()]);
+            let shifts = axes.iter().filter(|_| element != still).map(|axis| [*axis, Vec3::zeros()]);
             let motions = shifts.chain(turns.into_iter().map(|axis| [Vec3::zeros(), axis]));
             of_element.push(motions.enumerate().map(|(k, motion)| (next + k, motion)).collect::<Vec<_>>());
             next += of_element[element].len();
@@ -207,14 +207,16 @@ struct FlatPair {
     drift_sq: SMatrix<f64, 13, 13>,
 }
 
-/// The curvature at `points` with their forces, or why it cannot be told. `rates` are those of the lattice with l1 and what is free.
+/// The curvature at `points` with their forces, or why it cannot be told. `rates` are those of the lattice with l1 and what is free; element `still`
+/// does not move.
 pub(crate) fn curvature(
     sheet: &Sheet,
     points: &[(Closed<'_>, f64)],
     rates: &[[Vec3; 2]],
     anchors: Vec<[f64; 2]>,
+    still: usize,
 ) -> Result<Curvature, String> {
-    let unknowns = Unknowns::new(sheet, anchors, rates);
+    let unknowns = Unknowns::new(sheet, anchors, rates, still);
     let n = unknowns.count();
     if n > MOST_UNKNOWNS {
         return Err(format!("{n} unknowns; the curvature is derived of up to {MOST_UNKNOWNS}"));
@@ -424,7 +426,7 @@ mod tests {
             let below = angles.iter().map(|angle| at((0, 1, [0, 0]), *angle));
             let above = angles.iter().map(|angle| at((1, 2, [0, 0]), *angle));
             let points: Vec<(Closed<'_>, f64)> = below.chain(above).collect();
-            let found = curvature(&sheet, &points, &[], vec![[0.0; 2]; 2]).unwrap();
+            let found = curvature(&sheet, &points, &[], vec![[0.0; 2]; 2], 0).unwrap();
             // Eight unknowns; the height and two tilts are held.
             assert!(found.flat && found.values.len() == 5, "{found:?}");
             let moment = angles.iter().map(|angle| Vec3::new(angle.cos(), angle.sin(), 0.0) * 0.5).sum::<Vec3>();

@@ -37,9 +37,16 @@ pub(crate) fn forces(row: &Row, state: &State, here: &Sheet, start: &Start, unit
     };
     let balance = balance_finding(row, &balance(here, &points, &free));
     let anchors = start.sheet.carried();
-    let curvature = match curvature(here, &points, &free.0, anchors) {
+    let judged = |still: usize| match curvature(here, &points, &free.0, anchors.clone(), still) {
         Ok(found) => curvature_finding(row, &found, free.0.len() > 1),
         Err(words) => Finding::new(Check::Curvature, Verdict::Open, None, words),
+    };
+    // The figure depends on which element's translation is no unknown. In an image of another direction it need not be the first.
+    let first = judged(0);
+    let proved = |finding: &Finding| finding.verdict == Verdict::Proved;
+    let curvature = match proved(&first) {
+        true => first,
+        false => (1..here.bodies.len()).map(judged).find(proved).unwrap_or(first),
     };
     vec![balance, curvature]
 }

@@ -23,7 +23,7 @@ const FLAT_TILT: f64 = 0.08;
 const FLAT_APART: f64 = 0.08;
 /// Offset of the axes in radii above which a pair that carries is not left to its heights: its two contacts stand well apart
 /// from what is open.
-pub const SHIFTED: f64 = 1e-2;
+pub const SHIFTED: f64 = 1e-3;
 /// The same where no forces on closed points balance.
 pub const COAXIAL: f64 = 1e-6;
 /// Pairs are released by the order of their offsets: Newton's method hardly converges on two contacts that are nearly a circle.
