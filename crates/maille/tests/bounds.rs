@@ -51,7 +51,7 @@ fn known_limits_attain_the_bound() {
     ];
     for (name, r, degrees, l2, l1) in known {
         let (chain, link) = bounds(name, r, "1x1");
-        let Bound::Finite { l1: bound, kind, chain: path } = chain.limit(degrees, l2) else {
+        let Bound::Finite { l1: bound, kind, chain: path, .. } = chain.limit(degrees, l2) else {
             panic!("{name} {degrees}")
         };
         assert!((bound - l1).abs() < 1e-8, "{name} r = {r}, {degrees}°, l2 = {l2}: {bound} for {l1}");
