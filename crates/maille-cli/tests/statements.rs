@@ -125,7 +125,7 @@ fn statements_1_to_5_and_8_as_measured() {
     let of = |number: u32| -> &Finding { found.iter().find(|finding| finding.number == number).unwrap() };
     let scores = |number: u32| of(number).evidence.join(" ");
     for (number, verdict) in [
-        (1, Verdict::HoldsWithExceptions),
+        (1, Verdict::Holds),
         (2, Verdict::HoldsWithExceptions),
         (3, Verdict::HoldsWithExceptions),
         (4, Verdict::Holds),
@@ -136,9 +136,9 @@ fn statements_1_to_5_and_8_as_measured() {
         assert_eq!(of(number).verdict, verdict, "{number}: {:?}", of(number).exceptions);
     }
     let says = |number: u32, words: &str| assert!(scores(number).contains(words), "{number}: {}", scores(number));
-    // 1: in 34 turns; the two links of 1.3 differ where its limits are not proven.
-    says(1, "along every interlocking direction in 33 of 34 cases. It is largest midway between two in 34 of 34 cases");
-    assert_eq!(of(1).exceptions, ["1.3, r = R/10, exact, l₂ = −0.125: least at 90°"]);
+    // 1: in 34 turns.
+    says(1, "along every interlocking direction in 34 of 34 cases. It is largest midway between two in 34 of 34 cases");
+    assert!(of(1).exceptions.is_empty(), "{:?}", of(1).exceptions);
     // 2: everywhere; of design 2 the thesis expects otherwise, through stacking, which does not come about.
     says(2, "goes further in 210 of 210 cases");
     says(2, "grows with it in 17 of 17 cases. Least gain in l₁: 0.0743");

@@ -69,6 +69,7 @@ pub struct ExactParameters {
     free_slack: f64,
     rung: f64,
     best_rungs: usize,
+    widths: usize,
     nearly: f64,
     nearly_tries: u64,
     nearly_shake: f64,
@@ -94,6 +95,7 @@ impl ExactOptions {
             free_slack: FREE_SLACK,
             rung: RUNG,
             best_rungs: BEST_RUNGS,
+            widths: WIDTHS,
             nearly: NEARLY,
             nearly_tries: NEARLY_TRIES,
             nearly_shake: NEARLY_SHAKE,
@@ -140,6 +142,8 @@ pub(super) const FREE_SLACK: f64 = 1e-6;
 const RUNG: f64 = 0.125;
 /// As many of the largest of them are starts.
 const BEST_RUNGS: usize = 3;
+/// Times that the limit with l2 held where it was found is asked for, at most.
+const WIDTHS: usize = 3;
 
 /// Finds limits of one sheet by the exact method.
 pub struct ExactMethod<'a> {
@@ -233,6 +237,7 @@ impl<'a> ExactMethod<'a> {
         starts.extend(self.fresh(0, 0..fresh));
         let mut first = self.search(0, direction_deg, l2, starts, (most, across), cancel);
         (first.runs, first.iterations) = (first.runs + rung_runs, first.iterations + rung_iterations);
+        self.widths(&mut first, direction_deg, l2, (most, across), cancel);
         let near = if first.best.is_none() && !across.any() { self.too_near(direction_deg, l2, most) } else { None };
         if first.best.is_none() && near.is_none() {
             // Not reached: try harder before giving up.
@@ -341,6 +346,37 @@ impl<'a> ExactMethod<'a> {
         rungs.sort_by(|a, b| b.l1.total_cmp(&a.l1));
         rungs.truncate(BEST_RUNGS);
         (rungs, runs, iterations)
+    }
+
+    /// With l2 free: the limit with l2 held where it was found, and on from there with l2 free, as long as that gives more.
+    fn widths(
+        &self,
+        tally: &mut Tally,
+        direction_deg: f64,
+        l2: f64,
+        (most, across): (f64, Across),
+        cancel: &AtomicBool,
+    ) {
+        let held = Across { lateral_free: false, ..across };
+        for _ in 0..WIDTHS {
+            let Some(best) = tally.best.as_ref().filter(|_| across.lateral_free && !tally.attains(most)) else {
+                return;
+            };
+            let at = Strained::at(best, 1.0, l2, across);
+            let starts = std::iter::once(at.clone()).chain(self.fresh(0, 0..self.options.starts)).collect();
+            let found = self.search(0, direction_deg, at.l2, starts, (f64::INFINITY, held), cancel);
+            (tally.runs, tally.iterations) = (tally.runs + found.runs, tally.iterations + found.iterations);
+            let better = found.best.filter(|solve| solve.x.p[0] > best.x.p[0] + SAME_LIMIT);
+            let Some(from) = better.map(|solve| Strained::at(&solve, 1.0, at.l2, held)) else { return };
+            let again = self.search(0, direction_deg, l2, vec![from], (most, across), cancel);
+            (tally.runs, tally.iterations) = (tally.runs + again.runs, tally.iterations + again.iterations);
+            if !again.goes_further(Some(tally)) {
+                return;
+            }
+            let Tally { best, distinct, .. } = again;
+            tally.best = best;
+            tally.distinct.extend(distinct);
+        }
     }
 
     /// 1 where l1 is made as large as can be, −1 where as small.
