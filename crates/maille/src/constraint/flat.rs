@@ -59,7 +59,7 @@ impl SheetProgram<'_> {
     }
 
     /// Releases the flat pairs that carry and whose axes at `x` are more than `beyond` radii apart, and more than
-    /// [`MUCH_LESS`] of the largest such offset: from now on they are pairs like all others, and their forces in
+    /// a tenth of the largest such offset: from now on they are pairs like all others, and their forces in
     /// `multipliers` are shared by their closed points. Returns whether there was one.
     pub fn release_flat_pairs(&mut self, x: &Posed, multipliers: &mut Vec<Multiplier>, beyond: f64) -> bool {
         let carrying = self.flat.iter().filter_map(|&key| {

@@ -144,7 +144,7 @@ pub struct StrainOutcome {
     pub bound: Option<f64>,
     /// E at the state.
     pub strain: Matrix2<f64>,
-    /// Least and largest value found of each free parameter after the first, with p₀ given way by [`FREE_SLACK`] (1 + |p₀|) and
+    /// Least and largest value found of each free parameter after the first, with p₀ given way by a millionth of 1 + |p₀| and
     /// the others free; cut off where the bound excludes them at p₀ itself. A range of some width: the state is not the only one.
     /// Empty where the answer is not certified.
     pub ranges: Vec<[f64; 2]>,
