@@ -162,7 +162,7 @@ pub fn characterize(
             });
         }
         Method::Exact(options) => {
-            let exact = ExactMethod::new(models, options.clone());
+            let exact = ExactMethod::new(models, options.clone(), cancel);
             let (operations, chains) = symmetric_chains(&models[0], method, directions_deg);
             let cells: Vec<Cell> = models.iter().map(|model| model.cell).collect();
             chains.par_iter().with_max_len(1).for_each(|chain| {

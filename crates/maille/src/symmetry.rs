@@ -365,17 +365,13 @@ pub struct Orbit {
 ///
 /// Which direction represents an orbit does not depend on which of its directions are asked for, but for rounding.
 pub fn orbits(operations: &[Operation], directions_deg: &[f64]) -> Vec<Orbit> {
-    let same = |a: f64, b: f64| {
-        let apart = (a - b).rem_euclid(180.0);
-        apart.min(180.0 - apart) <= SAME_DEG
-    };
     let mut out: Vec<Orbit> = Vec::new();
     for &asked in directions_deg {
         let least = operations.iter().map(|o| o.direction_deg(asked)).fold(f64::INFINITY, f64::min);
         // Solved as it is asked for where rounding alone would make another of it.
-        let own = (0.0..180.0).contains(&asked) && same(asked, least);
+        let own = (0.0..180.0).contains(&asked) && same_direction(asked, least);
         let representative_deg = if own { asked } else { least };
-        match out.iter_mut().find(|orbit| same(orbit.representative_deg, representative_deg)) {
+        match out.iter_mut().find(|orbit| same_direction(orbit.representative_deg, representative_deg)) {
             Some(orbit) => {
                 if own && !orbit.directions_deg.contains(&orbit.representative_deg) {
                     orbit.representative_deg = asked;
@@ -390,11 +386,13 @@ pub fn orbits(operations: &[Operation], directions_deg: &[f64]) -> Vec<Orbit> {
 
 /// The operations that take a direction to another, both in degrees.
 pub fn between(operations: &[Operation], from_deg: f64, to_deg: f64) -> impl Iterator<Item = &Operation> {
-    let to = to_deg.rem_euclid(180.0);
-    operations.iter().filter(move |operation| {
-        let apart = (operation.direction_deg(from_deg) - to).abs();
-        apart.min(180.0 - apart) <= SAME_DEG
-    })
+    operations.iter().filter(move |operation| same_direction(operation.direction_deg(from_deg), to_deg))
+}
+
+/// Whether two directions, in degrees, are one but for rounding: D and −D are.
+pub fn same_direction(a_deg: f64, b_deg: f64) -> bool {
+    let apart = (a_deg - b_deg).rem_euclid(180.0);
+    apart.min(180.0 - apart) <= SAME_DEG
 }
 
 /// Whether an operation mirrors a direction, in degrees, to itself: then a shear γ along it and −γ are images.

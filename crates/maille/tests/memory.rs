@@ -29,7 +29,7 @@ fn a_thousand_limits_leave_nothing_behind() {
     let models = [Model::compile(&design, Cell::PRIMITIVE).unwrap()];
     let mut limits = 0;
     let mut map = || {
-        let method = ExactMethod::new(&models, ExactOptions::default());
+        let method = ExactMethod::new(&models, ExactOptions::default(), &AtomicBool::new(false));
         for k in 0..24 {
             let mut count = |_, outcome: maille::limit::LimitOutcome| limits += usize::from(outcome.exact.is_some());
             method.limits(7.5 * f64::from(k), &[-0.125, 0.0, 0.125], &AtomicBool::new(false), &mut count);

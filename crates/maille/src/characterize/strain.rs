@@ -1,8 +1,8 @@
 //! Extremes of one strain that are pulls: one question has one answer, by whichever door it comes.
 //!
 //! The largest E_DD, with E_⊥⊥ held and no shear, is the pull along D with l2 = √(1 + 2 E_⊥⊥) − 1; E_DD = l1 + l1²/2 grows with l1.
-//! With the width free, or width and shear, it is the pull that leaves them free. Then the limit is found as a map finds it. All
-//! other questions, and the least strains, go to [`StrainMethod`].
+//! With the width free, or width and shear, it is the pull that leaves them free. The least E_DD is the compression likewise. Then
+//! the limit is found as a map finds it. All other questions go to [`StrainMethod`].
 
 use super::{ExactOptions, Method, image, symmetric_chains};
 use crate::{
@@ -80,7 +80,7 @@ impl StrainQuestion {
             |strain: Strain| self.fix.iter().find(|(named, _)| *named == strain).map_or(0.0, |(_, value)| *value);
         let across = Across { lateral_free: self.free.contains(&side), shear_free: self.free.contains(&Strain::Exy) };
         // With the width held and the shear free, a pull holds the stretch across it and not E.
-        let a_pull = self.sign > 0.0 && held(Strain::Exy) == 0.0 && (across.lateral_free || !across.shear_free);
+        let a_pull = held(Strain::Exy) == 0.0 && (across.lateral_free || !across.shear_free);
         let l2 = if across.lateral_free { 0.0 } else { (1.0 + 2.0 * held(side)).sqrt() - 1.0 };
         a_pull.then_some(AsPull { direction_deg: self.direction_deg + turn_deg, l2, across })
     }
@@ -95,12 +95,12 @@ impl StrainQuestion {
     ) -> Option<StrainOutcome> {
         let ExactOptions { starts, .. } = ExactOptions::default();
         let starts = self.starts.unwrap_or(starts);
-        let options = ExactOptions { starts, seed: self.seed, across: pull.across, compression: false };
+        let options = ExactOptions { starts, seed: self.seed, across: pull.across, compression: self.sign < 0.0 };
         let method = Method::Exact(options.clone());
         let (operations, chains) = symmetric_chains(&models[0], &method, &[pull.direction_deg]);
         let solved_deg = chains[0].representative_deg;
         let mut limit = None;
-        ExactMethod::new(models, options).limits(solved_deg, &[pull.l2], cancel, &mut |_, found| limit = Some(found));
+        ExactMethod::new(models, options, cancel).limits(solved_deg, &[pull.l2], cancel, &mut |_, found| limit = Some(found));
         let mut limit = limit?;
         if solved_deg != pull.direction_deg {
             let image = image::image(&operations, models, &limit, solved_deg, pull.direction_deg);
@@ -110,7 +110,7 @@ impl StrainQuestion {
                 figures.cell = cell;
             }
         }
-        let mut out = answer(models, pull, query, limit);
+        let mut out = answer(models, self.sign, pull, query, limit);
         if let (Some(value), Status::Global | Status::Local) = (out.value, out.status) {
             StrainMethod::new(models, self.options()).ranges(query, value, &mut out, cancel);
         }
@@ -123,7 +123,7 @@ fn green(l1: f64) -> f64 {
     l1 + 0.5 * l1 * l1
 }
 
-fn answer(models: &[Model], pull: &AsPull, query: &StrainQuery, limit: LimitOutcome) -> StrainOutcome {
+fn answer(models: &[Model], sign: f64, pull: &AsPull, query: &StrainQuery, limit: LimitOutcome) -> StrainOutcome {
     let figures = limit.exact.unwrap_or_default();
     let model = &models[figures.cell];
     let f = limit.gradient;
@@ -149,19 +149,21 @@ fn answer(models: &[Model], pull: &AsPull, query: &StrainQuery, limit: LimitOutc
         ..*c
     };
     let certified = matches!(limit.status, Status::Global | Status::Local);
-    let trend = |t: &CellTrend| CellTrend { value: t.value.map(green), ..*t };
+    // Of the least strain −E_DD is maximised.
+    let value = |l1: f64| sign * green(l1);
+    let trend = |t: &CellTrend| CellTrend { value: t.value.map(value), ..*t };
     let trend: Vec<CellTrend> = figures.trend.iter().map(trend).collect();
     let alone = CellTrend {
         cell: figures.cell,
-        value: certified.then(|| green(l1)),
+        value: certified.then(|| value(l1)),
         n_starts: figures.n_starts,
         n_distinct: figures.n_distinct,
     };
     StrainOutcome {
         status: limit.status,
-        value: solved.then(|| green(l1)),
+        value: solved.then(|| value(l1)),
         first: None,
-        bound: figures.bound.map(|(l1, _)| green(l1)),
+        bound: figures.bound.map(|(l1, _)| value(l1)),
         strain: if solved { e } else { query.held },
         ranges: Vec::new(),
         state: if solved { state } else { model.start.clone() },

@@ -8,7 +8,7 @@
 use super::{
     CellTrend, ExactFigures, LimitOutcome,
     climb::{ROUNDS, Solve, climb, own_image_force, shaken_from, tiled},
-    overlap::{Overlapping, beyond_repair},
+    overlap::{self, Overlapping, beyond_repair},
     pull::{Family, Strained},
 };
 use crate::{
@@ -22,6 +22,7 @@ use crate::{
         sqp::{SqpOptions, maximize},
     },
     state::State,
+    symmetry::{Image, Operation, between, operations, same_direction},
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -73,6 +74,8 @@ pub struct ExactParameters {
     nearly: f64,
     nearly_tries: u64,
     nearly_shake: f64,
+    slight_overlap: f64,
+    freeing_shakes: [f64; overlap::STARTS],
 }
 
 impl ExactOptions {
@@ -99,6 +102,8 @@ impl ExactOptions {
             nearly: NEARLY,
             nearly_tries: NEARLY_TRIES,
             nearly_shake: NEARLY_SHAKE,
+            slight_overlap: overlap::SLIGHT,
+            freeing_shakes: overlap::SHAKES,
         }
     }
 }
@@ -153,20 +158,23 @@ pub struct ExactMethod<'a> {
     pub(super) link: LinkBound,
     /// Found where a limit is not reached.
     image: OnceLock<ImageBound>,
+    /// Symmetries of the design that keep the first cell.
+    operations: Vec<Operation>,
     /// Where no search can begin.
     pub(super) overlapping: Option<Overlapping>,
 }
 
 impl<'a> ExactMethod<'a> {
     /// Prepares the bounds. `models` are the same design compiled for cells of growing size: the first is solved, the
-    /// others where it asks for more (see [`Self::limits`]). Panics if there is none.
-    pub fn new(models: &'a [Model], options: ExactOptions) -> Self {
+    /// others where it asks for more (see [`Self::limits`]). After `cancel` limits come back as interrupted. Panics if there is none.
+    pub fn new(models: &'a [Model], options: ExactOptions, cancel: &AtomicBool) -> Self {
         let chain = ChainBound::new(&models[0]);
         // A larger cell's program is convex and symmetric under the shifts of the design's own cell: the mean of a solution over
         // them is one too, so that the own cell has the same bound.
         let link = LinkBound::new(&models[0].primitive(), &chain);
-        let overlapping = beyond_repair(&models[0], options.seed);
-        ExactMethod { models, options, chain, link, image: OnceLock::new(), overlapping }
+        let overlapping = beyond_repair(&models[0], options.seed, cancel);
+        let operations = operations(&models[0]);
+        ExactMethod { models, options, chain, link, image: OnceLock::new(), operations, overlapping }
     }
 
     /// The limits along one direction, in the order of `l2`. Solved outwards from l2 = 0, each from its neighbour's state.
@@ -222,6 +230,9 @@ impl<'a> ExactMethod<'a> {
             outcome.note = (!note.is_empty()).then(|| note.to_owned());
             (outcome, None)
         };
+        if cancel.load(Ordering::Relaxed) {
+            return ended(Status::Interrupted, "");
+        }
         if let (Some(overlapping), Bound::Unbounded | Bound::Finite { .. }) = (&self.overlapping, &bound) {
             return ended(Status::InfeasibleStart, &overlapping.words());
         }
@@ -235,6 +246,7 @@ impl<'a> ExactMethod<'a> {
         let (rungs, rung_runs, rung_iterations) = self.rungs(direction_deg, cancel);
         starts.extend(rungs);
         starts.extend(self.fresh(0, 0..fresh));
+        starts.extend(self.of_images(direction_deg, 0..fresh));
         let mut first = self.search(0, direction_deg, l2, starts, (most, across), cancel);
         (first.runs, first.iterations) = (first.runs + rung_runs, first.iterations + rung_iterations);
         self.widths(&mut first, direction_deg, l2, (most, across), cancel);
@@ -501,6 +513,26 @@ impl<'a> ExactMethod<'a> {
         }
         let note = above_bound.then(|| format!("l1 = {l1} lies above its proven bound {most}: one of them is wrong"));
         LimitOutcome { status, state: best.x.state, gradient, residual, iterations, runs, note, exact: Some(figures) }
+    }
+
+    /// Starts of the first cell that stand for those of the directions that are images of this one: the images of the same shaken
+    /// states. So a limit is searched from as many states as if each direction of its orbit were solved by itself.
+    fn of_images(&self, direction_deg: f64, starts: Range<usize>) -> Vec<Strained> {
+        let model = &self.models[0];
+        let mut seen = vec![direction_deg.rem_euclid(180.0)];
+        let mut out = Vec::new();
+        for operation in &self.operations {
+            let to_deg = operation.direction_deg(direction_deg);
+            if seen.iter().any(|&known| same_direction(known, to_deg)) {
+                continue;
+            }
+            seen.push(to_deg);
+            let back = between(&self.operations, to_deg, direction_deg).next();
+            if let Some(image) = back.and_then(|operation| Image::new(operation, model, model)) {
+                out.extend(self.fresh(0, starts.clone()).map(|start| Strained::start(image.state(&start.state))));
+            }
+        }
+        out
     }
 
     /// Starts of a cell: the design's state, every element moved and turned at random, but no circle across another.

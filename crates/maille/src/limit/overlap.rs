@@ -18,14 +18,14 @@ use crate::{
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// An overlap below this, in reference radii, is left to the search of a limit, which starts from such states.
-const SLIGHT: f64 = 1e-6;
+pub(super) const SLIGHT: f64 = 1e-6;
 /// Starts of each of the two programs.
-const STARTS: usize = 4;
+pub(super) const STARTS: usize = 4;
 /// Amplitudes of the shaken ones, in reference radii and radians; the first is the start itself.
-const SHAKES: [f64; STARTS] = [0.0, 0.03, 0.1, 0.3];
+pub(super) const SHAKES: [f64; STARTS] = [0.0, 0.03, 0.1, 0.3];
 
 /// A start that overlaps, and no state without overlap was found.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,9 +48,9 @@ impl Overlapping {
     }
 }
 
-/// Looks for a state of the model's links without overlap, its lattice free; `None` where there is one, or the start is one.
-pub(super) fn beyond_repair(model: &Model, seed: u64) -> Option<Overlapping> {
-    let cancel = AtomicBool::new(false);
+/// Looks for a state of the model's links without overlap, its lattice free; `None` where there is one, or the start is one, and
+/// after `cancel`.
+pub(super) fn beyond_repair(model: &Model, seed: u64, cancel: &AtomicBool) -> Option<Overlapping> {
     let gap = |state: &crate::state::State| topology::smallest_gap(model, state).map_or(f64::INFINITY, |(gap, _)| gap);
     let mut widest = gap(&model.start);
     if widest >= -SLIGHT {
@@ -66,7 +66,10 @@ pub(super) fn beyond_repair(model: &Model, seed: u64) -> Option<Overlapping> {
             let mut p = vec![0.0; pull.parameters.len()];
             p[0] = first_parameter(model, what, &state);
             let program = SheetProgram::new(model, &pull);
-            let end = maximize(&program, program.posed(state, p), Vec::new(), &options, &cancel);
+            let end = maximize(&program, program.posed(state, p), Vec::new(), &options, cancel);
+            if cancel.load(Ordering::Relaxed) {
+                return None;
+            }
             starts += 1;
             if !topology::links_kept(model, &end.point.state) {
                 continue;
