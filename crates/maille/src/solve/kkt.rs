@@ -3,14 +3,14 @@
 //! Rows can be dependent and elements can rattle, so the equations are solved in the least-squares sense, minimum norm.
 
 use super::{
-    certificate::{BAND, Certificate, GAP_TOLERANCE, certify, labelled, matched, measure_curvature},
+    certificate::{BAND, Certificate, GAP_TOLERANCE, RESIDUAL_TOLERANCE, certify, labelled, matched, measure_curvature},
     rows::{Derivatives, Loads, Multiplier, Row, lagrangian_hessian, violation},
     saddle,
     sqp::{Program, SqpEnd, elastic_program, stiff_where_loaded},
 };
 
-/// The value may fall by this much in that step.
-const MOST_LOSS: f64 = 1e-10;
+/// The value may fall by this much where overlaps are cleared: what a certificate's complementarity leaves open.
+const MOST_LOSS: f64 = RESIDUAL_TOLERANCE;
 /// Shares of the largest multiplier above which a row counts as loaded: with the first, chains that are stretched side by
 /// side all count; with the second, what only touches does not.
 const LOADED: [f64; 2] = [1e-5, 1e-3];
