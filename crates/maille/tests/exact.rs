@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{design, model};
+use common::{design, map, model};
 use maille::{
     bound::ChainBound,
     characterize::{Finished, Method, characterize, tasks},
@@ -14,19 +14,6 @@ use maille::{
 use maille_geometry::{Circle, Vec3, linking_number};
 use nalgebra::{Quaternion, Unit, UnitQuaternion};
 use std::sync::{Mutex, atomic::AtomicBool};
-
-fn map(models: &[Model], directions: &[f64], l2: &[f64], options: &ExactOptions) -> Vec<Finished> {
-    let out = Mutex::new(Vec::new());
-    let method = Method::Exact(options.clone());
-    characterize(models, None, &method, directions, l2, &|_| true, &AtomicBool::new(false), &|row| {
-        out.lock().unwrap().push(row)
-    });
-    let order = tasks(directions, l2);
-    let mut out: Vec<Finished> = out.into_inner().unwrap();
-    out.sort_by_key(|f| order.iter().position(|t| (t.direction_deg, t.l2) == (f.row.direction_deg, f.row.l2)));
-    assert_eq!(out.len(), order.len());
-    out
-}
 
 fn certified(row: &LimitRow) -> bool {
     matches!(row.status, Status::Global | Status::Local)

@@ -2,9 +2,9 @@
 
 mod common;
 
-use common::{design, model, shaken};
+use common::{design, map, model, shaken};
 use maille::{
-    characterize::{CellChoice, Finished, Method, chains, characterize, tasks},
+    characterize::{CellChoice, Finished, Method, chains},
     design::Design,
     lattice::Cell,
     limit::exact::ExactOptions,
@@ -205,19 +205,6 @@ fn images_of_random_states_keep_all_distances() {
     }
 }
 
-fn map(models: &[Model], directions: &[f64], l2: &[f64], options: &ExactOptions) -> Vec<Finished> {
-    let out = Mutex::new(Vec::new());
-    let method = Method::Exact(options.clone());
-    characterize(models, None, &method, directions, l2, &|_| true, &AtomicBool::new(false), &|row| {
-        out.lock().unwrap().push(row)
-    });
-    let order = tasks(directions, l2);
-    let mut out: Vec<Finished> = out.into_inner().unwrap();
-    out.sort_by_key(|f| order.iter().position(|t| (t.direction_deg, t.l2) == (f.row.direction_deg, f.row.l2)));
-    assert_eq!(out.len(), order.len());
-    out
-}
-
 /// A recorded state as poses of the model of its row.
 fn state_of(found: &Finished, design: &Design) -> (Model, State) {
     let model = in_cell(design, &found.row.cell);
@@ -320,6 +307,15 @@ fn an_image_alone_is_that_of_a_map() {
         assert_eq!((found.row.l1, found.row.status), (other.row.l1, other.row.status));
         assert_eq!(found.state, other.state);
     }
+}
+
+/// A limit of an orbit is sought from the starts of all its directions: 172.5° of design 2, an image of 7.5°, has starts that go
+/// further than those of 7.5° itself (0.580927).
+#[test]
+fn an_orbit_has_the_starts_of_all_its_directions() {
+    let found = map(&[model("2", 0.1)], &[7.5, 172.5], &[-0.25], &ExactOptions::default());
+    let l1 = [0, 1].map(|k: usize| found[k].row.l1.unwrap());
+    assert!(l1[0] > 0.617303 && (l1[0] - l1[1]).abs() < 1e-12, "{l1:?}");
 }
 
 /// A compression of 1.1 in a square cell is that of the other axis; and what is free is free to both sides on a mirror.

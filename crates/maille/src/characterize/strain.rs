@@ -100,7 +100,8 @@ impl StrainQuestion {
         let (operations, chains) = symmetric_chains(&models[0], &method, &[pull.direction_deg]);
         let solved_deg = chains[0].representative_deg;
         let mut limit = None;
-        ExactMethod::new(models, options, cancel).limits(solved_deg, &[pull.l2], cancel, &mut |_, found| limit = Some(found));
+        ExactMethod::new(models, options, cancel)
+            .limits(solved_deg, &[pull.l2], cancel, &mut |_, found| limit = Some(found));
         let mut limit = limit?;
         if solved_deg != pull.direction_deg {
             let image = image::image(&operations, models, &limit, solved_deg, pull.direction_deg);

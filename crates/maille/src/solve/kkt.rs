@@ -3,7 +3,9 @@
 //! Rows can be dependent and elements can rattle, so the equations are solved in the least-squares sense, minimum norm.
 
 use super::{
-    certificate::{BAND, Certificate, GAP_TOLERANCE, RESIDUAL_TOLERANCE, certify, labelled, matched, measure_curvature},
+    certificate::{
+        BAND, Certificate, GAP_TOLERANCE, RESIDUAL_TOLERANCE, certify, labelled, matched, measure_curvature,
+    },
     rows::{Derivatives, Loads, Multiplier, Row, lagrangian_hessian, violation},
     saddle,
     sqp::{Program, SqpEnd, elastic_program, stiff_where_loaded},

@@ -1,10 +1,18 @@
 //! Shared by the tests: designs, and random states near a start.
 #![allow(dead_code, reason = "each test file uses its part")]
 
-use maille::{design::Design, lattice::Cell, model::Model, state::State};
+use maille::{
+    characterize::{Finished, Method, characterize, tasks},
+    design::Design,
+    lattice::Cell,
+    limit::exact::ExactOptions,
+    model::Model,
+    state::State,
+};
 use maille_geometry::Vec3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use std::sync::{Mutex, atomic::AtomicBool};
 
 /// A built-in design with the given minor radius.
 pub fn design(name: &str, minor_radius: f64) -> Design {
@@ -23,4 +31,18 @@ pub fn shaken(model: &Model, size: f64, seed: u64) -> State {
     let mut vector = |size: f64| Vec3::from_fn(|_, _| size * rng.random_range(-1.0..1.0));
     let poses = model.start.poses.iter().map(|p| p.moved(&vector(size), &vector(size))).collect();
     State { poses, a1: model.start.a1 + vector(size), a2: model.start.a2 + vector(size) }
+}
+
+/// The rows of a map by the exact method, in the order of its table.
+pub fn map(models: &[Model], directions: &[f64], l2: &[f64], options: &ExactOptions) -> Vec<Finished> {
+    let out = Mutex::new(Vec::new());
+    let method = Method::Exact(options.clone());
+    characterize(models, None, &method, directions, l2, &|_| true, &AtomicBool::new(false), &|row| {
+        out.lock().unwrap().push(row)
+    });
+    let order = tasks(directions, l2);
+    let mut out: Vec<Finished> = out.into_inner().unwrap();
+    out.sort_by_key(|f| order.iter().position(|t| (t.direction_deg, t.l2) == (f.row.direction_deg, f.row.l2)));
+    assert_eq!(out.len(), order.len());
+    out
 }
