@@ -10,22 +10,26 @@ pub struct Builtin {
 }
 
 macro_rules! embed {
-    ($($name:literal),* $(,)?) => {
-        &[$(Builtin { name: $name, toml: include_str!(concat!("../../../designs/", $name, ".toml")) }),*]
+    ($($name:literal),*; $($start:literal),* $(,)?) => {
+        &[
+            $(Builtin { name: $name, toml: include_str!(concat!("../../../designs/", $name, ".toml")) },)*
+            $(Builtin {
+                name: concat!($start, "-chapter6"),
+                toml: include_str!(concat!("../../../designs/chapter6/", $start, ".toml")),
+            },)*
+        ]
     };
 }
 
 const DESIGNS: &[Builtin] = embed![
     "1.1",
-    "1.1t",
     "1.2",
-    "1.2t",
     "1.3",
+    "1.3-small",
     "2",
+    "2-oblong",
     "3.1",
-    "3.1t",
     "3.2",
-    "3.2t",
     "3.3",
     "3.4",
     "4.1",
@@ -39,12 +43,27 @@ const DESIGNS: &[Builtin] = embed![
     "japanese-6-in-1",
     "japanese-8-in-2",
     "japanese-12-in-2",
-    "kings-mail",
+    "kings-mail";
+    "1.1",
+    "1.2",
+    "2",
+    "3.1",
+    "3.2",
+    "3.4",
+    "4.1",
+    "4.3",
+    "5.2",
 ];
 
-/// All built-in designs: those of the thesis, then weaves with a name.
+/// All built-in designs: those of the thesis, weaves with a name, and closer starts of chapter 6.
 pub fn builtin_designs() -> &'static [Builtin] {
     DESIGNS
+}
+
+/// The start of chapter 6 of a design of the thesis: `1.1-chapter6` where there is one, or the design itself.
+pub fn chapter6(name: &str) -> Option<Builtin> {
+    let start = DESIGNS.iter().find(|d| d.name.strip_suffix("-chapter6") == Some(name));
+    start.or_else(|| DESIGNS.iter().find(|d| d.name == name)).copied()
 }
 
 /// The text of a built-in design file.

@@ -20,7 +20,7 @@ pub mod study;
 pub mod table;
 pub mod weave;
 
-pub use builtin::{Builtin, builtin, builtin_designs, nearest_builtin};
+pub use builtin::{Builtin, builtin, builtin_designs, chapter6, nearest_builtin};
 pub use design_toml::{
     DESIGN_JSON_SCHEMA, DesignError, DesignProblem, DesignSource, ListedProblem, read_design, write_design,
 };

@@ -40,7 +40,7 @@ fn medians() {
         times.get(times.len() / 2).copied().unwrap_or(f64::NAN)
     };
     let mut joint = Vec::new();
-    for (name, cell) in [("1.1", "1x1"), ("2", "1x1"), ("3.1", "1x1"), ("1.1", "2x2"), ("1.1", "3x3")] {
+    for (name, cell) in [("1.1", "1x1"), ("2-oblong", "1x1"), ("3.1", "1x1"), ("1.1", "2x2"), ("1.1", "3x3")] {
         let models = [model(name, cell)];
         let starts = if cell == "1x1" { ExactOptions::default().starts } else { 1 };
         let method =
@@ -108,7 +108,7 @@ fn scaling() {
 }
 
 /// Small cells with continuation in l2: 2 to 4 elements.
-#[divan::bench(args = ["1.1", "2", "3.1"], sample_count = 5, sample_size = 1)]
+#[divan::bench(args = ["1.1", "2-oblong", "3.1"], sample_count = 5, sample_size = 1)]
 fn exact_map(bencher: Bencher<'_, '_>, name: &str) {
     let models = [model(name, "1x1")];
     bencher.counter(ItemsCount::new(24 * L2.len())).bench_local(|| {
@@ -142,7 +142,7 @@ fn one_limit(bencher: Bencher<'_, '_>, what: &str) {
 }
 
 /// The energy method on the same small cells.
-#[divan::bench(args = ["1.1", "2", "3.1"], sample_count = 3, sample_size = 1)]
+#[divan::bench(args = ["1.1", "2-oblong", "3.1"], sample_count = 3, sample_size = 1)]
 fn energy_limit(bencher: Bencher<'_, '_>, name: &str) {
     let model = model(name, "1x1");
     bencher.counter(ItemsCount::new(1usize)).bench_local(|| {

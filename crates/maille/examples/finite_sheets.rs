@@ -18,7 +18,7 @@ use std::{fmt::Write as _, sync::atomic::AtomicBool, time::Instant};
 fn main() {
     let cancel = AtomicBool::new(false);
     let mut table = String::from("design,sheet,elements,end,l1,smallest_gap,links_ok,iterations\n");
-    for (name, most, sizes) in [("1.1", 0.5, &[2, 4, 6, 8][..]), ("2", 1.0, &[2, 4, 6])] {
+    for (name, most, sizes) in [("1.1", 0.5, &[2, 4, 6, 8][..]), ("2-oblong", 1.0, &[2, 4, 6])] {
         let text = maille_io::builtin(name).expect("a built-in design");
         let design = maille_io::read_design(name, text).expect("built-in designs are valid").with_minor_radius(0.1);
         for &n in sizes {

@@ -125,7 +125,7 @@ fn descent() {
         "pull               minimiser         iterations  wall s  ended         |gradient|  energy      least curvature"
     );
     let options = EnergyOptions::default();
-    let within = [("1.1", 0.0, 0.3), ("2", 90.0, 0.4), ("3.1", 30.0, 0.4)];
+    let within = [("1.1", 0.0, 0.3), ("2-oblong", 90.0, 0.4), ("3.1", 30.0, 0.4)];
     let missed = [("1.1", 0.0, 0.45), ("1.1", 45.0, 0.78), ("3.1", 30.0, 0.57)];
     for (name, direction, l1) in within.into_iter().chain(missed) {
         let model = Model::compile(&design(name), Cell::PRIMITIVE).expect("it compiles");

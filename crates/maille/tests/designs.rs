@@ -11,11 +11,13 @@ use maille::{
 use std::sync::atomic::AtomicBool;
 
 /// Name, interlocking neighbours of each element of the cell, smallest gaps at r = 0.1 and 0.05 (negative: overlap).
-const DESIGNS: [(&str, &[usize], [f64; 2]); 17] = [
+const DESIGNS: [(&str, &[usize], [f64; 2]); 24] = [
     ("1.1", &[4, 2, 2], [0.1536, 0.2536]),
     ("1.2", &[4, 2, 2], [0.05, 0.15]),
-    ("1.3", &[4, 2, 2], [0.0409, 0.1409]),
-    ("2", &[4, 4], [0.1, 0.2]),
+    ("1.3", &[4, 2, 2], [0.0832, 0.1832]),
+    ("1.3-small", &[4, 2, 2], [0.0409, 0.1409]),
+    ("2", &[4, 4], [0.0178, 0.1178]),
+    ("2-oblong", &[4, 4], [0.1, 0.2]),
     ("3.1", &[6, 2, 2, 2], [0.05, 0.15]),
     ("3.2", &[6, 2, 2, 2], [0.05, 0.15]),
     ("3.3", &[4, 4, 4, 2, 2, 2, 2, 2, 2], [0.05, 0.15]),
@@ -25,10 +27,15 @@ const DESIGNS: [(&str, &[usize], [f64; 2]); 17] = [
     ("4.3", &[4, 2, 2], [0.2, 0.3]),
     ("5.1", &[8, 8, 4, 4, 4, 4], [0.04, 0.14]),
     ("5.2", &[12, 12, 4, 4, 4, 4, 4, 4], [0.04, 0.14]),
-    ("1.1t", &[4, 2, 2], [-0.143, -0.043]),
-    ("1.2t", &[4, 2, 2], [-0.12, -0.02]),
-    ("3.1t", &[6, 2, 2, 2], [-0.16, -0.06]),
-    ("3.2t", &[6, 2, 2, 2], [-0.12, -0.02]),
+    ("1.1-chapter6", &[4, 2, 2], [-0.1576, -0.0576]),
+    ("1.2-chapter6", &[4, 2, 2], [-0.14, -0.04]),
+    ("2-chapter6", &[4, 4], [-0.18, -0.08]),
+    ("3.1-chapter6", &[6, 2, 2, 2], [-0.17, -0.07]),
+    ("3.2-chapter6", &[6, 2, 2, 2], [-0.14, -0.04]),
+    ("3.4-chapter6", &[6, 2, 2, 2], [-0.1, 0.0]),
+    ("4.1-chapter6", &[4, 4], [-0.1777, -0.0777]),
+    ("4.3-chapter6", &[4, 2, 2], [-0.11, -0.01]),
+    ("5.2-chapter6", &[12, 12, 4, 4, 4, 4, 4, 4], [-0.1028, -0.0028]),
 ];
 
 #[test]
@@ -49,7 +56,7 @@ fn neighbours_and_gaps_are_those_of_the_table() {
 /// One limit of each along 0°, with a coarse step: the method runs and ends with a limit. `closed` are exact stretches.
 fn the_energy_method_runs_every_design(r: f64, closed: &[(&str, f64)]) {
     let coarse = EnergyOptions { tau: 0.01, alpha: 1e4, l1_step: 0.3, l1_resolution: 0.02, ..Default::default() };
-    for (name, ..) in DESIGNS {
+    for (name, ..) in DESIGNS.into_iter().filter(|design| design.0 != "5.2-chapter6") {
         let model = model(name, r);
         let cancel = AtomicBool::new(false);
         let doubled = name.starts_with('5');
@@ -77,16 +84,40 @@ fn the_energy_method_runs_every_design(r: f64, closed: &[(&str, f64)]) {
 /// Chains of two flat rings and a standing one bind in most; 5.x are limits of the exact method.
 #[test]
 fn the_energy_method_runs_every_design_at_a_tenth() {
-    let closed =
-        [("1.1", 1.44), ("1.2", 1.04), ("1.1t", 3.6 / 2.08), ("1.2t", 2.6 / 2.08), ("3.1", 1.44), ("3.2", 1.04)];
-    let more = [("3.1t", 3.6 / 2.08), ("3.2t", 2.6 / 2.08), ("3.3", 1.44), ("5.1", 1.324047), ("5.2", 1.232733)];
+    let closed = [
+        ("1.1", 1.44),
+        ("1.2", 1.04),
+        ("1.1-chapter6", 3.6 / 2.06),
+        ("1.2-chapter6", 2.6 / 2.06),
+        ("3.1", 1.44),
+        ("3.2", 1.04),
+    ];
+    let more = [
+        ("3.1-chapter6", 3.6 / 2.06),
+        ("3.2-chapter6", 2.6 / 2.06),
+        ("3.3", 1.44),
+        ("5.1", 1.324047),
+        ("5.2", 1.232733),
+    ];
     the_energy_method_runs_every_design(0.1, &[&closed[..], &more[..]].concat());
 }
 
 #[test]
 fn the_energy_method_runs_every_design_at_a_twentieth() {
-    let closed =
-        [("1.1", 1.52), ("1.2", 1.12), ("1.1t", 3.8 / 2.08), ("1.2t", 2.8 / 2.08), ("3.1", 1.52), ("3.2", 1.12)];
-    let more = [("3.1t", 3.8 / 2.08), ("3.2t", 2.8 / 2.08), ("3.3", 1.52), ("5.1", 1.405348), ("5.2", 1.308428)];
+    let closed = [
+        ("1.1", 1.52),
+        ("1.2", 1.12),
+        ("1.1-chapter6", 3.8 / 2.06),
+        ("1.2-chapter6", 2.8 / 2.06),
+        ("3.1", 1.52),
+        ("3.2", 1.12),
+    ];
+    let more = [
+        ("3.1-chapter6", 3.8 / 2.06),
+        ("3.2-chapter6", 2.8 / 2.06),
+        ("3.3", 1.52),
+        ("5.1", 1.405348),
+        ("5.2", 1.308428),
+    ];
     the_energy_method_runs_every_design(0.05, &[&closed[..], &more[..]].concat());
 }

@@ -40,7 +40,7 @@ fn closed_forms() {
 /// Rings of one wire: the gap that can be opened is twice what the wire can grow by. Seed and scale change nothing.
 #[test]
 fn the_widest_gap_is_what_the_thickest_wire_fills() {
-    for name in ["1.1", "2", "european-4-in-1"] {
+    for name in ["1.1", "2-oblong", "european-4-in-1"] {
         for lattice_free in [true, false] {
             let design = design(name);
             let options = ExtremeOptions { lattice_free, ..ExtremeOptions::default() };
@@ -79,7 +79,7 @@ fn a_bisection_finds_no_thicker_wire() {
 /// The state as a design file is the same sheet.
 #[test]
 fn a_state_is_a_design() {
-    for name in ["european-4-in-1", "1.3"] {
+    for name in ["european-4-in-1", "1.3-small"] {
         let design = design(name);
         let (model, found) =
             solve(&design, Extreme::WidestGap, &ExtremeOptions { starts: 2, ..ExtremeOptions::default() });
@@ -93,7 +93,7 @@ fn a_state_is_a_design() {
 
 #[test]
 fn threads_change_nothing() {
-    let design = design("2");
+    let design = design("2-oblong");
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| solve(&design, Extreme::ThickestWire, &ExtremeOptions::default()).1)

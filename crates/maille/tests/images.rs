@@ -8,7 +8,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 fn gyroscopes(minor_radius: f64) -> Model {
-    common::model("1.3", minor_radius)
+    common::model("1.3-small", minor_radius)
 }
 
 /// Core distance by dense sampling: never below the true one.

@@ -15,7 +15,7 @@ use maille::{
 
 /// The gyroscope of 1.3 with one neighbour, no lattice.
 fn gyroscope_and(neighbour: ElementSpec) -> Model {
-    let mut design: Design = design("1.3", 0.1);
+    let mut design: Design = design("1.3-small", 0.1);
     design.elements.truncate(1);
     design.elements.push(neighbour);
     Model::compile_sheet(&design, Cell::PRIMITIVE).unwrap()

@@ -88,7 +88,7 @@ fn a_finite_sheet_has_no_images() {
 
 #[test]
 fn loads_match_finite_differences() {
-    let model = sheet("1.3", "2x1");
+    let model = sheet("1.3-small", "2x1");
     let contacts = ContactOptions {
         law: ContactLaw::Barrier,
         alpha: 30.0,

@@ -62,7 +62,7 @@ fn turned(design: &Design, angle_deg: f64, basis: [[f64; 2]; 2]) -> Design {
 /// Orders of the point groups, ±1 across the plane counted, as found by hand.
 #[test]
 fn point_groups_of_designs() {
-    for (name, order) in [("1.1", 16), ("3.1", 24), ("european-4-in-1", 8), ("2", 8)] {
+    for (name, order) in [("1.1", 16), ("3.1", 24), ("european-4-in-1", 8), ("2-oblong", 8)] {
         assert_eq!(
             operations(&Model::compile(&design_as_written(name), Cell::PRIMITIVE).unwrap()).len(),
             order,
@@ -120,7 +120,7 @@ fn orbits_are_those_of_the_point_group() {
 /// Neither the basis nor the frame matters; the orbits turn with the sheet.
 #[test]
 fn symmetries_are_invariant() {
-    for name in ["1.1", "3.1", "4.3", "2"] {
+    for name in ["1.1", "3.1", "4.3", "2-oblong"] {
         let base = design(name, 0.05);
         let order = operations(&in_cell(&base, "1x1")).len();
         assert!(order >= 4, "{name}: {order}");
@@ -153,9 +153,14 @@ fn symmetries_are_invariant() {
 /// The images of any state, in any cell, keep the distances of all pairs of rings and its deformation.
 #[test]
 fn images_of_random_states_keep_all_distances() {
-    for (name, cell) in
-        [("1.1", "2x1"), ("3.1", "2x1"), ("4.3", "1x1"), ("2", "1,1;-1,1"), ("european-4-in-1", "2x2"), ("5.1", "1x1")]
-    {
+    for (name, cell) in [
+        ("1.1", "2x1"),
+        ("3.1", "2x1"),
+        ("4.3", "1x1"),
+        ("2-oblong", "1,1;-1,1"),
+        ("european-4-in-1", "2x2"),
+        ("5.1", "1x1"),
+    ] {
         let design = design_as_written(name);
         let from = in_cell(&design, cell);
         let state = shaken(&from, 0.2, 5);
@@ -225,7 +230,7 @@ fn images_of_limits_are_limits() {
     let cases = [
         ("1.1", -0.25, true),
         ("3.1", -0.125, true),
-        ("2", 0.0, false),
+        ("2-oblong", 0.0, false),
         ("5.1", 0.0, false),
         ("european-4-in-1", -0.15, true),
     ];
@@ -313,7 +318,7 @@ fn an_image_alone_is_that_of_a_map() {
 /// further than those of 7.5° itself (0.580927).
 #[test]
 fn an_orbit_has_the_starts_of_all_its_directions() {
-    let found = map(&[model("2", 0.1)], &[7.5, 172.5], &[-0.25], &ExactOptions::default());
+    let found = map(&[model("2-oblong", 0.1)], &[7.5, 172.5], &[-0.25], &ExactOptions::default());
     let l1 = [0, 1].map(|k: usize| found[k].row.l1.unwrap());
     assert!(l1[0] > 0.617303 && (l1[0] - l1[1]).abs() < 1e-12, "{l1:?}");
 }
