@@ -8,7 +8,7 @@ mod statements;
 
 pub use figures::{Figure, SheetError, figures, sheet_png};
 pub use page::{Sheet, page};
-pub use statements::{Finding, SCALED, Verdict, statements};
+pub use statements::{Finding, MINIMA, MINIMA_DEG, NOTCHED, Part, SCALED, Verdict, statements};
 
 use crate::record::NamedRecord;
 use maille::{
@@ -35,6 +35,8 @@ pub struct Map {
     pub corners: bool,
     /// Another cell was asked for than the design's own.
     pub rearranged: bool,
+    /// Of the directions beside the minima of a curve alone.
+    pub minima: bool,
     /// Directions along which neighbours interlock, degrees in [0, 180), sorted.
     pub interlocking_deg: Vec<f64>,
     /// The rows.
@@ -53,6 +55,7 @@ impl Map {
             method: run.parameters["method"].as_str().unwrap_or_default().to_owned(),
             corners: run.parameters["options"]["protocol"] == "corners",
             rearranged: first_cell != "1x1",
+            minima: named.name.ends_with(MINIMA),
             interlocking_deg: interlocking(&Model::compile(&run.design, Cell::PRIMITIVE)?),
             rows: named.record.rows.clone(),
         })
@@ -60,14 +63,15 @@ impl Map {
 
     /// A design of the thesis in its own cell, and no bias of the corners.
     fn is_plain(&self) -> bool {
-        !self.rearranged && !self.corners && !self.design.ends_with(SCALED)
+        !self.rearranged && !self.corners && !self.minima && !self.design.ends_with(SCALED)
     }
 
     /// `1.1, r = R/10, exact`.
     pub fn label(&self) -> String {
         let cell = if self.rearranged { ", rectangular cell" } else { "" };
         let corners = if self.corners { ", corners" } else { "" };
-        format!("{}, {}, {}{corners}{cell}", self.design, ratio_label(self.ratio), self.method)
+        let minima = if self.minima { ", beside the minima" } else { "" };
+        format!("{}, {}, {}{corners}{cell}{minima}", self.design, ratio_label(self.ratio), self.method)
     }
 
     /// The l2 of the rows, from least to largest.
@@ -87,6 +91,21 @@ impl Map {
         let turn: Option<Vec<_>> =
             self.rows.iter().filter(|row| row.l2 == l2).map(|row| Some((row.direction_deg, row.l1?))).collect();
         turn.filter(|turn| turn.len() > 2)
+    }
+
+    /// λ1 − 1 of a limit, λ1 being the larger eigenvalue of C = FᵀF.
+    fn lambda1(&self, direction_deg: f64, l2: f64) -> Option<f64> {
+        let row = self.rows.iter().find(|row| row.direction_deg == direction_deg && row.l2 == l2)?;
+        row.lambda1.map(|lambda1| lambda1 - 1.0)
+    }
+
+    /// Largest less smallest λ1 of all directions at one l2; nothing unless every direction has a limit.
+    fn spread(&self, l2: f64) -> Option<f64> {
+        let of_l2: Option<Vec<f64>> = self.rows.iter().filter(|row| row.l2 == l2).map(|row| row.lambda1).collect();
+        let all = of_l2.filter(|all| all.len() > 2)?;
+        let (low, high) =
+            all.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
+        Some(high - low)
     }
 
     /// Limits that differ by less are the same.
@@ -170,13 +189,6 @@ fn extreme(turn: &[(f64, f64)], sign: f64, tie: f64) -> Vec<f64> {
     degrees.sort_by(f64::total_cmp);
     degrees.dedup();
     degrees
-}
-
-/// Largest less smallest λ1 − 1 of a turn.
-fn spread(turn: &[(f64, f64)]) -> f64 {
-    let of = |(_, l1): &(f64, f64)| (1.0 + l1).powi(2);
-    let max = turn.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
-    max - turn.iter().map(of).fold(f64::INFINITY, f64::min)
 }
 
 /// Angle between neighbouring directions of a map.

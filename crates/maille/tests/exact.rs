@@ -5,7 +5,7 @@ mod common;
 use common::{design, map, model};
 use maille::{
     bound::ChainBound,
-    characterize::{Finished, Method, characterize, tasks},
+    characterize::Finished,
     lattice::Cell,
     limit::exact::ExactOptions,
     model::Model,
@@ -13,7 +13,6 @@ use maille::{
 };
 use maille_geometry::{Circle, Vec3, linking_number};
 use nalgebra::{Quaternion, Unit, UnitQuaternion};
-use std::sync::{Mutex, atomic::AtomicBool};
 
 fn certified(row: &LimitRow) -> bool {
     matches!(row.status, Status::Global | Status::Local)

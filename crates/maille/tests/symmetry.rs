@@ -15,7 +15,6 @@ use maille::{
 };
 use maille_geometry::{Vec3, circle_distance_minima};
 use nalgebra::{Matrix2, Quaternion, UnitQuaternion};
-use std::sync::{Mutex, atomic::AtomicBool};
 
 fn in_cell(design: &Design, cell: &str) -> Model {
     Model::compile(design, cell.parse().unwrap()).unwrap()

@@ -11,7 +11,7 @@ use maille::record::LimitRow;
 /// What is compared between directions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Spread {
-    /// (1 + l1)² − 1, the λ1 − 1 of the thesis.
+    /// λ1 − 1 with λ1 the larger eigenvalue of C = FᵀF, as in the thesis.
     #[default]
     Lambda1,
     /// l1.
@@ -21,7 +21,7 @@ pub enum Spread {
 impl Spread {
     fn of(self, row: &LimitRow) -> Option<f64> {
         match self {
-            Spread::Lambda1 => row.l1.map(|l1| (1.0 + l1).powi(2) - 1.0),
+            Spread::Lambda1 => row.lambda1.map(|lambda1| lambda1 - 1.0),
             Spread::L1 => row.l1,
         }
     }
@@ -55,7 +55,7 @@ pub fn difference_svg(records: &[NamedRecord], spread: Spread, layout: Layout) -
         legend.push(hollow_note("some directions have no limit"));
     }
     if spread == Spread::Lambda1 {
-        caption.push("λ₁ = (1 + l₁)² is the eigenvalue of C = FᵀF along the pull.".into());
+        caption.push("λ₁ is the larger eigenvalue of C = FᵀF; where l₁ < l₂ it is the one across the pull.".into());
     }
     caption.push("0 would be a sheet that locks at the same stretch in every direction that was computed.".into());
     let l2 = l2_values(records.iter().flat_map(|named| &named.record.rows));

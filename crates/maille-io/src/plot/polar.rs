@@ -91,6 +91,8 @@ pub struct PolarPlot {
     pub lateral_free: bool,
     /// Which cell the radius is measured from.
     pub reference: Reference,
+    /// Values that the scale has room for, too: those of a plot that is compared with this one.
+    pub room_for: Vec<f64>,
 }
 
 /// A direction that a plot marks, with its opposite.
@@ -165,6 +167,7 @@ impl PolarPlot {
             lateral_free: lateral_free(rows.iter()),
             ends: ends(rows.iter()),
             reference: Reference::Start,
+            room_for: Vec::new(),
         }
     }
 
@@ -189,6 +192,7 @@ impl PolarPlot {
             lateral_free: lateral_free(records.iter().flat_map(|named| &named.record.rows)),
             ends: ends(records.iter().flat_map(|named| &named.record.rows)),
             reference: Reference::Start,
+            room_for: Vec::new(),
         }
     }
 
@@ -324,7 +328,8 @@ const CENTER: [f64; 2] = [MARGIN + 40.0 + RADIUS, TOP + RADIUS];
 
 /// The plot as SVG.
 pub fn polar_svg(input: &PolarPlot, layout: Layout) -> String {
-    let scale = Scale::new(input.quantity.base(), input.curves.iter().flat_map(Curve::values), 6);
+    let values = input.curves.iter().flat_map(Curve::values).chain(input.room_for.iter().copied());
+    let scale = Scale::new(input.quantity.base(), values, 6);
     let looks = input.looks();
     let frame = Frame {
         title: input.title.clone(),

@@ -26,17 +26,17 @@ pub struct Figure {
 
 /// Designs of each figure of polar plots.
 const POLAR: [(&str, &[&str]); 5] = [
-    ("6.4", &["1.1", "1.1t", "1.2", "1.2t", "1.3"]),
-    ("6.5", &["3.1", "3.1t", "3.2", "3.2t"]),
+    ("6.4", &["1.1", "1.2", "1.3"]),
+    ("6.5", &["3.1", "3.2"]),
     ("6.6", &["3.3", "3.4"]),
     ("6.7", &["4.1", "4.2", "4.3"]),
     ("6.8", &["2", "5.1", "5.2"]),
 ];
 
-/// Designs that are compared in one plot of differences; those with t have the closer spacing.
+/// Designs that are compared in one plot of differences.
 const RADII: [&[&str]; 5] =
     [&["1.1", "1.2", "1.3"], &["3.1", "3.2", "3.3", "3.4"], &["4.1", "4.2", "4.3"], &["2"], &["5.1", "5.2"]];
-const MAJOR: [&[&str]; 4] = [&["1.1", "1.2"], &["1.1t", "1.2t"], &["3.1", "3.2"], &["3.1t", "3.2t"]];
+const MAJOR: [&[&str]; 2] = [&["1.1", "1.2"], &["3.1", "3.2"]];
 
 /// All figures but the pictures of the sheets; `maps` are those of `records`, in their order.
 pub fn figures(records: &[NamedRecord], maps: &[Map]) -> Vec<Figure> {
@@ -69,26 +69,53 @@ pub fn figures(records: &[NamedRecord], maps: &[Map]) -> Vec<Figure> {
     differences("6.10", &RADII, "Largest less smallest limit by minor radius");
     differences("6.11", &MAJOR, "Effect of the major radius");
     for design in ["3.1", "3.2", "3.3"] {
-        let mut chosen = named(&of(&pairs, &[design], |map| map.method == "exact" && (map.ratio - 0.1).abs() < 1e-9));
-        chosen.extend(named(&of(&pairs, &[design], |map| map.corners)));
-        for named in &mut chosen {
-            named.record.rows.retain(|row| row.l2 == 0.0);
-        }
-        chosen.retain(|named| !named.record.rows.is_empty());
-        if chosen.len() > 1 {
-            let corners = chosen.iter().any(|named| named.record.run.parameters["options"]["protocol"] == "corners");
+        arrangements(design, &pairs, &mut out);
+    }
+    out
+}
+
+/// Figure 6.12 of one design, r = R/10: the corner distances of the thesis in the sheared and in the rectangular cell at every l₂, and
+/// both beside the exact limits at l₂ = 0.
+fn arrangements(design: &str, pairs: &[(&NamedRecord, &Map)], out: &mut Vec<Figure>) {
+    for (rearranged, cell) in [(false, "sheared"), (true, "rectangular")] {
+        for named in named(&of(pairs, &[design], |map| map.corners && map.rearranged == rearranged)) {
+            let (run, rows) = (&named.record.run, &named.record.rows);
+            let words = parameter_words(&run.parameters);
+            let mut plot = PolarPlot::from_rows(&run.design, rows, Quantity::Lambda1, &words);
+            plot.room_for = lambda1(pairs, |map| map.design == design && map.corners);
             out.push(Figure {
                 number: "6.12",
-                file: format!("6.12-{design}"),
-                title: format!(
-                    "{design}, sheared and rectangular arrangement at l₂ = 0{}",
-                    if corners { ", exact and with the corners of the cell (energy method, τ = 0.1)" } else { "" }
-                ),
-                svg: polar_svg(&PolarPlot::from_records(&chosen, Quantity::Lambda1), Layout::Below),
+                file: format!("6.12-{design}-corners-{cell}"),
+                title: format!("{design}, corner distances in the {cell} cell (energy method, τ = 0.1)"),
+                svg: polar_svg(&plot, Layout::Below),
             });
         }
     }
-    out
+    let plain = |map: &Map| map.method == "exact" && !map.minima && (map.ratio - 0.1).abs() < 1e-9;
+    let mut chosen = named(&of(pairs, &[design], plain));
+    chosen.extend(named(&of(pairs, &[design], |map| map.corners)));
+    for named in &mut chosen {
+        named.record.rows.retain(|row| row.l2 == 0.0);
+    }
+    chosen.retain(|named| !named.record.rows.is_empty());
+    if chosen.len() > 1 {
+        let corners = chosen.iter().any(|named| named.record.run.parameters["options"]["protocol"] == "corners");
+        out.push(Figure {
+            number: "6.12",
+            file: format!("6.12-{design}"),
+            title: format!(
+                "{design}, sheared and rectangular arrangement at l₂ = 0{}",
+                if corners { ", exact and with the corners of the cell (energy method, τ = 0.1)" } else { "" }
+            ),
+            svg: polar_svg(&PolarPlot::from_records(&chosen, Quantity::Lambda1), Layout::Below),
+        });
+    }
+}
+
+/// λ1 − 1 of all limits of some maps.
+fn lambda1(pairs: &[(&NamedRecord, &Map)], wanted: impl Fn(&Map) -> bool) -> Vec<f64> {
+    let rows = pairs.iter().filter(|(_, map)| wanted(map)).flat_map(|(_, map)| &map.rows);
+    rows.filter_map(|row| Some(row.lambda1? - 1.0)).collect()
 }
 
 /// The records of `designs`, in that order, the thicker ring first.
@@ -113,6 +140,10 @@ fn polar(number: &'static str, named: &NamedRecord, map: &Map, pairs: &[(&NamedR
     let (run, rows) = (&named.record.run, &named.record.rows);
     let mut plot = PolarPlot::from_rows(&run.design, rows, Quantity::Lambda1, &parameter_words(&run.parameters));
     plot.curves.retain(|curve| curve.kind == crate::plot::CurveKind::Limits);
+    // R/10 and R/20 on one scale.
+    plot.room_for = lambda1(pairs, |other| {
+        (&other.design, other.rearranged) == (&map.design, map.rearranged) && !other.corners && other.method == "exact"
+    });
     let checks = |other: &&(&NamedRecord, &Map)| {
         let b = other.1;
         (&b.design, b.ratio, b.rearranged) == (&map.design, map.ratio, map.rearranged)
@@ -160,9 +191,7 @@ fn costs(pairs: &[(&NamedRecord, &Map)], out: &mut Vec<Figure>) {
         }
         chosen.retain(|named| !named.record.rows.is_empty());
         // Of many sheets the curves of all directions hide each other; the table has the means of all.
-        chosen.retain(|named| {
-            ["1.1", "1.1t", "2", "3.1", "3.1t", "5.2"].contains(&named.record.run.design.name.as_str())
-        });
+        chosen.retain(|named| ["1.1", "2", "3.1", "5.2"].contains(&named.record.run.design.name.as_str()));
         if chosen.is_empty() {
             continue;
         }

@@ -1,7 +1,7 @@
 //! The page: one HTML file with everything in it.
 
 use super::{
-    Figure, Finding, Map, Verdict, ratio_label, signed,
+    Figure, Finding, Map, Part, Verdict, ratio_label, signed,
     statements::{RULE, SCALED},
 };
 use base64::{Engine, prelude::BASE64_STANDARD};
@@ -20,6 +20,8 @@ pub struct Sheet {
     pub title: String,
     /// Where it comes from.
     pub source: Source,
+    /// The file that it was given by, where it is not built in.
+    pub given: Option<String>,
     /// Elements and links of a cell.
     pub counts: [usize; 2],
     /// Its picture.
@@ -47,6 +49,7 @@ figure svg{display:block;width:100%;height:auto}
 .sheets img{width:100%;height:auto;display:block}.sheets p{margin:.2rem .3rem;font-size:.92rem}
 table{border-collapse:collapse;font-size:.92rem;width:100%;margin-top:1rem}th,td{padding:.25rem .5rem;text-align:right;border-bottom:1px solid #e6e6e6}
 td{white-space:nowrap}th{vertical-align:bottom}th:first-child,td:first-child{text-align:left}
+.parts{margin:.2rem 0 .4rem;width:auto}.parts td:first-child{white-space:normal}
 details summary{cursor:pointer;color:#15498c}
 @media (max-width:700px){.two{grid-template-columns:1fr}body{padding:.6rem .7rem 3rem}thead{display:none}tbody,tr{display:block}
 tr{display:grid;grid-template-columns:1fr 1fr;gap:0 1rem;border-bottom:1px solid #ddd;padding:.4rem 0}
@@ -84,38 +87,76 @@ pub fn page(words: &str, findings: &[Finding], sheets: &[Sheet], maps: &[Map], f
         "Figure 6.1: steps and time",
         "Means over all directions of a record at l₂ = −0.25 and 0.25, where the sheet can be held there. A step is a \
          quadratic program (exact) or a Newton iteration (energy); a run is one maximisation or minimisation. Times are wall \
-         times of one limit and depend on what else the machine did.",
+         times of one limit and depend on what else the machine did. The thesis shows the time of each step of one pull of each design: \
+         dense designs and l₂ = −0.25 take more and slower steps than l₂ = 0.25, with a spike where the system is perturbed.",
     );
     write_costs(&mut out, maps);
     out += "<h2 id=\"designs\">Figures 6.2 and 6.3: the designs</h2>\n<p class=\"note\">Starting states at r = R/10. \
             \u{201c}Text\u{201d}: the thesis's text fixes topology and proportions. \u{201c}Reconstruction\u{201d}: only the number or the \
-            directions are known, the rest is ours. Names with t: the same with a closer spacing, and starts that overlap.</p>\n";
+            directions are known, the rest is ours. The thesis's own pictures are lost. Many starts overlap, as its own do; a run \
+            begins by pushing the rings apart.</p>\n";
     write_sheets(&mut out, sheets);
-    let polar = "λ₁ − 1 at the limit, against the direction of the pull. Red: interlocking directions, found from the links \
-                 (Figure 6.9). Lines are exact limits; markers, where there are some, are limits of the energy method.";
-    section(&mut out, "6.4", "Figures 6.4 and 6.9: designs 1.1, 1.2, 1.3", polar);
-    section(&mut out, "6.5", "Figures 6.5 and 6.9: designs 3.1, 3.2", polar);
-    section(&mut out, "6.6", "Figures 6.6 and 6.9: designs 3.3, 3.4", polar);
-    section(&mut out, "6.7", "Figures 6.7 and 6.9: designs 4.1, 4.2, 4.3", polar);
-    section(&mut out, "6.8", "Figures 6.8 and 6.9: designs 2, 5.1, 5.2", polar);
+    let polar = "λ₁ − 1 at the limit, against the direction of the pull; both radii of a design on one scale. Red: interlocking \
+                 directions, found from the links (Figure 6.9). Lines are exact limits; markers, where there are some, are limits of \
+                 the energy method.";
+    let shows = |thesis: &str| format!("{polar} The thesis shows {thesis}");
+    section(
+        &mut out,
+        "6.4",
+        "Figures 6.4 and 6.9: designs 1.1, 1.2, 1.3",
+        &shows(
+            "curves with four lobes, least at 0° and 90°, largest at 45° and 135°; the notches at 0° and 90° of 1.2 are blunter at R/20.",
+        ),
+    );
+    section(
+        &mut out,
+        "6.5",
+        "Figures 6.5 and 6.9: designs 3.1, 3.2",
+        &shows(
+            "six lobes, least along the three interlocking directions; in the rectangular cell no peak is favoured. 3.2, with standing rings of half the size, is smaller in every direction.",
+        ),
+    );
+    section(
+        &mut out,
+        "6.6",
+        "Figures 6.6 and 6.9: designs 3.3, 3.4",
+        &shows("six lobes in the rectangular cell, none of them favoured."),
+    );
+    section(
+        &mut out,
+        "6.7",
+        "Figures 6.7 and 6.9: designs 4.1, 4.2, 4.3",
+        &shows("least at 0° and 90°; the notches of 4.3 are blunter at R/20."),
+    );
+    section(
+        &mut out,
+        "6.8",
+        "Figures 6.8 and 6.9: designs 2, 5.1, 5.2",
+        &shows(
+            "design 2 low within 15° of 0° at R/10, where its rings stack, and much less so at R/20; 5.1 and 5.2 as 1.1 and 3.1.",
+        ),
+    );
     section(
         &mut out,
         "6.10",
         "Figure 6.10: effect of the minor radius",
-        "Largest less smallest λ₁ − 1 of all directions.",
+        "Largest less smallest λ₁ − 1 of all directions, against l₂. The thesis shows falling curves, larger at R/20 than at R/10, but for \
+         design 2 at small l₂, where R/10 lies above R/20.",
     );
     section(
         &mut out,
         "6.11",
         "Figure 6.11: effect of the major radius",
-        "The same, of designs whose standing rings differ in their major radius.",
+        "The same, of designs whose standing rings differ in their major radius. The thesis shows larger differences with the \
+         larger radius, which fall with l₂ at roughly the same rate.",
     );
     section(
         &mut out,
         "6.12",
         "Figure 6.12: sheared and rectangular arrangement",
-        "The same sheet in two cells. Exact limits agree; the energy method with the thesis's corner distances favours the \
-         peak at 30° in the sheared cell.",
+        "The same sheet in two cells. The thesis shows the peak at 30° much wider than those at 90° and 150° in the sheared cell, at every \
+         l₂, and leaves the cause open. Exact limits agree; the energy method with the thesis's corner distances favours the peak at 30° in the \
+         sheared cell.",
     );
     write_records(&mut out, maps);
     out += "</body>\n</html>\n";
@@ -160,6 +201,7 @@ fn write_finding(out: &mut String, finding: &Finding) {
         finding.verdict.words(),
         escape(finding.statement)
     );
+    write_parts(out, &finding.parts);
     list(out, &finding.evidence);
     if !finding.exceptions.is_empty() {
         let more = finding.exceptions.len().saturating_sub(LISTED);
@@ -171,6 +213,22 @@ fn write_finding(out: &mut String, finding: &Finding) {
         *out += "</details>\n";
     }
     *out += "</div></div></div>\n";
+}
+
+/// How many cases show it, tie, and show the contrary.
+fn write_parts(out: &mut String, parts: &[Part]) {
+    if parts.is_empty() {
+        return;
+    }
+    *out += "<table class=\"parts\"><thead><tr><th>cases</th><th>shown</th><th>ties</th><th>against</th></tr></thead><tbody>";
+    for Part { what, shown, ties, against } in parts {
+        let _ = write!(out, "<tr><td>{}</td>", escape(what));
+        for (head, count) in [("shown", shown), ("ties", ties), ("against", against)] {
+            let _ = write!(out, "<td data-of=\"{head}\">{count}</td>");
+        }
+        *out += "</tr>";
+    }
+    *out += "</tbody></table>\n";
 }
 
 fn list(out: &mut String, items: &[String]) {
@@ -194,11 +252,12 @@ fn write_sheets(out: &mut String, sheets: &[Sheet]) {
     *out += "<div class=\"sheets\">\n";
     for sheet in sheets {
         let [elements, links] = sheet.counts;
-        let source = match sheet.source {
-            Source::ThesisText => "text",
-            Source::Reconstruction => "reconstruction",
-            Source::Literature => "literature",
-            Source::Own => "own",
+        let source = match (&sheet.given, sheet.source) {
+            (Some(file), _) => format!("given: {}", escape(file)),
+            (None, Source::ThesisText) => "text".into(),
+            (None, Source::Reconstruction) => "reconstruction".into(),
+            (None, Source::Literature) => "literature".into(),
+            (None, Source::Own) => "own".into(),
         };
         let (name, title) = (escape(&sheet.name), escape(&sheet.title));
         let _ = writeln!(
