@@ -3,7 +3,7 @@
 use crate::exit::{self, wrong};
 use maille::{design::Design, error::InvalidInput, lattice::Cell, model::Model};
 pub use maille_io::record::file_name;
-use maille_io::{DesignError, DesignSource, builtin, builtin_designs, nearest_builtin, write_design};
+use maille_io::{DesignError, DesignSource, builtin, builtin_designs, nearest_builtin, study::Variant, write_design};
 use miette::{IntoDiagnostic, Report, Result, WrapErr};
 use serde_json::{Value, json};
 use std::{io::Read, path::Path};
@@ -51,13 +51,10 @@ impl Input {
         Ok(Input { design, source, changed: minor_radius.map(|r| format!("--minor-radius {r}")) })
     }
 
-    /// The same design with another minor radius, and its elements `spacing` times as far apart.
-    pub fn varied(&self, minor_radius: Option<f64>, spacing: Option<f64>) -> Input {
-        let mut design = minor_radius.map_or_else(|| self.design.clone(), |r| self.design.with_minor_radius(r));
-        design = spacing.map_or(design.clone(), |factor| design.spaced(factor));
-        let words = [minor_radius.map(|r| format!("minor_radius = {r}")), spacing.map(|s| format!("spacing = {s}"))];
-        let words: Vec<String> = words.into_iter().flatten().collect();
-        Input { design, source: self.source.clone(), changed: (!words.is_empty()).then(|| words.join(", ")) }
+    /// The same design with the parameters of a study.
+    pub fn varied(&self, variant: &Variant) -> Result<Input> {
+        let design = variant.of(&self.design).map_err(|e| wrong(exit::USAGE, e.problem, e.help))?;
+        Ok(Input { design, source: self.source.clone(), changed: variant.words() })
     }
 
     /// The design file.

@@ -12,7 +12,7 @@ use crate::{
 use maille_io::{
     builtin,
     record::{FolderLock, Map, OpenMap},
-    study::{Study, StudyDesign, Variant},
+    study::{Study, StudyDesign},
     table::{Field, Table},
 };
 use miette::{IntoDiagnostic, Result, WrapErr};
@@ -23,7 +23,7 @@ use std::{
     time::Instant,
 };
 
-/// Limits of many designs, radii and spacings
+/// Limits of many designs, radii, spacings, or any other numbers of a design
 ///
 /// Writes a folder: records/ with one record for each design and its parameters, as `maille characterize` writes
 /// them, and limits.csv with the rows of all. All cores work until the last limit. A run that was stopped goes on where it
@@ -44,6 +44,9 @@ A study:
   design = \"1.1\"                # built in, or a file beside the study
   minor_radius = \"0.04:0.12:0.02\"
   spacing = [0.95, 1]           # of the elements, in that of the design
+  [designs.vary]                # any other number, by its place; * stands for anything
+  \"elements.standing-*.rings.major_radius\" = [0.5, 0.75, 1]
+  \"lattice.a1.x\" = \"2.3:2.6:0.1\"
 
 Exit codes: 0 every limit was found or proved not to be there, 5 the records are written but some limits were not \
 found or some designs could not be used, 130 interrupted.")]
@@ -170,14 +173,14 @@ fn plan(study: &Study, folder: &Path, out: &Path, overwrite: bool) -> Result<Vec
         let file = folder.join(design);
         let design = if builtin(design).is_some() { design.clone() } else { file.display().to_string() };
         let input = Input::read(&design, None)?;
-        for Variant { suffix, minor_radius, spacing } in of_study.variants() {
-            let name = file_name(&input.design.name) + &suffix;
+        for variant in of_study.variants() {
+            let name = file_name(&input.design.name) + &variant.suffix;
             if plan.iter().any(|known| known.name == name) {
                 let help = "name each design and value once";
                 return Err(wrong(exit::USAGE, format!("{name} is in the study twice"), help));
             }
             let map = study.map(Some(out.join("records").join(&name)), overwrite);
-            plan.push(Planned { name, input: input.varied(minor_radius, spacing), map });
+            plan.push(Planned { name, input: input.varied(&variant)?, map });
         }
     }
     Ok(plan)

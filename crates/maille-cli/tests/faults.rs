@@ -111,7 +111,7 @@ fn whatever_is_killed_goes_on_to_the_same_files() {
 
 #[test]
 fn two_runs_do_not_share_a_folder() {
-    let reproduce = "reproduce --quick --designs 1.1 --out out --quiet";
+    let reproduce = "reproduce --quick --only 1.1 --out out --quiet";
     let simulate = "simulate 1.1 --tile 1x1 --gravity 0,0,-1 --floor -3 --out out --quiet";
     for line in COMMANDS.into_iter().chain([reproduce, simulate]) {
         let folder = tempfile::tempdir().unwrap();

@@ -11,7 +11,7 @@ use std::{
 
 fn start(out: &Path) -> Child {
     Command::new(env!("CARGO_BIN_EXE_maille"))
-        .args(["reproduce", "--designs", "1.1", "--quick", "--quiet", "--threads", "2", "--out"])
+        .args(["reproduce", "--only", "1.1", "--quick", "--quiet", "--threads", "2", "--out"])
         .arg(out)
         .stderr(Stdio::inherit())
         .spawn()
@@ -99,4 +99,44 @@ fn killed_runs_go_on_to_the_same_files() {
         page.contains("Statement 9") && page.contains("data:image/png;base64,") && page.matches("<svg").count() > 5
     );
     assert!(fs::read_to_string(killed.join("statements.json")).unwrap().contains("\"holds\""));
+}
+
+/// A folder of one's own coordinates: those are taken, the others are built in, and the page says which.
+#[test]
+fn own_coordinates_take_the_place_of_ours() {
+    let folder = tempfile::tempdir().unwrap();
+    let (own, out) = (folder.path().join("own"), folder.path().join("out"));
+    fs::create_dir(&own).unwrap();
+    let text = maille_io::builtin("1.1").unwrap().replace("name = \"1.1\"", "name = \"mine\"");
+    fs::write(own.join("1.1.toml"), &text).unwrap();
+    let run = |arguments: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_maille"));
+        command.args(["reproduce", "--quick", "--quiet", "--threads", "2", "--designs"]).arg(&own);
+        command.args(arguments).output().unwrap()
+    };
+    let done = run(&["--only", "1.1,1.2", "--out", out.to_str().unwrap()]);
+    assert_eq!(done.status.code(), Some(0), "{}", String::from_utf8_lossy(&done.stderr));
+    let spacing = |name: &str| {
+        let run = text_of(&out.join("records").join(name).join("run.json"));
+        let run: serde_json::Value = serde_json::from_str(&run).unwrap();
+        (run["design"]["name"].clone(), run["design"]["lattice"]["a1"][0].as_f64().unwrap())
+    };
+    assert_eq!(spacing("1.1-R10-exact"), ("1.1".into(), 2.5));
+    assert_eq!(spacing("1.2-R20-exact"), ("1.2".into(), 2.06));
+    let page = text_of(&out.join("index.html"));
+    assert!(page.contains("Given were 1.1; the coordinates of the others are ours."));
+    assert!(page.contains(&format!("given: {}", own.join("1.1.toml").display())));
+    // What is no design of the chapter is refused before anything is solved.
+    fs::write(own.join("1.4.toml"), &text).unwrap();
+    let refused = run(&[]);
+    let words = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(refused.status.code() == Some(2) && words.contains("1.4.toml is no design of chapter 6"), "{words}");
+    fs::remove_file(own.join("1.4.toml")).unwrap();
+    fs::remove_file(own.join("1.1.toml")).unwrap();
+    let refused = run(&[]);
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("has no design of chapter 6"));
+}
+
+fn text_of(path: &Path) -> String {
+    fs::read_to_string(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
 }

@@ -2,11 +2,13 @@
 
 mod fields;
 mod index;
+mod number;
 mod problem;
 mod read;
 mod syntax;
 mod write;
 
+pub use number::NumberPath;
 pub use problem::{DesignError, DesignProblem, ListedProblem};
 pub use write::write_design;
 

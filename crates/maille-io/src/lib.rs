@@ -22,6 +22,6 @@ pub mod weave;
 
 pub use builtin::{Builtin, builtin, builtin_designs, chapter6, nearest_builtin};
 pub use design_toml::{
-    DESIGN_JSON_SCHEMA, DesignError, DesignProblem, DesignSource, ListedProblem, read_design, write_design,
+    DESIGN_JSON_SCHEMA, DesignError, DesignProblem, DesignSource, ListedProblem, NumberPath, read_design, write_design,
 };
 pub use palette::{film, with_palette};

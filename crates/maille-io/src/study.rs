@@ -1,18 +1,21 @@
 //! Studies: which maps of which designs, in one TOML file.
 
 use crate::{
+    design_toml::NumberPath,
     numbers::{Numbers, parse, parse_l2},
     plot::Quantity,
     record::Map,
 };
 use maille::{
     characterize::{CellChoice, Method},
+    design::Design,
+    error::InvalidInput,
     lattice::Cell,
     limit::exact::ExactOptions,
 };
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode, SourceSpan};
 use serde::Deserialize;
-use std::{fmt, ops::Range, path::PathBuf, sync::Arc};
+use std::{collections::BTreeMap, fmt, ops::Range, path::PathBuf, sync::Arc};
 use toml::Spanned;
 
 /// What `maille sweep` computes: each design, at each of its radii and spacings, over all directions and l2.
@@ -41,6 +44,8 @@ pub struct StudyDesign {
     pub minor_radius: Vec<f64>,
     /// Factors of all distances between elements; empty: as designed.
     pub spacing: Vec<f64>,
+    /// Other numbers of the design, by their places, with the values that they take.
+    pub vary: Vec<(NumberPath, Vec<f64>)>,
 }
 
 /// A design of a study at one value of each parameter.
@@ -52,10 +57,31 @@ pub struct Variant {
     pub minor_radius: Option<f64>,
     /// Factor of all distances between elements; `None`: as designed.
     pub spacing: Option<f64>,
+    /// Other numbers of the design, in the order in which they are set, before the spacing.
+    pub numbers: Vec<(NumberPath, f64)>,
+}
+
+impl Variant {
+    /// The design with its parameters. Refused where it has no such number.
+    pub fn of(&self, design: &Design) -> Result<Design, InvalidInput> {
+        let mut out = self.minor_radius.map_or_else(|| design.clone(), |r| design.with_minor_radius(r));
+        for (path, value) in &self.numbers {
+            out = path.set(&out, *value)?;
+        }
+        Ok(self.spacing.map_or(out.clone(), |factor| out.spaced(factor)))
+    }
+
+    /// The parameters in words, as `minor_radius = 0.05, spacing = 0.95`; `None` where nothing is changed.
+    pub fn words(&self) -> Option<String> {
+        let mut words: Vec<String> = self.minor_radius.map(|r| format!("minor_radius = {r}")).into_iter().collect();
+        words.extend(self.numbers.iter().map(|(path, value)| format!("{path} = {value}")));
+        words.extend(self.spacing.map(|s| format!("spacing = {s}")));
+        (!words.is_empty()).then(|| words.join(", "))
+    }
 }
 
 impl StudyDesign {
-    /// Every radius with every spacing; a design without values of a parameter keeps its own.
+    /// Every radius with every value of the other numbers and every spacing; a design without values of a parameter keeps its own.
     pub fn variants(&self) -> Vec<Variant> {
         let some = |values: &[f64]| match values {
             [] => vec![None],
@@ -63,11 +89,27 @@ impl StudyDesign {
         };
         let mut out = Vec::new();
         for minor_radius in some(&self.minor_radius) {
-            for spacing in some(&self.spacing) {
-                let mut suffix = minor_radius.map(|r| format!("-r{r}")).unwrap_or_default();
-                suffix.extend(spacing.map(|s| format!("-s{s}")));
-                out.push(Variant { suffix, minor_radius, spacing });
+            for numbers in self.combinations() {
+                for spacing in some(&self.spacing) {
+                    let mut suffix = minor_radius.map(|r| format!("-r{r}")).unwrap_or_default();
+                    suffix.extend(numbers.iter().map(|(path, value)| format!("-{}{value}", path.label())));
+                    suffix.extend(spacing.map(|s| format!("-s{s}")));
+                    out.push(Variant { suffix, minor_radius, spacing, numbers: numbers.clone() });
+                }
             }
+        }
+        out
+    }
+
+    /// Every value of each number with every value of the others, the last one changing fastest.
+    fn combinations(&self) -> Vec<Vec<(NumberPath, f64)>> {
+        let mut out = vec![Vec::new()];
+        for (path, values) in &self.vary {
+            let with = |numbers: &Vec<(NumberPath, f64)>| {
+                let one = |value: &f64| numbers.iter().cloned().chain([(path.clone(), *value)]).collect();
+                values.iter().map(one).collect::<Vec<Vec<_>>>()
+            };
+            out = out.iter().flat_map(with).collect();
         }
         out
     }
@@ -90,6 +132,8 @@ struct RawDesign {
     design: Spanned<String>,
     minor_radius: Option<Spanned<List>>,
     spacing: Option<Spanned<List>>,
+    #[serde(default)]
+    vary: BTreeMap<String, Spanned<List>>,
 }
 
 #[derive(Deserialize)]
@@ -111,7 +155,7 @@ impl List {
     }
 }
 
-const HELP: &str = "a study has directions, l2, cell, starts, seed, and [[designs]] with design, minor_radius, spacing; \
+const HELP: &str = "a study has directions, l2, cell, starts, seed, and [[designs]] with design, minor_radius, spacing, vary; \
                     `maille sweep --example` prints one";
 
 impl Study {
@@ -186,10 +230,17 @@ impl Study {
         };
         let mut designs = Vec::new();
         for design in raw.designs.get_ref() {
+            let mut vary = Vec::new();
+            for (path, values) in &design.vary {
+                let path = path.parse::<NumberPath>().map_err(|e| wrong(values, e.problem, e.help))?;
+                let read = parse(&values.get_ref().text()).map_err(|problem| wrong(values, problem, HELP))?;
+                vary.push((path, read.0));
+            }
             designs.push(StudyDesign {
                 design: design.design.get_ref().clone(),
                 minor_radius: positive(&design.minor_radius)?,
                 spacing: positive(&design.spacing)?,
+                vary,
             });
         }
         Ok(Study {
@@ -272,6 +323,23 @@ mod tests {
         assert!(study.designs[1].minor_radius.is_empty());
     }
 
+    /// The radius of the standing rings, as in Figure 6.11, and a height: every value with every other.
+    #[test]
+    fn any_number_of_a_design_is_a_parameter() {
+        let text = "[[designs]]\ndesign = \"1.1\"\nspacing = 2\n[designs.vary]\n\
+                    \"elements.standing-*.rings.major_radius\" = \"0.5:1:0.25\"\n\"elements.flat.center.z\" = [-0.1, 0.1]\n";
+        let study = Study::read("s", text).unwrap();
+        let variants = study.designs[0].variants();
+        assert_eq!(variants.len(), 6);
+        assert_eq!(variants[0].suffix, "-flat-center-z-0.1-standing-major_radius0.5-s2");
+        let design = crate::read_design("1.1", crate::builtin("1.1").unwrap()).unwrap();
+        let varied = variants[4].of(&design).unwrap();
+        assert_eq!((varied.elements[2].rings[0].major_radius, varied.elements[0].center[2]), (0.75, 0.2));
+        assert_eq!(varied.lattice.a1[0], 5.0);
+        let words = "elements.flat.center.z = 0.1, elements.standing-*.rings.major_radius = 0.75, spacing = 2";
+        assert_eq!(variants[4].words().as_deref(), Some(words));
+    }
+
     #[test]
     fn what_is_wrong_is_shown_at_its_place() {
         let cases = [
@@ -283,6 +351,7 @@ mod tests {
             ("starts = 0\n[[designs]]\ndesign = \"1.1\"", "too small", Some("0")),
             ("[[designs]]\ndesign = \"1.1\"\nspacing = [1.0, -2.0]", "-2 is not positive", Some("[1.0, -2.0]")),
             ("[[designs]]\ndesign = \"1.1\"\nminor_radius = true", "no range", Some("true")),
+            ("[[designs]]\ndesign = \"1.1\"\nvary = { radius = 3 }", "names no number", Some("3")),
         ];
         for (text, problem, place) in cases {
             let error = Study::read("s", text).unwrap_err();

@@ -2,7 +2,7 @@
 
 use crate::error;
 use maille::{error::InvalidInput, lattice::Cell, model::Model};
-use maille_io::{DesignSource, builtin, builtin_designs, nearest_builtin, write_design};
+use maille_io::{DesignSource, NumberPath, builtin, builtin_designs, nearest_builtin, write_design};
 use pyo3::prelude::*;
 
 /// A design, with the file that its errors point into.
@@ -82,6 +82,11 @@ impl Design {
 
     fn with_minor_radius(&self, minor_radius: f64) -> PyResult<Self> {
         Self::changed(self.design.with_minor_radius(minor_radius))
+    }
+
+    fn with_number(&self, path: &str, value: f64) -> PyResult<Self> {
+        let path: NumberPath = path.parse().map_err(|e| error::invalid(&e))?;
+        Self::changed(path.set(&self.design, value).map_err(|e| error::invalid(&e))?)
     }
 
     fn spaced(&self, factor: f64) -> PyResult<Self> {

@@ -13,7 +13,10 @@ pub fn study(name: &str, text: &str) -> PyResult<String> {
     let exact = study.options();
     let designs = study.designs.iter().map(|design| {
         let variants = design.variants();
-        let variants = variants.iter().map(|v| json!([v.suffix, v.minor_radius, v.spacing]));
+        let variants = variants.iter().map(|v| {
+            let numbers: Vec<_> = v.numbers.iter().map(|(path, value)| json!([path.to_string(), value])).collect();
+            json!([v.suffix, v.minor_radius, numbers, v.spacing])
+        });
         json!({ "design": design.design, "variants": variants.collect::<Vec<_>>() })
     });
     Ok(json!({

@@ -5,7 +5,6 @@ mod common;
 use common::{design, map, model};
 use maille::{
     bound::ChainBound,
-    characterize::Finished,
     lattice::Cell,
     limit::exact::ExactOptions,
     model::Model,

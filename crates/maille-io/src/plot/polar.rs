@@ -247,19 +247,26 @@ impl PolarPlot {
         }
     }
 
+    /// The same plot without the bounds of limits.
+    pub fn without_bounds(mut self) -> Self {
+        self.curves.retain(|curve| curve.kind != CurveKind::Bound);
+        self.caption.iter_mut().for_each(|words| *words = words.replace(WHERE_NOT, "."));
+        self
+    }
+
     /// The same plot with the limits of another record of this sheet as markers, which `what` names in the legend. Only
     /// these have markers then, and bounds are left out.
-    pub fn checked_by(mut self, rows: &[LimitRow], what: &str) -> Self {
-        self.curves.retain(|curve| curve.kind == CurveKind::Limits);
-        let quantity = self.quantity;
+    pub fn checked_by(self, rows: &[LimitRow], what: &str) -> Self {
+        let mut out = self.without_bounds();
+        let quantity = out.quantity;
         let check = |l2: f64| {
             let mut curve = limits(0, rows, l2, quantity);
             curve.kind = CurveKind::Check;
             curve
         };
-        self.curves.extend(l2_values(rows.iter()).into_iter().map(check));
-        self.check = what.into();
-        self
+        out.curves.extend(l2_values(rows.iter()).into_iter().map(check));
+        out.check = what.into();
+        out
     }
 
     fn l2(&self) -> Vec<f64> {
@@ -313,13 +320,16 @@ fn symmetry(quantity: Quantity) -> String {
     format!("A pull along D is the same pull along −D: {symbol} repeats after 180°.")
 }
 
+/// What the dashed lines are.
+const WHERE_NOT: &str = "; dashed: the bound where others do not.";
+
 /// How many limits attain a proven bound, where a record has bounds.
 fn proven(rows: &[LimitRow]) -> Option<String> {
     let limits = rows.iter().filter(|row| row.l1.is_some()).count();
     let global = rows.iter().filter(|row| row.status == Status::Global).count();
     rows.iter().any(|row| row.bound_l1.is_some()).then(|| match limits - global {
         0 => format!("All {limits} limits attain their proven bound: none can be larger."),
-        _ => format!("{global} of {limits} limits attain their proven bound; dashed: the bound where others do not."),
+        _ => format!("{global} of {limits} limits attain their proven bound{WHERE_NOT}"),
     })
 }
 

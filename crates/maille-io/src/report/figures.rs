@@ -138,8 +138,8 @@ fn named(chosen: &[(&NamedRecord, &Map)]) -> Vec<NamedRecord> {
 /// Limits of one sheet in λ1 − 1, with its directions and, where there is one, the energy method's limits as markers.
 fn polar(number: &'static str, named: &NamedRecord, map: &Map, pairs: &[(&NamedRecord, &Map)]) -> Figure {
     let (run, rows) = (&named.record.run, &named.record.rows);
-    let mut plot = PolarPlot::from_rows(&run.design, rows, Quantity::Lambda1, &parameter_words(&run.parameters));
-    plot.curves.retain(|curve| curve.kind == crate::plot::CurveKind::Limits);
+    let words = parameter_words(&run.parameters);
+    let mut plot = PolarPlot::from_rows(&run.design, rows, Quantity::Lambda1, &words).without_bounds();
     // R/10 and R/20 on one scale.
     plot.room_for = lambda1(pairs, |other| {
         (&other.design, other.rearranged) == (&map.design, map.rearranged) && !other.corners && other.method == "exact"

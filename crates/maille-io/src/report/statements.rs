@@ -647,7 +647,7 @@ pub fn sharpness(maps: &[Map]) -> Finding {
                     continue;
                 };
                 let text = format!(
-                    "{}, {direction}°: curvature {before:.3}, with {} {after:.3}",
+                    "{}, {direction}°: curvature {before:.2}, with {} {after:.2}",
                     at(thick, l2),
                     ratio_label(thin.ratio)
                 );
@@ -674,7 +674,8 @@ pub fn sharpness(maps: &[Map]) -> Finding {
         let (low, high) = all().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
         let bulging = all().filter(|x| *x <= 0.0).count();
         evidence.push(format!(
-            "For l₂ > 0 there is no notch to judge: the curvature is from {low:.2} to {high:.2} there, {bulging} of {} curves bulge.",
+            "For l₂ > 0 there is no notch, or hardly one, and none is judged: the curvature is from {low:.2} to {high:.2}, and {bulging} of {} \
+                 curves bulge.",
             all().count()
         ));
     }

@@ -137,6 +137,11 @@ class Design:
         """The same design with another wire; rings with a minor radius of their own keep it."""
         return Design._of(self._inner.with_minor_radius(minor_radius))
 
+    def with_number(self, path: str, value: float) -> Design:
+        """The same design with another value at a place of its file, as `lattice.a1.x` or `elements.standing-*.rings.major_radius`,
+        where `*` stands for anything: all that match are set."""
+        return Design._of(self._inner.with_number(path, value))
+
     def spaced(self, factor: float) -> Design:
         """The same rings `factor` times as far apart."""
         return Design._of(self._inner.spaced(factor))

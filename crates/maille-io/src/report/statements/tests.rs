@@ -218,7 +218,7 @@ fn notches_are_sharp_or_blunt() {
     let found = sharpness(&both);
     // Two minima at two l2; l2 > 0 is told and not judged.
     assert_eq!((found.verdict, found.parts[0].shown), (Verdict::Holds, 4));
-    assert!(found.evidence.iter().any(|text| text.starts_with("For l₂ > 0 there is no notch to judge")));
+    assert!(found.evidence.iter().any(|text| text.starts_with("For l₂ > 0 there is no notch")));
     // The same notch at both radii is a tie.
     let same = sharpness(&[minima(0.1, chained(e)), minima(0.05, chained(e))]);
     assert_eq!((same.verdict, same.parts[0].ties), (Verdict::NotMeasured, 4));

@@ -58,18 +58,22 @@ def _plan(of_study: list[dict[str, Any]], folder: Path) -> dict[str, Design | Ma
             stem = design.name
         except MailleError as error:
             design, stem = error, named
-        for suffix, minor_radius, spacing in item["variants"]:
+        for suffix, minor_radius, numbers, spacing in item["variants"]:
             name = _native.folder_name(stem) + suffix
             if name in plan:
                 raise ArgumentError("study", f"{name} is in the study twice", "name each design and value once")
-            plan[name] = _varied(design, minor_radius, spacing)
+            plan[name] = _varied(design, minor_radius, numbers, spacing)
     return plan
 
 
-def _varied(design: Design | MailleError, minor_radius: float | None, spacing: float | None) -> Design | MailleError:
+def _varied(
+    design: Design | MailleError, minor_radius: float | None, numbers: list[tuple[str, float]], spacing: float | None
+) -> Design | MailleError:
     try:
         if isinstance(design, Design) and minor_radius is not None:
             design = design.with_minor_radius(minor_radius)
+        for path, value in numbers if isinstance(design, Design) else []:
+            design = design.with_number(path, value)
         if isinstance(design, Design) and spacing is not None:
             design = design.spaced(spacing)
     except MailleError as error:
