@@ -119,7 +119,7 @@ pub(super) fn differences(records: &[NamedRecord]) -> (String, Vec<String>) {
     }
     // If nothing else tells records apart: their cells, and at last their folders.
     for last in
-        [column("cell", &|named| cells(&named.record.rows).join(", ")), column("record", &|named| named.name.clone())]
+        [column("cell", &|named| cells(&named.record.rows).join(", ")), ("record", without_common_folder(records))]
     {
         let labels = labels(&parts, records.len());
         if (0..labels.len()).any(|i| labels[..i].contains(&labels[i])) {
@@ -141,6 +141,15 @@ pub(super) fn differences(records: &[NamedRecord]) -> (String, Vec<String>) {
         }
     }
     (heading, labels)
+}
+
+/// Names of records without the folders that all of them begin with.
+fn without_common_folder(records: &[NamedRecord]) -> Vec<String> {
+    let names: Vec<&str> = records.iter().map(|named| named.name.as_str()).collect();
+    let common = |end: &usize| names.iter().all(|name| name.get(..*end) == names[0].get(..*end));
+    let ends = names.first().into_iter().flat_map(|name| name.match_indices('/').map(|(at, _)| at + 1));
+    let start = ends.filter(common).max().unwrap_or(0);
+    names.iter().map(|name| name[start..].to_owned()).collect()
 }
 
 fn labels(parts: &[(&str, Vec<String>)], count: usize) -> Vec<String> {
