@@ -9,16 +9,16 @@ use crate::{
 };
 use maille_io::{
     plot::{
-        Layout, PolarPlot, Quantity, Spread, difference_svg, parameter_words, poisson_svg, polar_svg, steps_svg,
-        svg_to_png, times_svg,
+        Layout, NamedSimulation, PolarPlot, Quantity, Spread, difference_svg, force_svg, parameter_words, poisson_svg,
+        polar_svg, steps_svg, svg_to_png, times_svg,
     },
-    record::{NamedRecord, Reference, ReferenceCell},
+    record::{NamedRecord, Reference, ReferenceCell, SIMULATION, open_simulation},
     with_palette,
 };
 use miette::{IntoDiagnostic, Result, WrapErr};
 use std::path::{Path, PathBuf};
 
-/// Records in one figure: limits against direction, their spread, or what they cost
+/// Records in one figure: limits against direction, their spread, what they cost; force against stretch of simulations
 ///
 /// Reads records and solves nothing. With several records colour and line tell them apart, as the legend says; markers
 /// tell their l2.
@@ -33,12 +33,13 @@ Examples:
   maille plot 1.1-free --kind poisson                  of `maille characterize 1.1 --lateral free --out maille-out/1.1-free`
   maille plot maille-out/1.1 --kind times --where 'direction<=90'
   maille plot 1.1 3.1 --reference widest --where l2=0  each from its widest cell: comparable, whatever their files start from
+  maille plot 1.1-simulate --kind force                of `maille simulate 1.1 --fix left --pull right=8,0,0 --steps 40`
 
 Kinds: polar shows limits against the direction of the pull, 0\u{b0} right, counter-clockwise; difference the largest \
 less the smallest limit of all directions, against l2; poisson the ratio of width to length where the width was free; steps and times the solver's iterations and the wall time of \
-each limit. --where takes the conditions of `maille table`.")]
+each limit; force how hard a finite sheet of `maille simulate` is pulled, against its stretch. --where takes the conditions of `maille table`.")]
 pub struct Args {
-    /// Folders of records; NAME stands for maille-out/NAME
+    /// Folders of records, for force those of simulations; NAME stands for maille-out/NAME
     #[arg(required = true, value_name = "RECORD")]
     records: Vec<PathBuf>,
     /// What is shown
@@ -77,6 +78,8 @@ enum Kind {
     Steps,
     /// Wall time
     Times,
+    /// Force against stretch of simulated sheets
+    Force,
 }
 
 /// What a plot shows of a limit.
@@ -132,10 +135,10 @@ const MANY: usize = 12;
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
-    if args.quantity.is_some() && matches!(args.kind, Kind::Poisson | Kind::Steps | Kind::Times) {
+    if args.quantity.is_some() && !matches!(args.kind, Kind::Polar | Kind::Difference) {
         return Err(wrong(
             exit::USAGE,
-            "poisson, steps and times have no --quantity",
+            "poisson, steps, times and force have no --quantity",
             "leave --quantity out, or choose --kind polar or difference",
         ));
     }
@@ -148,7 +151,12 @@ pub fn run(args: &Args) -> Result<()> {
             "leave --reference out, or choose --kind polar with --quantity stretch or l1",
         ));
     }
-    let mut records = records::read(&args.records)?;
+    if args.kind == Kind::Force {
+        let (simulations, svg) = force(args)?;
+        let designs = simulations.iter().map(|named| named.record.design.name.as_str());
+        return write(args, &svg, outputs, &usual(args.kind, designs));
+    }
+    let mut records = records::read(&args.records).map_err(|report| of_simulation(args, report))?;
     // Of all rows, not only of those that are shown.
     let mut cells = reference_cells(args.reference, &records)?;
     for named in &mut records {
@@ -172,16 +180,23 @@ pub fn run(args: &Args) -> Result<()> {
         named.record.rows.iter_mut().for_each(|row| *row = cell.measured(row));
     }
     let svg = svg(args, &records, &cells)?;
-    let default: Vec<PathBuf> = match outputs.is_empty() {
-        true => ["svg", "png"].map(|ending| usual(args.kind, &records, ending)).into(),
+    let designs = records.iter().map(|named| named.record.run.design.name.as_str());
+    write(args, &svg, outputs, &usual(args.kind, designs))
+}
+
+/// Writes the plot as each of `outputs`; if there is none, as `usual` with either ending.
+fn write(args: &Args, svg: &str, outputs: Vec<(&Path, Format)>, usual: &str) -> Result<()> {
+    let default: Vec<(PathBuf, Format)> = match outputs.is_empty() {
+        true => [("svg", Format::Svg), ("png", Format::Png)]
+            .map(|(ending, f)| (format!("{usual}.{ending}").into(), f))
+            .into(),
         false => Vec::new(),
     };
-    let default = default.iter().map(|file| Ok((file.as_path(), format(file)?))).collect::<Result<Vec<_>>>()?;
-    for (file, format) in outputs.into_iter().chain(default) {
+    for (file, format) in outputs.into_iter().chain(default.iter().map(|(file, format)| (file.as_path(), *format))) {
         match format {
             Format::Svg => output::write(file, svg.as_bytes())?,
             Format::Png => {
-                let png = svg_to_png(&svg, args.scale as f32)
+                let png = svg_to_png(svg, args.scale as f32)
                     .and_then(|png| if args.palette { with_palette(&png) } else { Ok(png) });
                 let png = png.into_diagnostic().wrap_err("cannot draw the plot")?;
                 output::write(file, &png)?;
@@ -190,6 +205,55 @@ pub fn run(args: &Args) -> Result<()> {
         say!("{}", file.display());
     }
     Ok(())
+}
+
+/// The simulations that are named, and their plot.
+fn force(args: &Args) -> Result<(Vec<NamedSimulation>, String)> {
+    if !args.conditions.is_empty() {
+        return Err(wrong(exit::USAGE, "a simulation has no rows of limits for --where", "leave --where out"));
+    }
+    let mut simulations: Vec<NamedSimulation> = Vec::new();
+    for path in &args.records {
+        let folder: PathBuf = records::folder(path).components().collect();
+        let name = folder.display().to_string();
+        if simulations.iter().any(|known| known.name == name) {
+            return Err(wrong(exit::USAGE, format!("the simulation {name} is given twice"), "name each of them once"));
+        }
+        if !folder.join(SIMULATION[0]).is_file() {
+            let problem = match folder.exists() {
+                true => format!("{name} holds no simulation"),
+                false => format!("there is no folder {name}"),
+            };
+            let help =
+                "--kind force draws folders that `maille simulate` wrote: they hold simulation.json and forces.csv";
+            return Err(wrong(exit::RECORD, problem, help));
+        }
+        let files = open_simulation(&folder)?;
+        let forces = files.forces.ok_or_else(|| {
+            let problem = format!("the simulation {name} has no {}", SIMULATION[2]);
+            let help =
+                "it is a folder of --frames, or older than this table: name the folder of --out, or simulate it again";
+            wrong(exit::RECORD, problem, help)
+        })?;
+        simulations.push(NamedSimulation { name, record: files.record, forces });
+    }
+    let svg = force_svg(&simulations, Layout::Beside).ok_or_else(|| {
+        let help = "hold an edge and pull the one opposite to it, as --fix left --pull right=8,0,0";
+        wrong(exit::USAGE, "no frame of these simulations has a stretch along a pull", help)
+    })?;
+    Ok((simulations, svg))
+}
+
+/// A simulation where records of limits are wanted has a kind of its own.
+fn of_simulation(args: &Args, report: miette::Report) -> miette::Report {
+    match args.records.iter().find(|path| records::folder(path).join(SIMULATION[0]).is_file()) {
+        Some(path) => wrong(
+            exit::RECORD,
+            format!("{} holds a simulation, and no limits", path.display()),
+            "draw it with --kind force",
+        ),
+        None => report,
+    }
 }
 
 /// The cell of each record that its stretches are measured from; none where that is the start.
@@ -250,6 +314,7 @@ fn svg(args: &Args, records: &[NamedRecord], cells: &[ReferenceCell]) -> Result<
         })?,
         (Kind::Steps, records) => steps_svg(records, Layout::Beside),
         (Kind::Times, records) => times_svg(records, Layout::Beside),
+        (Kind::Force, _) => unreachable!("drawn from simulations"),
     })
 }
 
@@ -266,21 +331,21 @@ fn format(file: &Path) -> Result<Format> {
     }
 }
 
-/// `maille-out/polar-1.1-3.1.svg`.
-fn usual(kind: Kind, records: &[NamedRecord], ending: &str) -> PathBuf {
+/// `maille-out/polar-1.1-3.1`, to which an ending is added.
+fn usual<'a>(kind: Kind, designs: impl Iterator<Item = &'a str>) -> String {
     let kind = match kind {
         Kind::Polar => "polar",
         Kind::Difference => "difference",
         Kind::Poisson => "poisson",
         Kind::Steps => "steps",
         Kind::Times => "times",
+        Kind::Force => "force",
     };
     let mut names: Vec<String> = Vec::new();
-    for named in records {
-        let name = file_name(&named.record.run.design.name);
+    for name in designs.map(file_name) {
         if !names.contains(&name) {
             names.push(name);
         }
     }
-    Path::new("maille-out").join(format!("{kind}-{}.{ending}", names.join("-")))
+    Path::new("maille-out").join(format!("{kind}-{}", names.join("-"))).display().to_string()
 }

@@ -19,11 +19,12 @@ use maille::{
 use maille_geometry::Vec3;
 use maille_io::{
     mesh::Tile,
-    record::{LoadedPlace, PulledPlace, SheetPlan, SimulationRecord, save_simulation},
+    record::{ForceTable, LoadedPlace, PulledPlace, SheetPlan, SimulationRecord, save_simulation},
 };
 use miette::{Report, Result};
 use serde_json::json;
 use std::{
+    collections::BTreeMap,
     path::{Path, PathBuf},
     process::ExitCode,
     time::Instant,
@@ -33,7 +34,8 @@ use std::{
 ///
 /// The sheet has no images: its edges are free but for what is fixed or pulled. Rings come to rest by the energy method,
 /// then the pull grows in equal steps until it is done or the sheet locks. Writes simulation.json (what was done, what
-/// came out) and frames.jsonl (the sheet at rest after each step).
+/// came out), frames.jsonl (the sheet at rest after each step) and forces.csv (the force of each held place, stretch,
+/// deformation gradient and energy after each step).
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -43,6 +45,8 @@ Examples:
   maille simulate 1.1 --tile 1x6 --fix top --force flat@0,0=0,-5,0  a strip with a load on one ring
   maille simulate 1.1 --tile 8x2 --fix left --pull right=-6,0,0/0,0,0 --gravity 0,0,-1 --floor -3   folded and unfolded
   maille simulate 2 --tile 10x10 --fix left --pull right=0.5,0,0 --frames all-frames
+  maille simulate 1.1 --tile 4x4 --fix left --pull right=8,0,0 --steps 40   then
+  maille plot 1.1-simulate --kind force                             free at first, then a hard stop
   maille export --from maille-out/1.1-simulate --format vtk --frames 50
   maille render --from maille-out/1.1-simulate
 
@@ -80,7 +84,7 @@ pub struct Args {
     /// Folder of the result [default: maille-out/DESIGN-simulate]
     #[arg(long, short)]
     out: Option<PathBuf>,
-    /// Another folder with the same, but every state that the minimisation accepted as a frame
+    /// Another folder with every state that the minimisation accepted as a frame, and no forces.csv
     #[arg(long, value_name = "DIR")]
     frames: Option<PathBuf>,
     /// Minor radius of every ring that gives none, in the file's unit
@@ -105,6 +109,9 @@ pub struct Args {
     #[arg(long, short, conflicts_with = "json")]
     quiet: bool,
 }
+
+/// Places whose forces are named in the summary; all are in forces.csv.
+const MOST_PLACES: usize = 6;
 
 /// Names of places.
 #[derive(Clone, Debug, PartialEq)]
@@ -200,17 +207,19 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let cancel = interrupt::flag()?;
     let end = simulate(&model, &setup, &cancel, &mut watch).map_err(refused)?;
     progress.finish();
+    let forces = ForceTable::new(&plan, &model, &setup, &end).map_err(refused)?;
     let record = SimulationRecord::new(&input.design, args.tile, plan, &model, &end);
     let stem = file_name(&input.design.name) + "-simulate";
     let out = args.out.clone().unwrap_or_else(|| PathBuf::from("maille-out").join(stem));
     // A run that failed at once has reached nothing: its last state is shown.
     let last = || FrameRecord { run: 0, share: end.share, energy: end.energy, poses: pose_records(&model, &end.state) };
     let rests = if end.path.is_empty() { vec![last()] } else { end.path.clone() };
-    save_simulation(&out, record.clone(), &rests)?;
+    save_simulation(&out, record.clone(), &rests, Some(&forces))?;
     if let Some(folder) = &args.frames {
-        save_simulation(folder, record.clone(), &all)?;
+        save_simulation(folder, record.clone(), &all, None)?;
     }
     let wall_s = begun.elapsed().as_secs_f64();
+    let last = forces.rows.last();
     if args.json {
         output::print_json(&json!({
             "design": input.design.name,
@@ -219,10 +228,13 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             "outcome": record.outcome,
             "out": out.display().to_string(),
             "frames": rests.len(),
+            "stretch": last.and_then(|row| row.stretch),
+            "mean_force": last.and_then(|row| row.mean_force),
+            "reactions": last.map(|row| forces.places.iter().zip(&row.forces).collect::<BTreeMap<_, _>>()),
             "wall_s": wall_s,
         }))?;
     } else if !args.quiet {
-        summary(args, &model, &end, &out, rests.len(), wall_s);
+        summary(args, &model, &end, &forces, &out, rests.len(), wall_s);
     }
     Ok(ExitCode::from(match end.end {
         End::Reached | End::Locked => exit::DONE,
@@ -255,7 +267,7 @@ fn plan(args: &Args) -> Result<SheetPlan> {
     Ok(plan)
 }
 
-fn summary(args: &Args, model: &Model, end: &Simulation, out: &Path, frames: usize, wall_s: f64) {
+fn summary(args: &Args, model: &Model, end: &Simulation, forces: &ForceTable, out: &Path, frames: usize, wall_s: f64) {
     let percent = 100.0 * end.share;
     let what = match end.end {
         End::Reached if args.pull.is_empty() => "at rest".into(),
@@ -269,6 +281,19 @@ fn summary(args: &Args, model: &Model, end: &Simulation, out: &Path, frames: usi
         let way: Vec<Vec3> = pull.way.iter().map(|by| Vec3::from(*by)).collect();
         let by = along(&way, end.share);
         output::say!("  {} moved by {:.4}, {:.4}, {:.4}", pull.place, by.x, by.y, by.z);
+    }
+    if let Some(row) = forces.rows.last() {
+        let stretch = row.stretch.map(|stretch| format!("stretch {stretch:.4}"));
+        let force = row.mean_force.map(|force| format!("force along the pull {force:.2} on each pulled element"));
+        let words: Vec<String> = stretch.into_iter().chain(force).collect();
+        if !words.is_empty() {
+            output::say!("  {} (forces in the unit of --force)", words.join(", "));
+        }
+        for (place, [x, y, z]) in forces.places.iter().zip(&row.forces).take(MOST_PLACES) {
+            // + 0.0 makes −0 equal to 0
+            let [x, y, z] = [x, y, z].map(|f| (100.0 * f).round() / 100.0 + 0.0);
+            output::say!("  {place} holds with {x:.2}, {y:.2}, {z:.2}");
+        }
     }
     if let Some(gap) = end.smallest_gap {
         output::say!("  smallest gap {:.2e}; links {}", gap * model.unit, if end.links_ok { "kept" } else { "LOST" });

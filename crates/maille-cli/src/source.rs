@@ -18,7 +18,7 @@ use maille::{
 };
 use maille_io::{
     mesh,
-    record::{Record, SIMULATION, open_simulation},
+    record::{Record, SIMULATION, SimulationFiles, open_simulation},
 };
 use miette::{Report, Result};
 use std::path::{Path, PathBuf};
@@ -132,7 +132,7 @@ impl SourceArgs {
     }
 
     fn of_simulation(&self, at: Option<At>, folder: &Path) -> Result<Source> {
-        let (record, frames) = open_simulation(folder)?;
+        let SimulationFiles { record, frames, .. } = open_simulation(folder)?;
         let unusable = |problem: String| {
             let help = "its files were edited or do not belong together: simulate it again";
             wrong(exit::RECORD, format!("the simulation {} cannot be used: {problem}", folder.display()), help)

@@ -69,6 +69,9 @@ fn prepare(folder: &Path) {
     let solve = "characterize mine.toml --directions 0,45 --l2 0 --out record --quiet";
     let done = maille(folder, &words(solve), "");
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    let sheet = "simulate mine.toml --tile 1x1 --gravity 0,0,-1 --floor -3 --out sheet --frames sheet-frames --quiet";
+    let done = maille(folder, &words(sheet), "");
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
     for (damaged, file) in [("cut-record", "states.jsonl"), ("edited-record", "run.json")] {
         fs::create_dir(folder.join(damaged)).unwrap();
         for entry in fs::read_dir(folder.join("record")).unwrap() {

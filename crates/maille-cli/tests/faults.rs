@@ -286,7 +286,7 @@ fn a_simulation_that_was_cut_or_edited_is_refused_and_none_is_a_mixture() {
     assert_eq!(said(&maille(folder, simulate)).0, 0);
     let read = "export --from out --out sheet.obj";
     assert_eq!(said(&maille(folder, read)).0, 0);
-    for name in ["simulation.json", "frames.jsonl"] {
+    for name in ["simulation.json", "frames.jsonl", "forces.csv"] {
         let path = folder.join("out").join(name);
         let text = fs::read_to_string(&path).unwrap();
         let first = text[..text.len() - 1].rfind('\n').map_or(0, |at| at + 1);
@@ -300,6 +300,16 @@ fn a_simulation_that_was_cut_or_edited_is_refused_and_none_is_a_mixture() {
         fs::write(&path, &text).unwrap();
         assert_eq!(said(&maille(folder, read)).0, 0);
     }
+    // A table that was lost is missed, and the one of an earlier simulation is not left to another.
+    let table = folder.join("out/forces.csv");
+    let text = fs::read_to_string(&table).unwrap();
+    fs::remove_file(&table).unwrap();
+    let (code, lost) = said(&maille(folder, read));
+    assert!(code == 4 && lost.contains("forces.csv"), "{lost}");
+    fs::write(&table, text).unwrap();
+    assert_eq!(said(&maille(folder, &simulate.replace("--out out", "--out new --frames out"))).0, 0);
+    assert!(!table.exists() && said(&maille(folder, read)).0 == 0);
+    assert_eq!(said(&maille(folder, simulate)).0, 0);
     // Another simulation into the folder, killed at any time: the old one, none, or the new one.
     let other = simulate.replace("--steps 4", "--steps 3");
     for wait in [5, 20, 40, 80] {

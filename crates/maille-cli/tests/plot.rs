@@ -86,3 +86,22 @@ fn a_range_is_drawn() {
     let replayed = done(folder, &["replay", "least", "--at", "direction=45"]);
     assert!(replayed.contains("local") && !replayed.contains("DIFFERS"), "{replayed}");
 }
+
+/// Force against stretch: of one sheet and of two, as SVG and PNG, under the names that are chosen for them.
+#[test]
+fn forces_are_drawn_from_simulations() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    for (design, by) in [("1.1", "right=3,0,0"), ("1.2", "right=4,0,0")] {
+        let sheet = ["simulate", design, "--tile", "2x1", "--fix", "left", "--pull", by, "--steps", "6", "--quiet"];
+        done(folder, &sheet);
+    }
+    let text = |file: &str| std::fs::read_to_string(folder.join(file)).unwrap();
+    let usual = done(folder, &["plot", "1.1-simulate", "--kind", "force"]);
+    assert_eq!(usual, "maille-out/force-1.1.svg\nmaille-out/force-1.1.png\n");
+    let one = text("maille-out/force-1.1.svg");
+    assert!(one.contains(">stops at 1.440<") && one.contains("Force against stretch"), "{one}");
+    assert!(std::fs::read(folder.join("maille-out/force-1.1.png")).unwrap().starts_with(b"\x89PNG"));
+    done(folder, &["plot", "1.1-simulate", "maille-out/1.2-simulate/forces.csv", "--kind", "force", "-o", "two.svg"]);
+    assert!(text("two.svg").contains(">1.1 and 1.2<") && text("two.svg").contains(">stops at 1.440<"));
+}

@@ -264,6 +264,19 @@ fn a_simulated_sheet_is_exported_and_drawn() {
     assert!((3.0 * share - 1.65).abs() < 0.01, "{share}");
     assert_eq!(said["outcome"]["links_ok"], Value::Bool(true));
     let lines = |name: &str| fs::read_to_string(folder.join(name)).unwrap().lines().count();
+    // A row for each frame; the two edges pull against each other.
+    assert_eq!(lines("run/forces.csv"), 1 + lines("run/frames.jsonl"));
+    assert!(!folder.join("all/forces.csv").exists());
+    let table = fs::read_to_string(folder.join("run/forces.csv")).unwrap();
+    let (header, last) = (table.lines().next().unwrap(), table.lines().last().unwrap());
+    let cell = |name: &str| -> f64 {
+        let at = header.split(',').position(|column| column == name).unwrap();
+        last.split(',').nth(at).unwrap().parse().unwrap()
+    };
+    assert!((cell("stretch") - 1.44).abs() < 1e-3 && said["stretch"] == cell("stretch"));
+    assert!(cell("mean_force") > 0.1 && said["mean_force"] == cell("mean_force"), "{table}");
+    assert_eq!(said["reactions"]["right"][0], cell("force_right_x"));
+    assert!((cell("force_left_x") + cell("force_right_x")).abs() < 1e-2);
     assert!(lines("all/frames.jsonl") > lines("run/frames.jsonl") && lines("run/frames.jsonl") >= 3);
     done(folder, "export --from all --format vtk --frames 5 --out vtk/ --quiet", b"");
     let series = fs::read_dir(folder.join("vtk")).unwrap().map(|e| e.unwrap().path());

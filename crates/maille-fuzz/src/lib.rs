@@ -8,7 +8,7 @@ pub mod mutate;
 mod text;
 
 pub use circles::circles;
-pub use text::{design, frames, limits, run, simulation, states, study, surface};
+pub use text::{design, forces, frames, limits, run, simulation, states, study, surface};
 
 use std::path::Path;
 
@@ -37,7 +37,7 @@ pub fn sound(target: &str) -> Vec<Vec<u8>> {
 pub type Target = (&'static str, fn(&[u8]));
 
 /// All of them.
-pub const TARGETS: [Target; 9] = [
+pub const TARGETS: [Target; 10] = [
     ("circles", circles),
     ("design", design),
     ("limits", limits),
@@ -45,6 +45,7 @@ pub const TARGETS: [Target; 9] = [
     ("run", run),
     ("simulation", simulation),
     ("frames", frames),
+    ("forces", forces),
     ("study", study),
     ("surface", surface),
 ];

@@ -5,8 +5,8 @@ use maille_io::{
     boundary::{read_surface, surface_line, write_surface},
     read_design,
     record::{
-        read_frames, read_limits, read_run, read_simulation, read_states, write_frames, write_limits, write_run,
-        write_simulation, write_states,
+        read_forces, read_frames, read_limits, read_run, read_simulation, read_states, write_forces, write_frames,
+        write_limits, write_run, write_simulation, write_states,
     },
     study::Study,
     write_design,
@@ -64,6 +64,11 @@ pub fn simulation(bytes: &[u8]) {
 /// `frames.jsonl`.
 pub fn frames(bytes: &[u8]) {
     same(bytes, read_frames, |frames| Some(write_frames(frames)));
+}
+
+/// `forces.csv`.
+pub fn forces(bytes: &[u8]) {
+    same(bytes, read_forces, |table| Some(write_forces(table)));
 }
 
 /// `boundary.jsonl`: as it is, and with the right checksum for each line, which few wounds leave.

@@ -7,14 +7,15 @@
 //! | `run.json` | a [`RunRecord`]: design, parameters, hash of both, counters |
 //! | `polar.svg`, `polar.png` | the plot |
 //!
-//! A simulated sheet leaves `simulation.json`, a [`SimulationRecord`], and `frames.jsonl`, one
-//! [`FrameRecord`](maille::record::FrameRecord) a line.
+//! A simulated sheet leaves `simulation.json`, a [`SimulationRecord`], `frames.jsonl`, one
+//! [`FrameRecord`](maille::record::FrameRecord) a line, and `forces.csv`, a [`ForceTable`].
 //!
 //! Numbers are written with the fewest digits that read back bit for bit.
 
 mod columns;
 mod error;
 mod folder;
+mod forces;
 pub(crate) mod journal;
 mod limits;
 mod lock;
@@ -27,6 +28,7 @@ mod states;
 pub use columns::{Cell, Column, LIMIT_COLUMNS, Unit, Values};
 pub use error::RecordError;
 pub use folder::{NamedRecord, Record, RecordFolder, file_name};
+pub use forces::{FORCE_COLUMNS, ForceColumn, ForceTable, PLACE_COLUMNS, read_forces, write_forces};
 pub(crate) use limits::csv_cell;
 pub use limits::{read_limits, write_limits};
 pub use lock::FolderLock;
@@ -34,7 +36,7 @@ pub use map::{Chain, Map, MapError, OpenMap};
 pub use reference::{Reference, ReferenceCell};
 pub use run::{Counters, RunRecord, input_hash, read_run, write_run};
 pub use simulation::{
-    LoadedPlace, PulledPlace, SIMULATION, SheetPlan, SimulationOutcome, SimulationRecord, open_simulation, read_frames,
-    read_simulation, save_simulation, write_frames, write_simulation,
+    LoadedPlace, PulledPlace, SIMULATION, SheetPlan, SimulationFiles, SimulationOutcome, SimulationRecord,
+    open_simulation, read_frames, read_simulation, save_simulation, write_frames, write_simulation,
 };
 pub use states::{read_states, write_states};

@@ -1,10 +1,10 @@
 //! Records: tables, states, and the folder's manners.
 
 use maille::design::Design;
-use maille::record::{LimitRow, PoseRecord, StateRecord, Status};
+use maille::record::{ForceRow, LimitRow, PoseRecord, StateRecord, Status};
 use maille_io::record::{
-    Counters, LIMIT_COLUMNS, Record, RecordError, RecordFolder, input_hash, read_limits, read_run, read_states,
-    write_limits, write_states,
+    Counters, ForceTable, LIMIT_COLUMNS, Record, RecordError, RecordFolder, input_hash, read_forces, read_limits,
+    read_run, read_states, write_forces, write_limits, write_states,
 };
 use serde_json::{Value, json};
 use std::fs;
@@ -306,4 +306,49 @@ fn a_table_without_the_later_columns_is_read() {
     // One column less is no table of any version.
     let cut: String = table.lines().map(|line| line.split(',').take(31).collect::<Vec<_>>().join(",") + "\n").collect();
     assert!(message(read_limits("limits.csv", &cut)).contains("column 32"));
+}
+
+/// The forces of a sheet are read as they were written, with odd names and empty cells; what is no such table is refused with
+/// its place.
+#[test]
+fn tables_of_forces_are_read_as_they_were_written() {
+    let full = ForceRow {
+        share: 0.1 + 0.2,
+        stretch: Some(1.0 / 3.0),
+        mean_force: Some(-0.0),
+        deformation: Some([[1.44, 1e-300], [-1e21, 0.9]]),
+        energy: f64::MIN_POSITIVE,
+        floor_force: Some(12.0),
+        forces: vec![[0.1, 0.2, 0.3], [4.0, 5.0, 6.0]],
+    };
+    let empty = ForceRow { stretch: None, mean_force: None, deformation: None, floor_force: None, ..full.clone() };
+    let places = vec!["flat@0,2".to_owned(), "a \"b\"\n_x".to_owned()];
+    let table = ForceTable { places, rows: vec![full, empty] };
+    let text = write_forces(&table);
+    assert_eq!(read_forces("forces.csv", &text).unwrap(), table);
+    let none = ForceTable::default();
+    assert_eq!(read_forces("forces.csv", &write_forces(&none)).unwrap(), none);
+    let still = ForceTable { places: Vec::new(), rows: vec![ForceRow { forces: Vec::new(), ..table.rows[0].clone() }] };
+    assert_eq!(read_forces("forces.csv", &write_forces(&still)).unwrap(), still);
+
+    let plain = write_forces(&ForceTable { places: vec!["left".into(), "right".into()], ..table });
+    for (from, to, line, problem) in [
+        ("stretch", "strain", 1, "column 3 is \"strain\", expected \"stretch\""),
+        ("force_left_y", "force_left_w", 1, "column 12 is \"force_left_w\", expected \"force_left_y\""),
+        (",force_right_z", "", 1, "column 16 is \"\", expected \"force_right_z\""),
+        ("force_right_z", "force_right_z,more", 1, "column 17 is \"more\", expected no more"),
+        ("\n0,", "\n7,", 2, "column frame: \"7\" is not 0"),
+        ("\n1,0.30000000000000004", "\n1,", 3, "column share is empty"),
+        ("12.0", "wide", 2, "column floor_force: \"wide\" is no finite number"),
+        ("12.0", "inf", 2, "column floor_force: \"inf\" is no finite number"),
+        ("1.44", "", 2, "some are empty and some are not"),
+        (",6.0\n1,", "\n1,", 2, "15 columns, expected 16"),
+        (",6.0\n1,", ",\n1,", 2, "column force_right_z is empty"),
+    ] {
+        assert!(plain.contains(from), "{from:?} in {plain}");
+        let found = read_forces("forces.csv", &plain.replacen(from, to, 1)).unwrap_err().to_string();
+        assert!(found.starts_with(&format!("forces.csv:{line}: ")) && found.contains(problem), "{to:?}: {found}");
+    }
+    assert!(read_forces("forces.csv", "").unwrap_err().to_string().contains("the header is missing"));
+    assert!(read_forces("forces.csv", &plain[..plain.len() - 1]).unwrap_err().to_string().contains("ends within"));
 }

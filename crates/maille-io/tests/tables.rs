@@ -4,7 +4,9 @@
 mod rows;
 
 use maille::record::{RECORD_SCHEMA, Status};
-use maille_io::record::{Column, LIMIT_COLUMNS, NamedRecord, read_limits, write_limits};
+use maille_io::record::{
+    Column, FORCE_COLUMNS, ForceColumn, LIMIT_COLUMNS, NamedRecord, PLACE_COLUMNS, read_limits, write_limits,
+};
 use maille_io::table::{Condition, Extent, Field, SortKey, Table};
 use rows::{design, record, row};
 use serde_json::Value;
@@ -104,12 +106,16 @@ fn document(name: &str) -> String {
 #[test]
 fn the_page_of_columns_says_what_the_program_says() {
     let page = document("docs/record.md");
+    let (page, forces) = page.split_once("\n## The forces of a simulated sheet\n").unwrap();
     let lines: Vec<&str> = page.lines().filter(|line| line.starts_with("| `")).collect();
     let line = |c: &Column| {
         let unit = c.unit.name(None).map(|unit| format!(" {unit}")).unwrap_or_default();
         format!("| `{}` |{unit} | {} | {} | {} |", c.name, c.values.kind(), c.since, c.meaning)
     };
     assert_eq!(lines, LIMIT_COLUMNS.iter().map(line).collect::<Vec<_>>());
+    let of_forces: Vec<&str> = forces.lines().filter(|line| line.starts_with("| `")).collect();
+    let line = |c: &ForceColumn| format!("| `{}` | {} | {} |", c.name, c.unit, c.meaning);
+    assert_eq!(of_forces, FORCE_COLUMNS.iter().chain(&PLACE_COLUMNS).map(line).collect::<Vec<_>>());
     assert!(LIMIT_COLUMNS.iter().all(|c| (1..=RECORD_SCHEMA).contains(&c.since)));
     let readme = document("README.md");
     for column in LIMIT_COLUMNS {

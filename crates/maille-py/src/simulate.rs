@@ -12,12 +12,18 @@ use maille::{
 };
 use maille_io::{
     mesh::Tile,
-    record::{SIMULATION, SheetPlan, SimulationRecord, read_frames, read_simulation, write_frames, write_simulation},
+    record::{
+        ForceTable, SIMULATION, SheetPlan, SimulationRecord, read_forces, read_frames, read_simulation, write_forces,
+        write_frames, write_simulation,
+    },
 };
 use pyo3::prelude::*;
 use std::path::PathBuf;
 
-/// What `maille simulate` writes: `simulation.json` and `frames.jsonl`. `plan` is a document with the fields of
+/// `simulation.json`, `frames.jsonl` and, where there is one, `forces.csv`.
+type Texts = (String, String, Option<String>);
+
+/// What `maille simulate` writes: its three files. `plan` is a document with the fields of
 /// [`SheetPlan`].
 #[pyfunction]
 #[pyo3(signature = (design, tile, plan, progress))]
@@ -27,7 +33,7 @@ pub fn simulate(
     tile: [u32; 2],
     plan: &str,
     progress: Option<Bound<'_, PyAny>>,
-) -> PyResult<(String, String)> {
+) -> PyResult<Texts> {
     let plan: SheetPlan = serde_json::from_str(plan)
         .map_err(|e| error::argument("pull", e.to_string(), "give vectors of three numbers"))?;
     if plan.is_still() {
@@ -53,21 +59,24 @@ pub fn simulate(
     let end = end.map_err(|e| error::invalid(&e))?;
     let last = || FrameRecord { run: 0, share: end.share, energy: end.energy, poses: pose_records(&model, &end.state) };
     let frames = if end.path.is_empty() { vec![last()] } else { end.path.clone() };
-    let record = SimulationRecord::new(&design.design, Tile(tile), plan, &model, &end).sealed(&frames);
-    Ok((write_simulation(&record), write_frames(&frames)))
+    let forces = ForceTable::new(&plan, &model, &setup, &end).map_err(|e| error::invalid(&e))?;
+    let record = SimulationRecord::new(&design.design, Tile(tile), plan, &model, &end).sealed(&frames, Some(&forces));
+    Ok((write_simulation(&record), write_frames(&frames), Some(write_forces(&forces))))
 }
 
-/// Reads the folder of `maille simulate`: `simulation.json` and `frames.jsonl` as they would be written now.
+/// Reads the folder of `maille simulate`: its files as they would be written now.
 #[pyfunction]
-pub fn open_simulation(folder: PathBuf) -> PyResult<(String, String)> {
-    let (record, frames) = maille_io::record::open_simulation(&folder).map_err(|e| error::record(&e))?;
-    Ok((write_simulation(&record), write_frames(&frames)))
+pub fn open_simulation(folder: PathBuf) -> PyResult<Texts> {
+    let files = maille_io::record::open_simulation(&folder).map_err(|e| error::record(&e))?;
+    Ok((write_simulation(&files.record), write_frames(&files.frames), files.forces.as_ref().map(write_forces)))
 }
 
 /// Writes that folder.
 #[pyfunction]
-pub fn save_simulation(folder: PathBuf, record: &str, frames: &str) -> PyResult<()> {
+#[pyo3(signature = (folder, record, frames, forces))]
+pub fn save_simulation(folder: PathBuf, record: &str, frames: &str, forces: Option<&str>) -> PyResult<()> {
     let record = read_simulation(SIMULATION[0], record).map_err(|e| error::record(&e))?;
     let frames = read_frames(SIMULATION[1], frames).map_err(|e| error::record(&e))?;
-    maille_io::record::save_simulation(&folder, record, &frames).map_err(|e| error::record(&e))
+    let forces = forces.map(|text| read_forces(SIMULATION[2], text)).transpose().map_err(|e| error::record(&e))?;
+    maille_io::record::save_simulation(&folder, record, &frames, forces.as_ref()).map_err(|e| error::record(&e))
 }

@@ -22,6 +22,8 @@ def test_a_sheet_is_that_of_the_program(program, tmp_path):
     assert mine.document == its.document == json.loads((tmp_path / "python" / "simulation.json").read_text())
     assert np.array_equal(mine.position, its.position) and np.array_equal(mine.rotation, its.rotation)
     assert maille.read_simulation(tmp_path / "python").frames == its.frames
+    for name in ("frames.jsonl", "forces.csv"):
+        assert (tmp_path / "python" / name).read_bytes() == (out / name).read_bytes()
     assert calls[0] == (0, 4) and calls[-1][0] < 4
     # The program draws what the package has written.
     subprocess.run([program, "render", "--from", tmp_path / "python", "--size", "80x60", "--quiet", "--out", tmp_path / "x.png"], check=True)
@@ -36,6 +38,28 @@ def test_its_columns_and_its_plot():
     assert np.allclose((frame[["qw", "qi", "qj", "qk"]] ** 2).sum(axis=1), 1)
     assert sheet.to_polars().shape == frame.shape
     assert sheet.plot().get_title().endswith(sheet.end)
+
+
+def test_forces_are_columns():
+    sheet = maille.simulate("1.1", (2, 2), **SHEET)
+    forces = sheet.forces
+    assert all(len(column) == len(sheet.frame_share) for column in forces.values())
+    assert forces["share"].tolist() == sheet.frame_share.tolist() and forces["energy"].tolist() == sheet.energy.tolist()
+    # Free, then a stop: 5.4 long at most where 3.75 was.
+    assert forces["stretch"][-1] == pytest.approx(1.44, abs=1e-3) and forces["mean_force"][-1] > 0.1
+    assert np.abs(forces["mean_force"][forces["stretch"] < 1.43]).max() < 1e-3
+    assert np.allclose(forces["force_left_x"] + forces["force_right_x"], 0, atol=1e-2)
+    assert np.isnan(forces["floor_force"]).all()
+    # Of F, the same map by NumPy.
+    start, end = (x - x.mean(axis=0) for x in (sheet.position[0, :, :2], sheet.position[-1, :, :2]))
+    gradient = np.linalg.lstsq(start, end, rcond=None)[0].T
+    assert np.allclose(gradient.ravel(), [forces[name][-1] for name in ("f_xx", "f_xy", "f_yx", "f_yy")], atol=1e-12)
+    assert sheet.plot_force().get_title().endswith("locked")
+    # What hangs is held with its weight, and is pulled nowhere.
+    hanging = maille.simulate("1.1", (1, 2), fix="top", gravity=(0, -1, 0), steps=1)
+    assert hanging.forces["force_top_y"][-1] == pytest.approx(len(hanging.elements), rel=1e-2)
+    with pytest.raises(maille.ArgumentError):
+        hanging.plot_force()
 
 
 @pytest.mark.parametrize(

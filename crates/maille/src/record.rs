@@ -213,6 +213,26 @@ pub struct FrameRecord {
     pub poses: Vec<PoseRecord>,
 }
 
+/// One line of `forces.csv`: what holds a simulated sheet in one of its frames, see [`crate::simulate::force`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct ForceRow {
+    /// Share of the pull.
+    pub share: f64,
+    /// Distance of the first pulled place from the one opposite to it, along the pull, by that at the start.
+    pub stretch: Option<f64>,
+    /// Force along the pull on an element of the first pulled place, their mean; positive where it stretches the sheet.
+    /// Forces are in [`crate::simulate::WEIGHT_UNIT`]s, 1e-3 β R.
+    pub mean_force: Option<f64>,
+    /// F in the plane, rows first: F[i][k] = ∂x_i/∂X_k.
+    pub deformation: Option<[[f64; 2]; 2]>,
+    /// Energy, in β R².
+    pub energy: f64,
+    /// Force of the floor along z.
+    pub floor_force: Option<f64>,
+    /// Force of each place that is fixed or pulled on the sheet.
+    pub forces: Vec<[f64; 3]>,
+}
+
 /// A contact that carries force in a locked state.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ContactRecord {

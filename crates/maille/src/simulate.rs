@@ -5,6 +5,8 @@
 //! that move on in equal steps; each step starts where the last one ended. Once a target is missed by more than τ, the
 //! sheet has locked, and the last step is bisected.
 
+pub mod force;
+
 use crate::{
     energy::{
         Configuration, SheetEnergy,
@@ -111,6 +113,11 @@ const SOFTER: [f64; 5] = [1e-5, 1e-4, 1e-3, 1e-2, 0.1];
 const UNBALANCED: f64 = 1e-4;
 /// Halvings of the step in which a sheet locks.
 const HALVINGS: usize = 8;
+/// They go on until the last place of a pull that was reached and the first one that was missed are this part of τ apart: of the
+/// element that locks, the force at the stop is then at least 1 − this of the largest, whatever the steps.
+const FINEST: f64 = 0.25;
+/// Halvings at most: more are below rounding.
+const MOST_HALVINGS: usize = 50;
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -159,6 +166,8 @@ pub struct Simulation {
     pub unbalanced: usize,
     /// The states that were reached, one for each position of the pull, the state before it first.
     pub path: Vec<FrameRecord>,
+    /// The states of `path`.
+    pub rests: Vec<State>,
     /// Whether the links are those of the start.
     pub links_ok: bool,
     /// Smallest gap of the state, where rings are near each other.
@@ -177,6 +186,7 @@ struct Run<'a> {
     kicks: usize,
     unbalanced: usize,
     path: Vec<FrameRecord>,
+    rests: Vec<State>,
 }
 
 /// The end of one minimisation.
@@ -277,6 +287,7 @@ impl Run<'_> {
             self.unbalanced += usize::from(rest.outcome != Outcome::Minimum);
             let poses = pose_records(self.model, &rest.state);
             self.path.push(FrameRecord { run: self.runs - 1, share, energy: rest.energy, poses });
+            self.rests.push(rest.state.clone());
         }
         rest
     }
@@ -328,6 +339,7 @@ impl Run<'_> {
             kicks: self.kicks,
             unbalanced: self.unbalanced,
             path: self.path.clone(),
+            rests: self.rests.clone(),
             links_ok: topology::links_kept(model, &state),
             smallest_gap: topology::smallest_gap(model, &state).map(|(gap, _)| gap),
             state,
@@ -344,8 +356,8 @@ pub fn simulate(
     watch: &mut dyn FnMut(&Accepted<'_>),
 ) -> Result<Simulation, InvalidInput> {
     setup.check(model)?;
-    let mut run =
-        Run { model, setup, cancel, watch, runs: 0, iterations: 0, kicks: 0, unbalanced: 0, path: Vec::new() };
+    let (path, rests) = (Vec::new(), Vec::new());
+    let mut run = Run { model, setup, cancel, watch, runs: 0, iterations: 0, kicks: 0, unbalanced: 0, path, rests };
     let (mut share, mut rest) = (0.0, run.relax(0.0, &model.start));
     // The last position that was reached, then the first one that was missed.
     let steps = if setup.pull.is_empty() && setup.drag.is_none() { 0 } else { setup.steps.max(1) };
@@ -362,8 +374,11 @@ pub fn simulate(
         }
     }
     let Some(mut missed) = missed else { return Ok(run.end(End::Reached, share, &rest, None)) };
-    for _ in 0..HALVINGS {
-        if missed == 0.0 || cancel.load(Ordering::Relaxed) {
+    let way = setup.longest_step() * f64::from(setup.steps.max(1));
+    for halving in 0..MOST_HALVINGS {
+        let locks = failed.as_ref().is_some_and(|trial| trial.outcome == Outcome::Minimum);
+        let fine = !locks || (missed - share) * way <= FINEST * setup.options.tau;
+        if missed == 0.0 || cancel.load(Ordering::Relaxed) || halving >= HALVINGS && fine {
             break;
         }
         let middle = 0.5 * (share + missed);

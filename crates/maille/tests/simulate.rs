@@ -12,8 +12,14 @@ use maille::{
     lattice::Cell,
     limit::energy::EnergyOptions,
     model::Model,
-    simulate::{End, Setup, Simulation, along, elements_at, simulate},
+    record::ForceRow,
+    simulate::{
+        End, Setup, Simulation, WEIGHT_UNIT, along, elements_at,
+        force::{Grip, deformation_gradient, force_row},
+        simulate,
+    },
     solve::{newton::Objective, sparse::Patterns},
+    state::State,
 };
 use maille_geometry::Vec3;
 use std::sync::atomic::AtomicBool;
@@ -143,7 +149,7 @@ fn a_pull_within_reach_is_reached_and_one_beyond_locks() {
     let far = run(&model, &setup(&model, "left", Some(("right", Vec3::new(2.0, 0.0, 0.0))), Vec3::zeros()));
     assert_eq!(far.end, End::Locked, "{:?}", far.note);
     let reached = 2.0 * far.share;
-    assert!((reached - 1.65).abs() < 0.012, "{reached}: the halvings end at 2/4/256, τ is 0.002");
+    assert!((reached - 1.65).abs() < 0.003, "{reached}: τ is 0.002, and the halvings end at a quarter of it");
     assert!(far.smallest_gap.unwrap() > -1e-3);
 }
 
@@ -292,4 +298,186 @@ fn a_step_does_not_depend_on_the_number_of_threads() {
     let (one, two, five) = (run(1), run(2), run(5));
     assert!(one == two && one == five);
     assert!(one.0 > 1.0 && (one.0 - one.1).abs() < 1e-12 * one.0 && one.2.iter().all(|s| s.is_finite()));
+}
+
+/// The places of a setup as grips: what is fixed, and what is pulled.
+fn grips(setup: &Setup) -> Vec<Grip> {
+    let pulled = setup.pull.iter().map(|(e, _)| *e).collect();
+    let way = setup.pull.first().map(|(_, way)| way.clone());
+    let fixed = Grip { name: "fixed".into(), elements: setup.fix.clone(), way: None };
+    let pulled = Grip { name: "pulled".into(), elements: pulled, way };
+    [fixed, pulled].into_iter().filter(|grip| !grip.elements.is_empty()).collect()
+}
+
+/// The rows of a run, and the sum of all forces on the sheet from outside in each, which is what is left unbalanced.
+fn forces(model: &Model, setup: &Setup, end: &Simulation) -> Vec<(ForceRow, Vec3)> {
+    let constant: Vec3 =
+        setup.forces.iter().map(|(_, f)| *f).sum::<Vec3>() + setup.gravity * model.elements.len() as f64;
+    assert_eq!(end.path.len(), end.rests.len());
+    let row = |(frame, state): (&maille::record::FrameRecord, &State)| {
+        let row = force_row(model, setup, &grips(setup), frame.share, frame.energy, state);
+        let held: Vec3 = row.forces.iter().map(|f| Vec3::from(*f)).sum();
+        let sum = held + constant + Vec3::z() * row.floor_force.unwrap_or(0.0);
+        (row, sum)
+    };
+    end.path.iter().zip(&end.rests).map(row).collect()
+}
+
+/// In a state that is not at rest: fixed elements against the energy's differences in their position, pulled ones against
+/// those of their target, and no floor but where there is one.
+#[test]
+fn grips_push_as_the_energy_says() {
+    let model = sheet("1.3", "2x1");
+    let by = Vec3::new(0.7, 0.2, -0.1);
+    let setup = Setup {
+        fix: vec![0, 1],
+        pull: vec![(3, vec![by]), (4, vec![by])],
+        gravity: Vec3::new(0.1, -0.2, -3.0),
+        forces: vec![(1, Vec3::new(5.0, 0.0, 1.0))],
+        floor: Some(-1.08),
+        options: EnergyOptions { alpha: 30.0, ..EnergyOptions::default() },
+        ..setup(&model, "", None, Vec3::zeros())
+    };
+    let x = Configuration::start(shaken(&model, 0.03, 5));
+    let each: Vec<Grip> = grips(&setup)
+        .iter()
+        .flat_map(|grip| grip.elements.iter().map(|e| Grip { elements: vec![*e], ..grip.clone() }))
+        .collect();
+    let row = force_row(&model, &setup, &each, 0.5, 1.0, &x.state);
+    let contacts = setup.options.contacts(&model);
+    let constant = (0..model.elements.len()).map(|e| (e, setup.gravity * WEIGHT_UNIT));
+    let loads = Loads {
+        forces: constant.chain([(1, setup.forces[0].1 * WEIGHT_UNIT)]).collect(),
+        floor: Some(Floor { height: -1.08, alpha: 30.0 }),
+        ..Loads::default()
+    };
+    let energy = SheetEnergy { loads, ..SheetEnergy::new(&model, &contacts) };
+    // Targets are stiff enough for all loads together to move two of them by half of τ.
+    let all: f64 = energy.loads.forces.iter().map(|(_, f)| f.norm()).sum();
+    let stiffness = (all / (2.0 * setup.options.tau)).max(1.0);
+    let targets = [3, 4].map(|element| PositionTarget {
+        element,
+        position: model.start.poses[element].position + by * 0.5,
+        weight: stiffness,
+    });
+    let pulls = Loads { targets: targets.into(), ..Loads::default() };
+    let h = 1e-6;
+    let moved = |e: usize, axis: usize, by: f64| {
+        let mut state = x.state.clone();
+        state.poses[e].position[axis] += by;
+        state
+    };
+    for (grip, force) in each.iter().zip(&row.forces) {
+        let e = grip.elements[0];
+        for axis in 0..3 {
+            let [plus, minus] = [h, -h].map(|by| match grip.way {
+                None => energy.energy(&Configuration::start(moved(e, axis, by))),
+                Some(_) => -pulls.energy(&model, &moved(e, axis, by)),
+            });
+            let difference = (plus - minus) / (2.0 * h) / WEIGHT_UNIT;
+            let size = Vec3::from(*force).norm().max(1.0);
+            assert!((force[axis] - difference).abs() < 1e-5 * size, "{e}, {axis}: {} {difference}", force[axis]);
+        }
+    }
+    assert!(row.forces[0][0].abs() > 1.0, "rings overlap");
+    // The floor's force is that which its height feels.
+    let at = |height: f64| {
+        let floor = Some(Floor { height, alpha: 30.0 });
+        Loads { floor, ..Loads::default() }.energy(&model, &x.state)
+    };
+    let floor = (at(-1.08 + h) - at(-1.08 - h)) / (2.0 * h) / WEIGHT_UNIT;
+    assert!(floor > 1.0 && (row.floor_force.unwrap() - floor).abs() < 1e-5 * floor, "{row:?} {floor}");
+}
+
+#[test]
+fn an_affine_map_is_its_own_deformation_gradient() {
+    let model = sheet("1.1", "3x2");
+    let f = nalgebra::Matrix2::new(1.3, -0.2, 0.05, 0.9);
+    let mut state = shaken(&model, 0.5, 3);
+    for (pose, start) in state.poses.iter_mut().zip(&model.start.poses) {
+        let xy = f * start.position.xy();
+        pose.position = Vec3::new(xy.x + 4.0, xy.y - 3.0, pose.position.z);
+    }
+    let found = deformation_gradient(&model, &state).unwrap();
+    assert!((found - f).norm() < 1e-12, "{found}");
+    // Its grips are stretched as the lines along the pull are.
+    let by = Vec3::new(2.0, 0.0, 0.0);
+    let pulled = setup(&model, "left", Some(("right", by)), Vec3::zeros());
+    let row = force_row(&model, &pulled, &grips(&pulled), 0.0, 0.0, &state);
+    assert_eq!(row.deformation, Some([[found.m11, found.m12], [found.m21, found.m22]]));
+    let middle = |edge: &str| {
+        let e = elements_at(&model, edge).unwrap();
+        e.iter().map(|e| model.start.poses[*e].position).sum::<Vec3>() / e.len() as f64
+    };
+    let apart = (middle("right") - middle("left")).xy();
+    assert!((row.stretch.unwrap() - (f * apart).x / apart.x).abs() < 1e-12);
+    // Pushed together it is the same stretch; the pull is then a push, and across the grips there is none.
+    let pushed = setup(&model, "left", Some(("right", -by)), Vec3::zeros());
+    assert_eq!(force_row(&model, &pushed, &grips(&pushed), 0.0, 0.0, &state).stretch, row.stretch);
+    let sheared = setup(&model, "left", Some(("right", Vec3::y())), Vec3::zeros());
+    let across = force_row(&model, &sheared, &grips(&sheared), 0.0, 0.0, &state);
+    assert!(across.stretch.is_none() && across.mean_force.is_some());
+    // A strip one ring wide has no F.
+    let line = sheet("1.1", "1x1");
+    let on_one_line = |model: &Model| {
+        let mut model = model.clone();
+        model.start.poses.iter_mut().for_each(|pose| pose.position.y = 0.0);
+        deformation_gradient(&model, &model.start)
+    };
+    assert!(deformation_gradient(&line, &line.start).is_some() && on_one_line(&line).is_none());
+}
+
+/// Chains of three links, 3.75 long at the start and 5.4 at most, give way without a force, and then stop: 5.4/3.75 = 1.44. The
+/// stop does not depend on how far a target may be missed, which decides how hard the pull is at the end.
+#[test]
+fn a_sheet_is_free_and_then_stops() {
+    let model = sheet("1.1", "2x2");
+    for tau in [0.002, 0.02] {
+        let mut pulled = setup(&model, "left", Some(("right", Vec3::new(2.0, 0.0, 0.0))), Vec3::zeros());
+        (pulled.steps, pulled.options.tau) = (if tau < 0.01 { 2 } else { 20 }, tau);
+        let end = run(&model, &pulled);
+        assert_eq!(end.end, End::Locked);
+        let rows = forces(&model, &pulled, &end);
+        for (row, sum) in &rows {
+            let (stretch, force) = (row.stretch.unwrap(), row.mean_force.unwrap());
+            assert!(sum.norm() < 1e-2, "{stretch}: {sum:?} is unbalanced");
+            assert!(stretch > 1.4399 || force.abs() < 1e-3, "{stretch}: {force}");
+            let [fixed, pulling] = [row.forces[0], row.forces[1]].map(Vec3::from);
+            assert!(
+                (pulling.x / 2.0 - force).abs() < 1e-12 * force.abs().max(1.0) && (fixed + pulling - sum).norm() == 0.0
+            );
+        }
+        let last = &rows.last().unwrap().0;
+        assert!((last.stretch.unwrap() - 1.44).abs() < 3e-4, "{last:?}");
+        let hardest = 2.0 * tau / WEIGHT_UNIT;
+        assert!((0.7 * hardest..=hardest).contains(&last.mean_force.unwrap()), "{last:?}");
+    }
+}
+
+/// What hangs is held with its weight, what has fallen is carried by the floor, and a sheet that is pulled under weight is
+/// held by all of them.
+#[test]
+fn grips_and_floor_carry_the_weight() {
+    let model = sheet("1.1", "1x3");
+    let weight = Vec3::new(0.0, -1.0, 0.0);
+    let hangs = setup(&model, "top", None, weight);
+    let rows = forces(&model, &hangs, &run(&model, &hangs));
+    let (row, sum) = rows.last().unwrap();
+    let count = model.elements.len() as f64;
+    assert!((row.forces[0][1] - count).abs() < 1e-2 * count && sum.norm() < 1e-2 * count, "{row:?}, {sum:?}");
+    assert!(row.stretch.is_none() && row.mean_force.is_none() && row.floor_force.is_none());
+
+    let model = sheet("1.1", "2x2");
+    let down = Vec3::new(0.0, 0.0, -1.0);
+    let lies = Setup { floor: Some(-2.0), ..setup(&model, "", None, down) };
+    let pulled = setup(&model, "left", Some(("right", Vec3::new(0.6, 0.0, 0.0))), down);
+    let count = model.elements.len() as f64;
+    for setup in [lies, Setup { floor: Some(-2.0), ..pulled }] {
+        let rows = forces(&model, &setup, &run(&model, &setup));
+        assert!(!rows.is_empty());
+        for (row, sum) in rows {
+            assert!(sum.norm() < 1e-2 * count, "{sum:?} of {count} is unbalanced: {row:?}");
+            assert!(row.floor_force.is_some_and(|force| force > 0.1 * count), "{row:?}");
+        }
+    }
 }

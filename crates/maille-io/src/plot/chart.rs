@@ -1,4 +1,4 @@
-//! A chart with two axes: curves over l2 or over the direction of the pull.
+//! A chart with two axes: curves over l2, over the direction of the pull, or over the stretch.
 
 use super::canvas::{Anchor, Canvas, Stroke, TextStyle};
 use super::frame::{Entry, Frame, GRID, INK, Layout, MARGIN, RIM, SOFT, TOP, style};

@@ -33,15 +33,20 @@ pub(super) fn heading(design: &Design) -> String {
 
 /// Heading of several records: their designs.
 pub(super) fn title(records: &[NamedRecord]) -> String {
-    let mut names: Vec<&str> = Vec::new();
-    for named in records {
-        let name = named.record.run.design.name.as_str();
-        if !names.contains(&name) {
-            names.push(name);
+    title_of(records.iter().map(|named| &named.record.run.design))
+}
+
+/// Heading of several sheets: their designs, each once.
+pub(super) fn title_of<'a>(designs: impl Iterator<Item = &'a Design>) -> String {
+    let mut all: Vec<&Design> = Vec::new();
+    for design in designs {
+        if all.iter().all(|known| known.name != design.name) {
+            all.push(design);
         }
     }
-    match (names.as_slice(), records.first()) {
-        ([_], Some(first)) => heading(&first.record.run.design),
+    let names: Vec<&str> = all.iter().map(|design| design.name.as_str()).collect();
+    match (names.as_slice(), all.first()) {
+        ([_], Some(first)) => heading(first),
         ([most @ .., last], _) if names.len() <= 6 => format!("{} and {last}", most.join(", ")),
         _ => format!(
             "{} and {} more designs",

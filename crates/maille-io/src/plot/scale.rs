@@ -54,6 +54,14 @@ impl Axis {
         Self { low: scale.low, high: scale.high, logarithmic: false, ticks }
     }
 
+    /// Stretches: from 1, or from below it where a sheet is pushed together, with room behind the largest, where curves rise
+    /// straight up.
+    pub(super) fn of_stretch(values: impl Iterator<Item = f64>) -> Self {
+        let scale = Scale::new(1.0, values.map(|x| if x > 1.0 { 1.0 + 1.03 * (x - 1.0) } else { x }), 6);
+        let ticks = scale.ticks.iter().map(|&tick| (tick, scale.label(tick))).collect();
+        Self { low: scale.low, high: scale.high, logarithmic: false, ticks }
+    }
+
     /// Logarithmic where positive values differ by a large factor, else linear.
     pub(super) fn of_effort(values: &[f64]) -> Self {
         let positive = || values.iter().copied().filter(|x| *x > 0.0);
@@ -168,6 +176,8 @@ mod tests {
             ["0°", "30°", "60°", "90°", "120°", "150°", "180°"]
         );
         assert_eq!(ticks(&Axis::of_directions(&[30.0])), ["30°", "31°"]);
+        assert_eq!(ticks(&Axis::of_stretch([1.0, 1.44].into_iter())), ["1.0", "1.1", "1.2", "1.3", "1.4", "1.5"]);
+        assert_eq!(ticks(&Axis::of_stretch([1.0, 1.8].into_iter())), ["1.0", "1.2", "1.4", "1.6", "1.8", "2.0"]);
         let axis = Axis::of_effort(&[1.0, 100.0]);
         assert!(axis.is_logarithmic());
         assert!((axis.fraction(10.0) - 0.5).abs() < 1e-12);

@@ -1,9 +1,10 @@
-//! `simulation.json` and `frames.jsonl`: what a simulated sheet leaves behind.
+//! `simulation.json`, `frames.jsonl` and `forces.csv`: what a simulated sheet leaves behind.
 //!
-//! Their folder is never a mixture: `simulation.json` is removed first and written last, and has the checksum of both.
+//! Their folder is never a mixture: `simulation.json` is removed first and written last, and has the checksums of all three.
 
 use super::{
     error::{RecordError, complete},
+    forces::{ForceTable, read_forces, write_forces},
     lock::FolderLock,
     run::sha256,
 };
@@ -14,14 +15,14 @@ use maille::{
     limit::energy::EnergyOptions,
     model::Model,
     record::FrameRecord,
-    simulate::{End, Setup, Simulation, elements_at},
+    simulate::{End, Setup, Simulation, elements_at, force::Grip},
 };
 use maille_geometry::Vec3;
 use serde::{Deserialize, Serialize};
 use std::{fs, io::Write, path::Path};
 
-/// Names of the two files of the record.
-pub const SIMULATION: [&str; 2] = ["simulation.json", "frames.jsonl"];
+/// Names of the files of the record; the last one only where the frames are states at rest.
+pub const SIMULATION: [&str; 3] = ["simulation.json", "frames.jsonl", "forces.csv"];
 
 /// What was done to a finite sheet, and what came out.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -38,6 +39,9 @@ pub struct SimulationRecord {
     pub setup: SheetPlan,
     /// What came out.
     pub outcome: SimulationOutcome,
+    /// SHA-256, in hexadecimal, of `forces.csv`, where there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub forces_sha256: Option<String>,
     /// SHA-256, in hexadecimal, of this document without this field, on one line, with `frames.jsonl` behind it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sha256: Option<String>,
@@ -100,32 +104,46 @@ fn usual_tau() -> f64 {
     EnergyOptions::default().tau
 }
 
+fn elements_of(model: &Model, field: &str, place: &str) -> Result<Vec<usize>, InvalidInput> {
+    elements_at(model, place).map_err(|problem| InvalidInput { field: field.into(), ..problem })
+}
+
 impl SheetPlan {
     /// Whether nothing is pulled and no force acts.
     pub fn is_still(&self) -> bool {
         self.pull.is_empty() && self.force.is_empty() && self.gravity.is_none_or(|g| g == [0.0; 3])
     }
 
+    /// The places that are held, on the elements of a sheet: fixed ones, then pulled ones. An element of two fixed places, as
+    /// at a corner, belongs to the first; a place without an element of its own is left out. A wrong place names its field:
+    /// `fix` or `pull`.
+    pub fn grips(&self, model: &Model) -> Result<Vec<Grip>, InvalidInput> {
+        let mut grips: Vec<Grip> = Vec::new();
+        for place in &self.fix {
+            let mut elements = elements_of(model, "fix", place)?;
+            elements.retain(|e| !grips.iter().any(|grip| grip.elements.contains(e)));
+            grips.push(Grip { name: place.clone(), elements, way: None });
+        }
+        grips.retain(|grip| !grip.elements.is_empty());
+        for PulledPlace { place, way } in &self.pull {
+            let elements = elements_of(model, "pull", place)?;
+            let way = way.iter().map(|by| Vec3::from(*by) / model.unit).collect();
+            grips.push(Grip { name: place.clone(), elements, way: Some(way) });
+        }
+        Ok(grips)
+    }
+
     /// The plan on the elements of a sheet. A wrong place names its field: `fix`, `pull` or `force`.
     pub fn setup(&self, model: &Model) -> Result<Setup, InvalidInput> {
-        let at = |field: &str, place: &str| {
-            elements_at(model, place).map_err(|problem| InvalidInput { field: field.into(), ..problem })
-        };
-        let mut fix = Vec::new();
-        for place in &self.fix {
-            for element in at("fix", place)? {
-                if !fix.contains(&element) {
-                    fix.push(element); // a corner belongs to two edges
-                }
+        let (mut fix, mut pull, mut forces) = (Vec::new(), Vec::new(), Vec::new());
+        for Grip { elements, way, .. } in self.grips(model)? {
+            match way {
+                None => fix.extend(elements),
+                Some(way) => pull.extend(elements.into_iter().map(|element| (element, way.clone()))),
             }
         }
-        let (mut pull, mut forces) = (Vec::new(), Vec::new());
-        for PulledPlace { place, way } in &self.pull {
-            let way: Vec<Vec3> = way.iter().map(|by| Vec3::from(*by) / model.unit).collect();
-            pull.extend(at("pull", place)?.into_iter().map(|element| (element, way.clone())));
-        }
         for LoadedPlace { place, force } in &self.force {
-            forces.extend(at("force", place)?.into_iter().map(|element| (element, Vec3::from(*force))));
+            forces.extend(elements_of(model, "force", place)?.into_iter().map(|element| (element, Vec3::from(*force))));
         }
         let options = EnergyOptions {
             alpha: self.alpha,
@@ -159,12 +177,18 @@ impl SimulationRecord {
                 unbalanced: end.unbalanced,
                 note: end.note.clone(),
             },
+            forces_sha256: None,
             sha256: None,
         }
     }
 
-    /// With the checksum of itself and its frames.
-    pub fn sealed(mut self, frames: &[FrameRecord]) -> Self {
+    /// With the checksums of its table, and of itself and its frames.
+    pub fn sealed(mut self, frames: &[FrameRecord], forces: Option<&ForceTable>) -> Self {
+        self.forces_sha256 = forces.map(|table| sha256(write_forces(table).as_bytes()));
+        self.with_checksum(frames)
+    }
+
+    fn with_checksum(mut self, frames: &[FrameRecord]) -> Self {
         self.sha256 = None;
         let text = serde_json::to_string(&self).expect("no map with odd keys") + "\n" + &write_frames(frames);
         self.sha256 = Some(sha256(text.as_bytes()));
@@ -172,24 +196,45 @@ impl SimulationRecord {
     }
 }
 
+/// A simulation as its folder holds it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SimulationFiles {
+    /// `simulation.json`.
+    pub record: SimulationRecord,
+    /// `frames.jsonl`.
+    pub frames: Vec<FrameRecord>,
+    /// `forces.csv`; none where the frames are not at rest, or are of an earlier version.
+    pub forces: Option<ForceTable>,
+}
+
 /// Writes a simulation to its folder, which is created if it is not there.
-pub fn save_simulation(folder: &Path, record: SimulationRecord, frames: &[FrameRecord]) -> Result<(), RecordError> {
+pub fn save_simulation(
+    folder: &Path,
+    record: SimulationRecord,
+    frames: &[FrameRecord],
+    forces: Option<&ForceTable>,
+) -> Result<(), RecordError> {
     let _lock = FolderLock::take(folder)?;
     files::remove_leftovers(folder).map_err(|(path, e)| RecordError::io("remove", path)(e))?;
-    let [first, second] = SIMULATION.map(|name| folder.join(name));
-    if first.exists() {
-        fs::remove_file(&first).map_err(RecordError::io("remove", &first))?;
+    let [first, second, third] = SIMULATION.map(|name| folder.join(name));
+    // A table of an earlier simulation is none of this one.
+    for path in [&first, &third].into_iter().filter(|path| path.exists()) {
+        fs::remove_file(path).map_err(RecordError::io("remove", path))?;
     }
-    let texts = [(second, write_frames(frames)), (first, write_simulation(&record.sealed(frames)))];
-    for (path, text) in texts {
+    let texts = [
+        Some((second, write_frames(frames))),
+        forces.map(|table| (third, write_forces(table))),
+        Some((first, write_simulation(&record.sealed(frames, forces)))),
+    ];
+    for (path, text) in texts.into_iter().flatten() {
         files::replace(&path, |out| out.write_all(text.as_bytes())).map_err(RecordError::io("write", &path))?;
     }
     Ok(())
 }
 
 /// Reads a simulation from its folder.
-pub fn open_simulation(folder: &Path) -> Result<(SimulationRecord, Vec<FrameRecord>), RecordError> {
-    let [first, second] = SIMULATION.map(|name| folder.join(name));
+pub fn open_simulation(folder: &Path) -> Result<SimulationFiles, RecordError> {
+    let [first, second, third] = SIMULATION.map(|name| folder.join(name));
     let read = |path: &Path| {
         let text = fs::read_to_string(path).map_err(RecordError::io("read", path))?;
         Ok::<_, RecordError>((path.display().to_string(), text))
@@ -197,18 +242,23 @@ pub fn open_simulation(folder: &Path) -> Result<(SimulationRecord, Vec<FrameReco
     let ((file, text), (frames_file, lines)) = (read(&first)?, read(&second)?);
     let record = read_simulation(&file, &text)?;
     let frames = read_frames(&frames_file, &lines)?;
+    let by = SIMULATION[0];
     if let Some(expected) = record.sha256.clone() {
-        let found = record.clone().sealed(&frames).sha256.unwrap_or_default();
+        let found = record.clone().with_checksum(&frames).sha256.unwrap_or_default();
         if found != expected {
-            return Err(RecordError::Edited {
-                file: format!("{file} or {frames_file}"),
-                found,
-                expected,
-                by: SIMULATION[0],
-            });
+            return Err(RecordError::Edited { file: format!("{file} or {frames_file}"), found, expected, by });
         }
     }
-    Ok((record, frames))
+    let mut forces = None;
+    if let Some(expected) = record.forces_sha256.clone() {
+        let (file, table) = read(&third)?;
+        let found = sha256(table.as_bytes());
+        if found != expected {
+            return Err(RecordError::Edited { file, found, expected, by });
+        }
+        forces = Some(read_forces(&file, &table)?);
+    }
+    Ok(SimulationFiles { record, frames, forces })
 }
 
 /// What came out of a simulation. Lengths in the file's unit.

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import json
 import os
 from collections.abc import Mapping, Sequence
@@ -58,12 +60,16 @@ class Simulation(Columns):
     position: NDArray[np.float64]
     #: (F, M, 4): unit quaternions (w, x, y, z) that turn them from the design's pose.
     rotation: NDArray[np.float64]
+    #: The columns of `forces.csv`, of F rows, NaN where a cell is empty: `stretch`, `mean_force`, `f_xx`, `force_left_x` and so
+    #: on, as docs/record.md has them. None where a folder has no such table.
+    forces: dict[str, NDArray[np.float64]] | None = field(repr=False)
     #: `simulation.json` and the lines of `frames.jsonl`.
     document: dict[str, Any] = field(repr=False)
     frames: tuple[dict[str, Any], ...] = field(repr=False)
+    _forces_csv: str | None = field(repr=False, compare=False)
 
     @classmethod
-    def _of(cls, text: str, lines: str) -> Simulation:
+    def _of(cls, text: str, lines: str, forces: str | None) -> Simulation:
         document: dict[str, Any] = json.loads(text)
         frames: tuple[dict[str, Any], ...] = tuple(json.loads(line) for line in lines.splitlines())
         poses = [frame["poses"] for frame in frames]
@@ -76,8 +82,10 @@ class Simulation(Columns):
             energy=np.array([frame["energy"] for frame in frames], dtype=np.float64),
             position=np.array([[pose["position"] for pose in frame] for frame in poses], dtype=np.float64),
             rotation=np.array([[pose["rotation"] for pose in frame] for frame in poses], dtype=np.float64),
+            forces=None if forces is None else _columns(forces),
             document=document,
             frames=frames,
+            _forces_csv=forces,
         )
 
     def to_numpy(self) -> dict[str, NDArray[Any]]:
@@ -106,6 +114,20 @@ class Simulation(Columns):
         ax.set_title(f"{self.design.name}, {self.tile} cells: {self.end}")
         return ax
 
+    def plot_force(self, *, ax: Axes | None = None, **line: Any) -> Axes:
+        """Draws the mean force along the pull on a pulled element against the stretch, and gives the axes."""
+        if self.forces is None or not np.isfinite(self.forces["stretch"]).any():
+            raise ArgumentError("plot_force", "no frame has a stretch along a pull", "hold an edge and pull the one opposite to it")
+        if ax is None:
+            from matplotlib import pyplot
+
+            ax = pyplot.figure(layout="constrained").add_subplot()
+        ax.plot(self.forces["stretch"], self.forces["mean_force"], **{"marker": "o", **line})
+        ax.set_xlabel("stretch between the pulled place and the opposite one")
+        ax.set_ylabel("mean force on a pulled element [beta R/1000]")
+        ax.set_title(f"{self.design.name}, {self.tile} cells: {self.end}")
+        return ax
+
     def sheet(self, frame: int = -1) -> Sheet:
         """The sheet in a frame, as poses to draw and to show."""
         columns, rows = (int(n) for n in self.tile.split("x"))
@@ -117,7 +139,7 @@ class Simulation(Columns):
     def save(self, folder: str | os.PathLike[str]) -> None:
         """Writes the folder that `maille simulate` writes; `maille render --from FOLDER` draws it."""
         lines = "".join(json.dumps(frame, ensure_ascii=False) + "\n" for frame in self.frames)
-        _native.save_simulation(Path(folder), json.dumps(self.document, ensure_ascii=False) + "\n", lines)
+        _native.save_simulation(Path(folder), json.dumps(self.document, ensure_ascii=False) + "\n", lines, self._forces_csv)
 
 
 def read_simulation(folder: str | os.PathLike[str]) -> Simulation:
@@ -179,6 +201,12 @@ def simulate(
     if out is not None:
         simulation.save(out)
     return simulation
+
+
+def _columns(text: str) -> dict[str, NDArray[np.float64]]:
+    header, *rows = csv.reader(io.StringIO(text, newline=""))
+    of = [[float(cell) if cell else np.nan for cell in row] for row in rows]
+    return dict(zip(header, np.array(of, dtype=np.float64).reshape(len(rows), len(header)).T))
 
 
 def _number(name: str, value: float) -> float:
