@@ -88,6 +88,7 @@ fn energy_options(named: &str, seed: u64) -> PyResult<EnergyOptions> {
     let positive = [
         ("alpha", options.alpha),
         ("corner_weight", options.corner_weight),
+        ("gradient_tolerance", options.gradient_tolerance),
         ("tau", options.tau),
         ("l1_step", options.l1_step),
         ("l1_resolution", options.l1_resolution),

@@ -30,7 +30,7 @@ fn thick(name: &str, minor_radius: f64) -> Model {
 
 fn options() -> ContactOptions {
     let law = ContactLaw::Barrier;
-    ContactOptions { law, alpha: 30.0, sample_offsets_rad: vec![-0.1, 0.1], minima: MinimaMethod::Enumeration }
+    ContactOptions { law, alpha: 30.0, sample_offsets_rad: vec![-0.1, 0.1], minima: MinimaMethod::Enumeration, flat_points: 64 }
 }
 
 /// Runs `check` on shaken states of single-ring and multi-ring designs under both protocols.

@@ -6,6 +6,7 @@ use crate::{
     energy::{
         Configuration, ContactOptions, HessianMethod, MinimaMethod, SheetEnergy,
         barrier::ContactLaw,
+        flat::FLAT_CURVATURE,
         target::{Protocol, Target, target_gradient},
     },
     lattice::direction,
@@ -14,6 +15,7 @@ use crate::{
     solve::{
         descent::steepest_descent,
         newton::{Minimization, NewtonOptions, Outcome, minimize},
+        shifted::{Reading, shifted_newton},
     },
     state::State,
     topology::{self, apart::comes_apart, side::SideSigns},
@@ -28,6 +30,10 @@ use std::sync::atomic::AtomicBool;
 pub enum Minimiser {
     /// Newton's iteration with floored eigenvalues.
     Newton,
+    /// Newton's iteration with growing shifts γ 1 of the Hessian (Algorithm 4.3.2), trials from the same point.
+    NewtonShifted,
+    /// Algorithm 4.3.2 to the letter: trials add up, γ is not reset.
+    NewtonPrinted,
     /// Plain gradient descent, which the thesis rejects.
     GradientDescent,
 }
@@ -68,6 +74,16 @@ pub struct EnergyOptions {
     /// Refuse steps that flip a side sign (§4.3.3).
     #[serde(default)]
     pub side_signs: bool,
+    /// |gradient| of a run that is at rest, in β R.
+    #[serde(default = "gradient_tolerance")]
+    pub gradient_tolerance: f64,
+    /// Points on each circle of a pair that touches along nearly the whole circle; 0: minima alone, as in records of before.
+    #[serde(default)]
+    pub flat_points: usize,
+}
+
+fn gradient_tolerance() -> f64 {
+    1e-6
 }
 
 fn barrier() -> ContactLaw {
@@ -96,6 +112,8 @@ impl Default for EnergyOptions {
             contact_law: ContactLaw::Barrier,
             minimiser: Minimiser::Newton,
             side_signs: false,
+            gradient_tolerance: gradient_tolerance(),
+            flat_points: 64,
         }
     }
 }
@@ -104,8 +122,6 @@ impl Default for EnergyOptions {
 const L1_MOST: f64 = 20.0;
 /// l1 is not lowered beyond this.
 const L1_LEAST: f64 = -0.95;
-/// |gradient| of a converged run, in β R.
-const GRADIENT_TOLERANCE: f64 = 1e-6;
 /// Floor of the curvature in Newton's step, in β.
 const CURVATURE_FLOOR: f64 = 1e-3;
 /// Negative curvature that makes a saddle, in β.
@@ -119,7 +135,7 @@ pub struct EnergyParameters {
     #[serde(flatten)]
     options: EnergyOptions,
     sample_offsets_rad: Vec<f64>,
-    gradient_tolerance: f64,
+    flat_curvature: f64,
     curvature_floor: f64,
     saddle_tolerance: f64,
     max_kicks: usize,
@@ -128,12 +144,15 @@ pub struct EnergyParameters {
 }
 
 impl EnergyOptions {
+    /// As many points as can follow a flat pair's circle; 0 is allowed beside these.
+    pub const FLAT_POINTS: std::ops::RangeInclusive<usize> = 16..=1024;
+
     /// All parameters and tolerances of a run on `model`.
     pub fn parameters(&self, model: &Model) -> EnergyParameters {
         EnergyParameters {
             options: self.clone(),
             sample_offsets_rad: self.sample_offsets_rad(model),
-            gradient_tolerance: GRADIENT_TOLERANCE,
+            flat_curvature: FLAT_CURVATURE,
             curvature_floor: CURVATURE_FLOOR,
             saddle_tolerance: SADDLE_TOLERANCE,
             max_kicks: MAX_KICKS,
@@ -149,13 +168,14 @@ impl EnergyOptions {
             alpha: self.alpha,
             sample_offsets_rad: self.sample_offsets_rad(model),
             minima: self.minima,
+            flat_points: self.flat_points,
         }
     }
 
     /// Tolerances of one minimisation.
     pub fn newton(&self) -> NewtonOptions {
         NewtonOptions {
-            gradient_tolerance: GRADIENT_TOLERANCE,
+            gradient_tolerance: self.gradient_tolerance,
             curvature_floor: CURVATURE_FLOOR,
             saddle_tolerance: SADDLE_TOLERANCE,
             max_iterations: self.max_iterations,
@@ -219,6 +239,8 @@ impl<'a> EnergyMethod<'a> {
         let (start, options) = (Configuration::start(self.start.clone()), self.options.newton());
         let end = match self.options.minimiser {
             Minimiser::Newton => minimize(&energy, start, &options, cancel, &mut |_, _| {}),
+            Minimiser::NewtonShifted => shifted_newton(&energy, start, &options, Reading::Corrected, cancel),
+            Minimiser::NewtonPrinted => shifted_newton(&energy, start, &options, Reading::Printed, cancel),
             Minimiser::GradientDescent => steepest_descent(&energy, start, &options, cancel),
         };
         let residual = target.residual(self.model, &end.point.state, &end.point.corner);
