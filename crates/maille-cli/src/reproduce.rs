@@ -79,8 +79,7 @@ const CORNERS_TAU: f64 = 0.1;
 /// Designs of the text whose rings stand so far apart that few directions have a limit with l2 > 0, or none: the energy
 /// method would spend nine tenths of its time to find that out. Their closer variants are measured there.
 const WIDE: [&str; 3] = ["1.2", "1.3", "3.2"];
-/// Designs of doubled rings, which take most of the time. The energy method does not even bring them to rest at a limit
-/// (docs/theory/energy.md).
+/// Designs of doubled rings, which take most of the time.
 const DOUBLED: [&str; 2] = ["5.1", "5.2"];
 /// Between markers of the energy method on exact curves, and where directions are few.
 const MARKERS_DEG: f64 = 15.0;

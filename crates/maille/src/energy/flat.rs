@@ -120,8 +120,7 @@ impl FlatPair {
         let height_b = exchanged(&self.views[1].center_jets()[1]);
         let apart_sq = sum(&[(1.0, &distance_sq), (-0.5, &square(&height_a)), (-0.5, &square(&height_b))]);
         let (fourth, over) = (square(&apart_sq), 1.0 / self.scale);
-        let mut curvature_sq =
-            sum(&[(-1.0, &square(&cosine)), (over, &fourth), (over * self.unequal, &apart_sq)]);
+        let mut curvature_sq = sum(&[(-1.0, &square(&cosine)), (over, &fourth), (over * self.unequal, &apart_sq)]);
         curvature_sq.value += 1.0;
         let [value, first, second] = share(curvature_sq.value);
         let grad = curvature_sq.grad * first;
@@ -173,4 +172,116 @@ fn exchanged(j: &Jet) -> Jet {
     let grad = Grad::from_fn(|k, _| from(k).1 * j.grad[from(k).0]);
     let hess = Hess::from_fn(|p, q| from(p).1 * from(q).1 * j.hess[(from(p).0, from(q).0)]);
     Jet { value: j.value, grad, hess }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{SVector, Unit, UnitQuaternion};
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    const TOUCHING: f64 = 0.2;
+
+    /// Two rings, each with an arm from its element's reference point, that can be moved by y.
+    struct Pair {
+        normals: [Vec3; 2],
+        arms: [Vec3; 2],
+        references: [Vec3; 2],
+        radii: [f64; 2],
+    }
+
+    impl Pair {
+        /// A pair with κ about `size`, in contact, turned as a whole at random.
+        fn random(rng: &mut ChaCha8Rng, size: f64, radii: [f64; 2]) -> Self {
+            let mut vector = || Vec3::from_fn(|_, _| rng.random_range(-1.0..1.0));
+            let turn = UnitQuaternion::from_scaled_axis(vector() * 2.0);
+            let (tilt, offset, arms) = (vector() * size, vector() * (size * TOUCHING).sqrt(), [vector(), vector()]);
+            let unequal: f64 = radii[0] - radii[1];
+            let height = (0.98 * TOUCHING * TOUCHING - unequal * unequal).sqrt();
+            let center = Vec3::new(0.3 * offset.x, 0.3 * offset.y, height);
+            let normal = UnitQuaternion::from_scaled_axis(Vec3::new(tilt.x, tilt.y, 0.0)) * Vec3::z();
+            let centers = [Vec3::zeros(), turn * center];
+            let normals = [turn * Vec3::z(), turn * normal];
+            Pair { normals, arms, references: [centers[0] - arms[0], centers[1] - arms[1]], radii }
+        }
+
+        fn sides(&self, y: &SVector<f64, 9>) -> [Side; 2] {
+            let part = |k: usize| Vec3::new(y[k], y[k + 1], y[k + 2]);
+            [0, 1].map(|ring| {
+                let turn = UnitQuaternion::from_scaled_axis(part(3 + 3 * ring));
+                let reference = self.references[ring] + part(0) * ring as f64;
+                let circle = |normal: Vec3| {
+                    Circle::new(reference + turn * self.arms[ring], Unit::new_normalize(normal), self.radii[ring])
+                };
+                let (at, fixed) = (circle(turn * self.normals[ring]), turn * circle(self.normals[ring]).frame().0);
+                let (u, v) = at.frame();
+                Side { circle: at, reference, angle_rad: fixed.dot(&v).atan2(fixed.dot(&u)) }
+            })
+        }
+
+        fn flat(&self, y: &SVector<f64, 9>) -> FlatPair {
+            let [a, b] = self.sides(y);
+            FlatPair::new(&a, &b, TOUCHING, 24)
+        }
+    }
+
+    const LAW: ContactLaw = ContactLaw::Barrier;
+
+    #[test]
+    fn derivatives_match_differences() {
+        let (mut rng, mut between) = (ChaCha8Rng::seed_from_u64(7), 0);
+        for round in 0..40 {
+            let pair = Pair::random(&mut rng, 0.025, if round % 2 == 0 { [1.0, 1.0] } else { [1.0, 0.97] });
+            let zero = SVector::<f64, 9>::zeros();
+            let here = pair.flat(&zero);
+            let [a, b] = pair.sides(&zero);
+            assert!((share(curvature_sq(&a.circle, &b.circle, TOUCHING))[0] - here.weight().value).abs() < 1e-9);
+            between += usize::from(here.weight().value > 0.0 && here.weight().value < 1.0);
+            let jets: [fn(&FlatPair) -> Jet; 2] = [FlatPair::weight, |flat| flat.jet(LAW, 30.0)];
+            for (jet, step) in jets.into_iter().zip([1e-6, 1e-6]) {
+                let at = jet(&here);
+                for k in 0..9 {
+                    let moved = |sign: f64| jet(&pair.flat(&(SVector::<f64, 9>::ith(k, sign * step))));
+                    let (plus, minus) = (moved(1.0), moved(-1.0));
+                    let slope = (plus.value - minus.value) / (2.0 * step);
+                    assert!((at.grad[k] - slope).abs() < 1e-5 * at.grad.amax() + 1e-7, "{} {slope}", at.grad[k]);
+                    for q in 0..9 {
+                        let both = |s: f64, t: f64| {
+                            let y = SVector::<f64, 9>::ith(k, s * 1e-4) + SVector::<f64, 9>::ith(q, t * 1e-4);
+                            jet(&pair.flat(&y)).value
+                        };
+                        let second = (both(1.0, 1.0) - both(1.0, -1.0) - both(-1.0, 1.0) + both(-1.0, -1.0)) / 4e-8;
+                        let error = (at.hess[(k, q)] - second).abs();
+                        assert!(error < 2e-2 * at.hess.amax() + 1e-4, "{k} {q}: {} {second}", at.hess[(k, q)]);
+                    }
+                }
+            }
+            assert!((here.energy(LAW, 30.0) - here.jet(LAW, 30.0).value).abs() < 1e-15);
+            // Seen from the other ring it is the same pair.
+            let exchanged_pair = FlatPair::new(&b, &a, TOUCHING, 24);
+            let other = exchanged(&exchanged_pair.jet(LAW, 30.0));
+            assert!((other.grad - here.jet(LAW, 30.0).grad).amax() < 1e-12 && other.value > 0.0);
+            assert!((exchanged(&exchanged_pair.weight()).hess - here.weight().hess).amax() < 1e-6);
+        }
+        assert!(between >= 5, "{between} poses within the switch");
+    }
+
+    #[test]
+    fn the_share_is_twice_continuously_differentiable() {
+        let flat_sq = FLAT_CURVATURE * FLAT_CURVATURE;
+        for (at, expected) in [(0.25, 1.0), (1.0, 0.0)] {
+            for side in [-1e-9, 1e-9] {
+                let [value, first, second] = share((at + side) * flat_sq);
+                assert!((value - expected).abs() < 1e-8);
+                assert!((first * flat_sq).abs() < 1e-6 && (second * flat_sq * flat_sq).abs() < 1e-6);
+            }
+        }
+        for k in 1..40 {
+            let at = (0.2 + 0.022 * f64::from(k)) * flat_sq;
+            let h = 1e-5 * flat_sq;
+            let ([minus, ..], [_, first, _], [plus, ..]) = (share(at - h), share(at), share(at + h));
+            assert!(((plus - minus) / (2.0 * h) - first).abs() * flat_sq < 1e-6);
+        }
+    }
 }

@@ -250,7 +250,7 @@ impl<'a> EnergyMethod<'a> {
 
     /// The limit of l1 along `direction_deg` with l2 held.
     pub fn limit(&self, direction_deg: f64, l2: f64, cancel: &AtomicBool) -> LimitOutcome {
-        let mut search = Search { method: self, direction_deg, l2, cancel, iterations: 0, runs: 0 };
+        let mut search = Search { method: self, direction_deg, l2, cancel, iterations: 0, runs: 0, restless: 0 };
         let along = direction(direction_deg);
         let linked = topology::binds(self.model, [along.x, along.y]);
         if let Some(note) = &self.start_note {
@@ -278,6 +278,8 @@ struct Search<'a> {
     cancel: &'a AtomicBool,
     iterations: u64,
     runs: u64,
+    /// Runs that did not come to rest.
+    restless: u64,
 }
 
 impl Search<'_> {
@@ -285,6 +287,7 @@ impl Search<'_> {
         let (end, residual, gradient) = self.method.run(target_gradient(self.direction_deg, l1, self.l2), self.cancel);
         self.iterations += end.iterations as u64;
         self.runs += 1;
+        self.restless += u64::from(end.outcome != Outcome::Minimum);
         Trial { l1, state: end.point.state, gradient, residual, outcome: end.outcome, gradient_norm: end.gradient_norm }
     }
 
@@ -308,6 +311,13 @@ impl Search<'_> {
             let l1 = f64::from(steps) * if upward { options.l1_step } else { -options.l1_step };
             if l1 > L1_MOST {
                 return self.end(Status::NotConverged, low, Some(format!("still within τ at l1 = {L1_MOST}")));
+            }
+            if l1 < L1_LEAST && self.restless > 0 {
+                let note = format!(
+                    "no l1 down to −0.95 reaches its target at this l2, and {} of {} runs did not converge",
+                    self.restless, self.runs
+                );
+                return self.end(Status::NotConverged, high, Some(note));
             }
             if l1 < L1_LEAST {
                 let note = "no l1 down to −0.95 reaches its target at this l2; nothing is proved".to_string();

@@ -2,7 +2,7 @@
 //!
 //! A step solves (H + γ 1) dq = −grad, with γ = 0 first; while dq·grad ≥ 0, γ grows. H may be indefinite as long as the
 //! step descends. Then δ is halved until the energy is not above the one before and the step bound holds. At a point
-//! without gradient where H is indefinite, the system is shifted along its lowest eigenvector until it is not (§4.3.5).
+//! without gradient where H is indefinite, the system is shifted along its lowest eigenvector, and the iteration goes on (§4.3.5).
 //!
 //! As printed, γ is not reset from one iteration to the next, and a trial adds δ dq to the trial before, not to the point
 //! from which the step was taken: trials lie at 1, 3/2, 7/4, … of the step, and none is shorter than the first one.
@@ -178,7 +178,7 @@ mod tests {
     /// Where the first trial is too long, the printed trials only get longer.
     #[test]
     fn the_printed_trials_do_not_shorten_a_step() {
-        let from = [0.60, 0.0]; // Newton's step from there ends at −3.6, far beyond the other well
+        let from = [0.60, 0.0]; // Newton's step from there ends at 5.4, far beyond the well
         let end = |reading| shifted_newton(&DoubleWell, from, &OPTIONS, reading, &AtomicBool::new(false)).outcome;
         assert_eq!((end(Reading::Printed), end(Reading::Corrected)), (Outcome::Stalled, Outcome::Minimum));
     }
