@@ -134,9 +134,18 @@ struct EnergyArgs {
     /// What an overlap costs: the barrier, or the square that the thesis rejects
     #[arg(long, value_enum, default_value_t = ContactLawArg::Barrier)]
     contact_law: ContactLawArg,
-    /// Newton, or gradient descent, which the thesis rejects
+    /// How the energy is minimised
     #[arg(long, value_enum, default_value_t = MinimiserArg::Newton)]
     minimiser: MinimiserArg,
+    /// A run is at rest where |gradient| is below this, in beta R
+    #[arg(long, default_value_t = EnergyOptions::default().gradient_tolerance, value_parser = positive)]
+    gradient_tolerance: f64,
+    /// Weight of the fourth corner, k_b/beta (--protocol corners)
+    #[arg(long, default_value_t = EnergyOptions::default().corner_weight, value_parser = positive)]
+    corner_weight: f64,
+    /// Points on each circle of rings that touch along nearly the whole circle; 0: isolated minima alone, as in the thesis
+    #[arg(long, default_value_t = EnergyOptions::default().flat_points, value_parser = flat_points)]
+    flat_points: usize,
     /// Refuse steps that flip a side sign of an element of several rings, as the thesis does
     #[arg(long)]
     side_signs: bool,
@@ -153,8 +162,25 @@ enum ContactLawArg {
 
 #[derive(Clone, Copy, clap::ValueEnum)]
 enum MinimiserArg {
+    /// Newton's method with floored eigenvalues
     Newton,
+    /// Newton's method with growing shifts of the Hessian (the thesis's Algorithm 4.3.2)
+    NewtonShifted,
+    /// Algorithm 4.3.2 to the letter: trial steps add up
+    NewtonPrinted,
+    /// Gradient descent, which the thesis rejects
     GradientDescent,
+}
+
+/// 0, or as many points as can follow a circle.
+fn flat_points(text: &str) -> Result<usize, String> {
+    match text.parse::<usize>() {
+        Ok(n) if EnergyOptions::FLAT_POINTS.contains(&n) || n == 0 => Ok(n),
+        _ => {
+            let range = EnergyOptions::FLAT_POINTS;
+            Err(format!("\"{text}\" is neither 0 nor a whole number from {} to {}", range.start(), range.end()))
+        }
+    }
 }
 
 /// `auto`, or one cell.
@@ -255,12 +281,16 @@ impl EnergyArgs {
             },
             minimiser: match self.minimiser {
                 MinimiserArg::Newton => Minimiser::Newton,
+                MinimiserArg::NewtonShifted => Minimiser::NewtonShifted,
+                MinimiserArg::NewtonPrinted => Minimiser::NewtonPrinted,
                 MinimiserArg::GradientDescent => Minimiser::GradientDescent,
             },
             side_signs: self.side_signs,
             max_iterations: self.max_iterations,
+            gradient_tolerance: self.gradient_tolerance,
+            corner_weight: self.corner_weight,
+            flat_points: self.flat_points,
             seed,
-            ..EnergyOptions::default()
         }
     }
 }

@@ -88,11 +88,18 @@ fn energy_options(named: &str, seed: u64) -> PyResult<EnergyOptions> {
     let positive = [
         ("alpha", options.alpha),
         ("corner_weight", options.corner_weight),
+        ("gradient_tolerance", options.gradient_tolerance),
         ("tau", options.tau),
         ("l1_step", options.l1_step),
         ("l1_resolution", options.l1_resolution),
         ("sample_spacing_rad", options.sample_spacing_rad.unwrap_or(1.0)),
     ];
+    if options.flat_points != 0 && !EnergyOptions::FLAT_POINTS.contains(&options.flat_points) {
+        let range = EnergyOptions::FLAT_POINTS;
+        let problem = format!("flat_points = {} is out of range", options.flat_points);
+        let remedy = format!("give 0, or a whole number from {} to {}", range.start(), range.end());
+        return Err(error::argument("energy", problem, remedy));
+    }
     match positive.into_iter().find(|(_, x)| !(x.is_finite() && *x > 0.0)) {
         Some((name, x)) => {
             Err(error::argument("energy", format!("{name} = {x} is not positive"), "give a positive number"))

@@ -100,7 +100,7 @@ def test_free_width_and_the_energy_method():
     energy = maille.characterize("1.1", [0], [0], method="energy", energy={"tau": 0.01})
     assert energy.run["parameters"]["options"]["tau"] == 0.01
     assert abs(energy.to_numpy()["l1"][0] - 0.44) < 0.02
-    for wrong in ({"tau": -1}, {"taus": 1}, {"tau": "a"}):
+    for wrong in ({"tau": -1}, {"taus": 1}, {"tau": "a"}, {"gradient_tolerance": 0}, {"flat_points": 3}):
         with pytest.raises(maille.ArgumentError) as raised:
             maille.characterize("1.1", [0], [0], method="energy", energy=wrong)
         assert raised.value.argument == "energy"

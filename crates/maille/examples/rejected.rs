@@ -1,4 +1,5 @@
-//! What the thesis tried and rejects, measured: the quadratic contact energy, gradient descent, contacts without samples.
+//! What the thesis tried and rejects, measured: the quadratic contact energy, gradient descent, contacts without samples;
+//! and its Algorithm 4.3.2 beside what minimises here.
 //!
 //!     cargo run --release -p maille --example rejected
 
@@ -11,7 +12,7 @@ use maille::{
         target::{Protocol, Target, target_gradient},
     },
     lattice::Cell,
-    limit::energy::{EnergyMethod, EnergyOptions},
+    limit::energy::{EnergyMethod, EnergyOptions, Minimiser},
     model::Model,
     record::Status,
     solve::{
@@ -38,7 +39,46 @@ fn main() {
     laws();
     beyond();
     descent();
+    shifts();
     tilt();
+}
+
+/// Limits by Algorithm 4.3.2, with its line search put right and to the letter, beside ours.
+fn shifts() {
+    println!();
+    println!("pull                   minimiser       iterations  wall s  ended              l1");
+    let cases = [
+        ("1.1", 0.0, 0.0),
+        ("1.1", 45.0, 0.0),
+        ("2", 0.0, 0.0),
+        ("3.1", 30.0, 0.0),
+        ("1.3", 0.0, 0.0),
+        ("5.1", 0.0, 0.0),
+        ("5.1", 45.0, -0.25),
+    ];
+    let minimisers = [
+        ("newton", Minimiser::Newton),
+        ("newton-shifted", Minimiser::NewtonShifted),
+        ("newton-printed", Minimiser::NewtonPrinted),
+    ];
+    for (name, direction, l2) in cases {
+        let model = Model::compile(&design(name), Cell::PRIMITIVE).expect("it compiles");
+        for (minimiser_name, minimiser) in minimisers {
+            let begun = Instant::now();
+            let options = EnergyOptions { minimiser, ..EnergyOptions::default() };
+            let found = EnergyMethod::new(&model, options, &NO_CANCEL).limit(direction, l2, &NO_CANCEL);
+            let wall = begun.elapsed().as_secs_f64();
+            let (sin, cos) = direction.to_radians().sin_cos();
+            let d = nalgebra::Vector2::new(cos, sin);
+            let l1 = match found.status {
+                Status::ThresholdReached => format!("{:.5}", d.dot(&(found.gradient * d)) - 1.0),
+                _ => "none".into(),
+            };
+            let pull = format!("{name}, {direction}°, l2 = {l2}");
+            let status = format!("{:?}", found.status);
+            println!("{pull:<21}  {minimiser_name:<14}  {:>10}  {wall:>6.2}  {status:<17}  {l1}", found.iterations);
+        }
+    }
 }
 
 /// Both laws, the square as stiff as makes the same overlap at the threshold.

@@ -30,7 +30,13 @@ fn thick(name: &str, minor_radius: f64) -> Model {
 
 fn options() -> ContactOptions {
     let law = ContactLaw::Barrier;
-    ContactOptions { law, alpha: 30.0, sample_offsets_rad: vec![-0.1, 0.1], minima: MinimaMethod::Enumeration }
+    ContactOptions {
+        law,
+        alpha: 30.0,
+        sample_offsets_rad: vec![-0.1, 0.1],
+        minima: MinimaMethod::Enumeration,
+        flat_points: 64,
+    }
 }
 
 /// Runs `check` on shaken states of single-ring and multi-ring designs under both protocols.
@@ -157,5 +163,85 @@ fn the_step_bound_keeps_every_link() {
             }
         }
         assert!(cut == 5, "{name}: long steps must be cut");
+    }
+}
+
+/// Two rings alone, turned by `tilt` against each other, with axes apart by `offset`; at the deepest point they overlap by
+/// `depth`.
+fn flat_path(model: &Model, tilt: f64, offset: f64, depth: f64) -> Configuration {
+    let mut state = model.start.clone();
+    let far = Vec3::new(0.0, 0.0, 50.0);
+    state.poses[0].position = far;
+    state.poses[1] = state.poses[1].moved(&Vec3::zeros(), &Vec3::new(0.6 * tilt, 0.8 * tilt, 0.0));
+    let (mut near, mut apart) = (0.1, 0.3);
+    for _ in 0..60 {
+        let height = 0.5 * (near + apart);
+        state.poses[1].position = far + Vec3::new(offset, 0.0, -height);
+        let [a, b] = [0, 1].map(|ring| state.circle(model, ring, [0, 0]));
+        let minima = maille_geometry::circle_distance_minima(&a, &b);
+        let distance = minima.as_slice().iter().map(|m| m.distance).fold(f64::INFINITY, f64::min);
+        *(if distance < 0.2 - depth { &mut near } else { &mut apart }) = height;
+    }
+    Configuration::start(state)
+}
+
+/// On ways from a touching circle to isolated minima the energy changes from step to step as its gradient says; with
+/// minima alone it jumps where one is born or ends.
+#[test]
+fn flat_pairs_have_no_jump_on_the_way_to_isolated_minima() {
+    let model = model("5.1", 0.1);
+    let jumps = |flat_points: usize| {
+        let sample_offsets_rad = vec![-0.003, 0.003];
+        let contacts = ContactOptions { alpha: 1e5, sample_offsets_rad, flat_points, ..options() };
+        let energy = SheetEnergy::new(&model, &contacts);
+        let mut jumps = 0;
+        const STEPS: u32 = 2000;
+        for way in 0..4 {
+            let at = |k: f64| {
+                let share = k / f64::from(STEPS);
+                let tilt = [0.03, 0.0, 0.02, 0.001][way] * share;
+                let offset = [0.0, 0.09 * share, 0.06 * share, 0.005][way];
+                flat_path(&model, tilt, offset, 5e-4)
+            };
+            for k in 1..STEPS {
+                let [minus, x, plus] = [-0.5, 0.0, 0.5].map(|e| at(f64::from(k) + e));
+                let (value, gradient) = energy.gradient(&x);
+                assert!(value > 0.0, "the rings overlap on the whole way");
+                // Ring 1 alone moves.
+                let (to, from) = (&plus.state.poses[1], &minus.state.poses[1]);
+                let (moved, turned) = (to.position - from.position, (to.rotation / from.rotation).scaled_axis());
+                let slope: f64 = (0..3).map(|i| gradient[6 + i] * moved[i] + gradient[9 + i] * turned[i]).sum();
+                let change = energy.energy(&plus) - energy.energy(&minus);
+                jumps += usize::from((change - slope).abs() > 5e-3 * value);
+            }
+        }
+        jumps
+    };
+    assert_eq!(jumps(64), 0);
+    assert!(jumps(0) > 0);
+}
+
+/// Turning two flat rings as a whole, or a ring about its own axis, changes next to nothing.
+#[test]
+fn flat_energy_is_invariant() {
+    let model = model("5.1", 0.1);
+    let contacts = ContactOptions { alpha: 1e5, ..options() };
+    let energy = SheetEnergy::new(&model, &contacts);
+    for (tilt, offset) in [(0.0, 0.0), (0.002, 0.01), (0.004, 0.04), (0.012, 0.02)] {
+        let x = flat_path(&model, tilt, offset, 2e-4);
+        let before = energy.energy(&x);
+        let turn = UnitQuaternion::from_scaled_axis(Vec3::new(1.9, -0.6, 0.4));
+        let (mut turned, mut spun) = (x.clone(), x.clone());
+        let pivot = x.state.poses[0].position;
+        for pose in &mut turned.state.poses[..2] {
+            pose.position = pivot + turn * (pose.position - pivot);
+            pose.rotation = turn * pose.rotation;
+        }
+        let axis = x.state.circle(&model, 1, [0, 0]).normal;
+        spun.state.poses[1] = spun.state.poses[1].moved(&Vec3::zeros(), &(axis.into_inner() * 0.7));
+        let after = energy.energy(&turned);
+        assert!(before > 0.0 && (before - after).abs() < 1e-9 * before, "{tilt} {offset}: {before} {after}");
+        let after = energy.energy(&spun);
+        assert!((before - after).abs() < 0.02 * before, "{tilt} {offset}, spun: {before} {after}");
     }
 }

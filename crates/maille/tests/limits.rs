@@ -2,12 +2,15 @@
 
 mod common;
 
-use common::{design, model};
+use common::{design, map, model};
 use maille::{
     characterize::{Finished, Method, Task, characterize, tasks},
     energy::target::Protocol,
     lattice::Cell,
-    limit::energy::EnergyOptions,
+    limit::{
+        energy::{EnergyOptions, Minimiser},
+        exact::ExactOptions,
+    },
     model::Model,
     record::Status,
 };
@@ -200,4 +203,57 @@ fn limits_do_not_depend_on_threads() {
         found.into_iter().map(|f| (f.row.l1, f.row.iterations, f.state.poses)).collect::<Vec<_>>()
     };
     assert_eq!(on(1), on(3));
+}
+
+/// The closer 12-in-2: lattice and distances of 5.2 in the ratio in which a1 becomes 2.61, with the same rings.
+fn closer_5_2(minor_radius: f64) -> Model {
+    let mut design = design("5.2", minor_radius);
+    let factor = 2.61 / design.lattice.a1[0];
+    let spacing = [&mut design.lattice.a1, &mut design.lattice.a2];
+    let places = design.elements.iter_mut().map(|e| &mut e.center);
+    spacing.into_iter().chain(places).flatten().for_each(|x| *x *= factor);
+    design.allow_initial_overlap = true;
+    Model::compile(&design, Cell::PRIMITIVE).unwrap()
+}
+
+/// Doubled rings touch along whole circles. The energy method comes to rest there; its limits are those of the exact
+/// method, from below but for the overlap and the τ by which F is missed.
+#[test]
+fn doubled_weaves_come_to_rest_at_their_limits() {
+    let options = EnergyOptions { tau: 1e-4, ..Default::default() };
+    for model in [model("5.1", 0.1), closer_5_2(0.05)] {
+        for (direction, l2) in [(0.0, -0.25), (37.5, 0.0), (15.0, 0.25)] {
+            let exact = &map(std::slice::from_ref(&model), &[direction], &[l2], &ExactOptions::default())[0].row;
+            let found = &rows(&model, &options, &tasks(&[direction], &[l2]))[0];
+            let what = format!("{} at {direction}°, l2 = {l2}", exact.design);
+            assert_eq!(found.row.status, Status::ThresholdReached, "{what}: {:?}", found.state.note);
+            let above = found.row.l1.unwrap() - exact.l1.unwrap();
+            assert!(above > -0.01 && above < 1e-4, "{what}: {above} above the exact limit");
+            assert!(found.row.max_overlap.unwrap() < 1e-4 && found.row.links_ok == Some(true), "{what}");
+        }
+    }
+}
+
+/// A run that is not at rest gives no number.
+#[test]
+fn without_rest_there_is_no_limit() {
+    let model = model("5.1", 0.1);
+    let minima_alone = EnergyOptions { flat_points: 0, ..Default::default() };
+    let never = EnergyOptions { gradient_tolerance: 1e-30, max_iterations: 50, ..Default::default() };
+    for options in [minima_alone, never] {
+        let row = &rows(&model, &options, &tasks(&[0.0], &[0.0]))[0].row;
+        assert_eq!((row.status, row.l1), (Status::NotConverged, None));
+    }
+}
+
+/// The shifts of Algorithm 4.3.2 lead to the same limit where they come to rest; to the letter they do not.
+#[test]
+fn shifts_lead_to_the_same_limit_and_the_printed_loop_stalls() {
+    let model = model("1.1", 0.1);
+    let with = |minimiser| {
+        let options = EnergyOptions { minimiser, ..Default::default() };
+        rows(&model, &options, &tasks(&[0.0], &[0.0])).remove(0).row
+    };
+    assert_near(with(Minimiser::NewtonShifted).l1.unwrap(), 0.44, 0.001, "shifted");
+    assert_eq!(with(Minimiser::NewtonPrinted).status, Status::NotConverged);
 }

@@ -28,7 +28,7 @@ fn ring(center: [f64; 3], major_radius: f64, normal: [f64; 3]) -> ElementSpec {
 
 fn contacts() -> ContactOptions {
     let law = ContactLaw::Barrier;
-    ContactOptions { law, alpha: 1e5, sample_offsets_rad: vec![], minima: MinimaMethod::Enumeration }
+    ContactOptions { law, alpha: 1e5, sample_offsets_rad: vec![], minima: MinimaMethod::Enumeration, flat_points: 64 }
 }
 
 /// The connector of 1.3 hangs at the gyroscope's +x vertex. At the −x vertex, turned round by half a turn about x, it

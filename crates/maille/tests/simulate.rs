@@ -100,6 +100,7 @@ fn loads_match_finite_differences() {
         alpha: 30.0,
         sample_offsets_rad: vec![],
         minima: MinimaMethod::Enumeration,
+        flat_points: 64,
     };
     let loads = Loads {
         forces: vec![(0, Vec3::new(0.1, -0.2, -0.3)), (2, Vec3::new(0.0, 0.5, 0.0))],

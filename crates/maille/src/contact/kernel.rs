@@ -53,11 +53,15 @@ pub struct PointJet {
     pub h_tyy: Hess,
 }
 
-/// Value, gradient and Hessian of s or z for one of b, b′, b″.
-struct Jet {
-    value: f64,
-    grad: Grad,
-    hess: Hess,
+/// A number of the pair with gradient and Hessian in y.
+#[derive(Clone, Copy, Debug)]
+pub struct Jet {
+    /// Value.
+    pub value: f64,
+    /// Gradient.
+    pub grad: Grad,
+    /// Hessian.
+    pub hess: Hess,
 }
 
 fn cross_matrix(a: &Vec3) -> Matrix3<f64> {
@@ -156,6 +160,13 @@ impl PairFrame {
         let (sin, cos) = angle_rad.sin_cos();
         let z = self.z_jet(&(self.arm_b + (self.u * cos + self.v * sin) * self.radius_b), true);
         (z.value, z.grad, z.hess)
+    }
+
+    /// Of B's centre: s, the squared distance from A's, and z, the height over A's plane; and the cosine N_A·N_B.
+    pub fn center_jets(&self) -> [Jet; 3] {
+        let s = (self.x + self.arm_b - self.arm_a).norm_squared();
+        let normal_b = self.u.cross(&self.v);
+        [self.s_jet(&self.arm_b, s, true), self.z_jet(&self.arm_b, true), self.z_jet(&normal_b, false)]
     }
 
     /// All derivatives at `angle_rad`. On A's axis (ρ = 0), where h has a kink, ρ is floored at 1e-12 R_A.

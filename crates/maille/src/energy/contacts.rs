@@ -1,15 +1,19 @@
-//! Contact energy E_c of a cell: every overlapping local minimum (eq. 4.1.3), and the sampled points beside it (§4.1.2).
+//! Contact energy E_c of a cell: every overlapping local minimum (eq. 4.1.3), and the sampled points beside it (§4.1.2);
+//! points around the circles where a pair is flat.
 
-use super::barrier::ContactLaw;
+use super::{
+    barrier::ContactLaw,
+    flat::{self, FLAT_CURVATURE, FlatPair, Side},
+};
 use crate::{
-    contact::kernel::{Grad, Hess, PairFrame, RootMotion},
+    contact::kernel::{Grad, Hess, Jet, PairFrame, RootMotion, symmetric},
     model::Model,
     solve::curvature::Curvature,
     state::State,
     topology::{RingPair, broad::in_chunks, close_pairs},
 };
 use maille_geometry::{
-    Approach, Approaches, Circle, MAX_MINIMA, circle_distance_approaches, circle_distance_minima_polynomial,
+    Approach, Approaches, Circle, MAX_MINIMA, Vec3, circle_distance_approaches, circle_distance_minima_polynomial,
 };
 use serde::{Deserialize, Serialize};
 
@@ -34,6 +38,8 @@ pub struct ContactOptions {
     pub sample_offsets_rad: Vec<f64>,
     /// How minima are found.
     pub minima: MinimaMethod,
+    /// Points on each circle of a flat pair, in place of its minima; 0: no pair counts as flat.
+    pub flat_points: usize,
 }
 
 /// An overlapping pair with its frame and the angles on B of its overlapping minima.
@@ -43,6 +49,7 @@ struct Overlap {
     contact_distance: f64,
     minima: [(f64, f64); MAX_MINIMA],
     count: usize,
+    flat: Option<FlatPair>,
 }
 
 impl Overlap {
@@ -90,14 +97,32 @@ fn overlaps(
                 found.as_slice().iter().for_each(|m| add(m.angle_b_rad(), m.distance));
             }
         }
-        if count > 0 {
+        let flat = flat_pair(model, state, options, pair, &placed[k], contact_distance);
+        if count > 0 || flat.is_some() {
             let reference_a = state.poses[model.rings[pair.ring_a].element].position;
             let reference_b = state.poses[model.rings[pair.ring_b].element].position + state.translation(pair.shift);
             let frame = PairFrame::new(a, &reference_a, b, &reference_b);
-            out.push(Overlap { pair: *pair, frame, contact_distance, minima, count });
+            out.push(Overlap { pair: *pair, frame, contact_distance, minima, count, flat });
         }
     }
     out
+}
+
+/// The pair as a flat one, if it is one at least in part.
+fn flat_pair(
+    model: &Model,
+    state: &State,
+    options: &ContactOptions,
+    pair: &RingPair,
+    (a, b): &(Circle, Circle),
+    touching: f64,
+) -> Option<FlatPair> {
+    let flat = options.flat_points > 0 && flat::curvature_sq(a, b, touching) < FLAT_CURVATURE * FLAT_CURVATURE;
+    flat.then(|| {
+        let a = Side::new(model, state, pair.ring_a, Vec3::zeros());
+        let b = Side::new(model, state, pair.ring_b, state.translation(pair.shift));
+        FlatPair::new(&a, &b, touching, options.flat_points)
+    })
 }
 
 /// `of` applied to the overlaps of the cell piece by piece, the results in the order of the pairs: nothing depends on the
@@ -115,8 +140,8 @@ fn for_overlaps<R: Send>(
 /// E_c of one cell.
 pub(super) fn energy(model: &Model, options: &ContactOptions, state: &State) -> f64 {
     let parts = for_overlaps(model, state, options, |overlaps| {
-        let mut sum = 0.0;
-        for overlap in overlaps {
+        let of_minima = |overlap: &Overlap| {
+            let mut sum = 0.0;
             for &(angle, distance) in overlap.minima() {
                 sum += options.law.at(distance, overlap.contact_distance, options.alpha)[0];
                 for offset in &options.sample_offsets_rad {
@@ -124,10 +149,61 @@ pub(super) fn energy(model: &Model, options: &ContactOptions, state: &State) -> 
                     sum += options.law.at(distance, overlap.contact_distance, options.alpha)[0];
                 }
             }
-        }
-        vec![sum]
+            sum
+        };
+        let of = |overlap: &Overlap| match &overlap.flat {
+            None => of_minima(overlap),
+            Some(flat) => {
+                let weight = flat.weight().value;
+                // An infinite energy of minima has no part in what is wholly flat.
+                let minima = if weight < 1.0 { (1.0 - weight) * of_minima(overlap) } else { 0.0 };
+                minima + weight * flat.energy(options.law, options.alpha)
+            }
+        };
+        vec![overlaps.iter().map(of).sum::<f64>()]
     });
     parts.into_iter().sum()
+}
+
+/// The minima of an overlap with the points beside them.
+fn minima_jet(options: &ContactOptions, overlap: &Overlap) -> Jet {
+    let mut sum = Jet { value: 0.0, grad: Grad::zeros(), hess: Hess::zeros() };
+    for &(angle, _) in overlap.minima() {
+        let root = overlap.frame.jet(angle);
+        let motion = RootMotion::at(&root);
+        let samples = options
+            .sample_offsets_rad
+            .iter()
+            .filter(|offset| overlap.frame.distance(angle + **offset) < overlap.contact_distance)
+            .map(|offset| overlap.frame.jet(angle + offset));
+        for jet in std::iter::once(root).chain(samples) {
+            let [value, first, second] = options.law.at(jet.distance, overlap.contact_distance, options.alpha);
+            let (d_grad, d_hess) = jet.distance_derivatives(&motion);
+            sum.value += value;
+            sum.grad += d_grad * first;
+            sum.hess += d_hess * first + d_grad * d_grad.transpose() * second;
+        }
+    }
+    sum
+}
+
+/// The energy of an overlap: of its minima, of its circles where it is flat, or of both.
+fn overlap_jet(options: &ContactOptions, overlap: &Overlap) -> Jet {
+    let Some(flat) = &overlap.flat else { return minima_jet(options, overlap) };
+    let (weight, circle) = (flat.weight(), flat.jet(options.law, options.alpha));
+    if weight.value == 1.0 {
+        return circle;
+    }
+    let minima = minima_jet(options, overlap);
+    let (lack, grad) = (circle.value - minima.value, circle.grad - minima.grad);
+    Jet {
+        value: minima.value + weight.value * lack,
+        grad: minima.grad + grad * weight.value + weight.grad * lack,
+        hess: minima.hess
+            + (circle.hess - minima.hess) * weight.value
+            + symmetric(&grad, &weight.grad)
+            + weight.hess * lack,
+    }
 }
 
 /// Adds gradient and Hessian of E_c; returns E_c.
@@ -139,32 +215,13 @@ pub(super) fn add_derivatives(
     hessian: &mut Curvature,
 ) -> f64 {
     let parts = for_overlaps(model, state, options, |overlaps| {
-        let of = |overlap: Overlap| {
-            let (mut sum, mut grad, mut hess) = (0.0, Grad::zeros(), Hess::zeros());
-            for &(angle, _) in overlap.minima() {
-                let root = overlap.frame.jet(angle);
-                let motion = RootMotion::at(&root);
-                let samples = options
-                    .sample_offsets_rad
-                    .iter()
-                    .filter(|offset| overlap.frame.distance(angle + **offset) < overlap.contact_distance)
-                    .map(|offset| overlap.frame.jet(angle + offset));
-                for jet in std::iter::once(root).chain(samples) {
-                    let [value, first, second] = options.law.at(jet.distance, overlap.contact_distance, options.alpha);
-                    let (d_grad, d_hess) = jet.distance_derivatives(&motion);
-                    sum += value;
-                    grad += d_grad * first;
-                    hess += d_hess * first + d_grad * d_grad.transpose() * second;
-                }
-            }
-            (overlap.pair, sum, grad, hess)
-        };
-        overlaps.into_iter().map(of).collect()
+        let of = |overlap: &Overlap| (overlap.pair, overlap_jet(options, overlap));
+        overlaps.iter().map(of).collect()
     });
     let mut sum = 0.0;
-    for (pair, energy, grad, hess) in parts {
-        sum += energy;
-        scatter(model, &pair, &grad, &hess, gradient, hessian);
+    for (pair, jet) in parts {
+        sum += jet.value;
+        scatter(model, &pair, &jet.grad, &jet.hess, gradient, hessian);
     }
     sum
 }

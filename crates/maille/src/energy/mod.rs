@@ -2,6 +2,7 @@
 
 pub mod barrier;
 mod contacts;
+pub mod flat;
 pub mod load;
 pub mod target;
 

@@ -6,6 +6,7 @@ use crate::{
     energy::{
         Configuration, ContactOptions, HessianMethod, MinimaMethod, SheetEnergy,
         barrier::ContactLaw,
+        flat::FLAT_CURVATURE,
         target::{Protocol, Target, target_gradient},
     },
     lattice::direction,
@@ -14,6 +15,7 @@ use crate::{
     solve::{
         descent::steepest_descent,
         newton::{Minimization, NewtonOptions, Outcome, minimize},
+        shifted::{Reading, shifted_newton},
     },
     state::State,
     topology::{self, apart::comes_apart, side::SideSigns},
@@ -28,6 +30,10 @@ use std::sync::atomic::AtomicBool;
 pub enum Minimiser {
     /// Newton's iteration with floored eigenvalues.
     Newton,
+    /// Newton's iteration with growing shifts γ 1 of the Hessian (Algorithm 4.3.2), trials from the same point.
+    NewtonShifted,
+    /// Algorithm 4.3.2 to the letter: trials add up, γ is not reset.
+    NewtonPrinted,
     /// Plain gradient descent, which the thesis rejects.
     GradientDescent,
 }
@@ -68,6 +74,16 @@ pub struct EnergyOptions {
     /// Refuse steps that flip a side sign (§4.3.3).
     #[serde(default)]
     pub side_signs: bool,
+    /// |gradient| of a run that is at rest, in β R.
+    #[serde(default = "gradient_tolerance")]
+    pub gradient_tolerance: f64,
+    /// Points on each circle of a pair that touches along nearly the whole circle; 0: minima alone, as in records of before.
+    #[serde(default)]
+    pub flat_points: usize,
+}
+
+fn gradient_tolerance() -> f64 {
+    1e-6
 }
 
 fn barrier() -> ContactLaw {
@@ -96,6 +112,8 @@ impl Default for EnergyOptions {
             contact_law: ContactLaw::Barrier,
             minimiser: Minimiser::Newton,
             side_signs: false,
+            gradient_tolerance: gradient_tolerance(),
+            flat_points: 64,
         }
     }
 }
@@ -104,8 +122,6 @@ impl Default for EnergyOptions {
 const L1_MOST: f64 = 20.0;
 /// l1 is not lowered beyond this.
 const L1_LEAST: f64 = -0.95;
-/// |gradient| of a converged run, in β R.
-const GRADIENT_TOLERANCE: f64 = 1e-6;
 /// Floor of the curvature in Newton's step, in β.
 const CURVATURE_FLOOR: f64 = 1e-3;
 /// Negative curvature that makes a saddle, in β.
@@ -119,7 +135,7 @@ pub struct EnergyParameters {
     #[serde(flatten)]
     options: EnergyOptions,
     sample_offsets_rad: Vec<f64>,
-    gradient_tolerance: f64,
+    flat_curvature: f64,
     curvature_floor: f64,
     saddle_tolerance: f64,
     max_kicks: usize,
@@ -128,12 +144,15 @@ pub struct EnergyParameters {
 }
 
 impl EnergyOptions {
+    /// As many points as can follow a flat pair's circle; 0 is allowed beside these.
+    pub const FLAT_POINTS: std::ops::RangeInclusive<usize> = 16..=1024;
+
     /// All parameters and tolerances of a run on `model`.
     pub fn parameters(&self, model: &Model) -> EnergyParameters {
         EnergyParameters {
             options: self.clone(),
             sample_offsets_rad: self.sample_offsets_rad(model),
-            gradient_tolerance: GRADIENT_TOLERANCE,
+            flat_curvature: FLAT_CURVATURE,
             curvature_floor: CURVATURE_FLOOR,
             saddle_tolerance: SADDLE_TOLERANCE,
             max_kicks: MAX_KICKS,
@@ -149,13 +168,14 @@ impl EnergyOptions {
             alpha: self.alpha,
             sample_offsets_rad: self.sample_offsets_rad(model),
             minima: self.minima,
+            flat_points: self.flat_points,
         }
     }
 
     /// Tolerances of one minimisation.
     pub fn newton(&self) -> NewtonOptions {
         NewtonOptions {
-            gradient_tolerance: GRADIENT_TOLERANCE,
+            gradient_tolerance: self.gradient_tolerance,
             curvature_floor: CURVATURE_FLOOR,
             saddle_tolerance: SADDLE_TOLERANCE,
             max_iterations: self.max_iterations,
@@ -219,6 +239,8 @@ impl<'a> EnergyMethod<'a> {
         let (start, options) = (Configuration::start(self.start.clone()), self.options.newton());
         let end = match self.options.minimiser {
             Minimiser::Newton => minimize(&energy, start, &options, cancel, &mut |_, _| {}),
+            Minimiser::NewtonShifted => shifted_newton(&energy, start, &options, Reading::Corrected, cancel),
+            Minimiser::NewtonPrinted => shifted_newton(&energy, start, &options, Reading::Printed, cancel),
             Minimiser::GradientDescent => steepest_descent(&energy, start, &options, cancel),
         };
         let residual = target.residual(self.model, &end.point.state, &end.point.corner);
@@ -228,7 +250,7 @@ impl<'a> EnergyMethod<'a> {
 
     /// The limit of l1 along `direction_deg` with l2 held.
     pub fn limit(&self, direction_deg: f64, l2: f64, cancel: &AtomicBool) -> LimitOutcome {
-        let mut search = Search { method: self, direction_deg, l2, cancel, iterations: 0, runs: 0 };
+        let mut search = Search { method: self, direction_deg, l2, cancel, iterations: 0, runs: 0, restless: 0 };
         let along = direction(direction_deg);
         let linked = topology::binds(self.model, [along.x, along.y]);
         if let Some(note) = &self.start_note {
@@ -256,6 +278,8 @@ struct Search<'a> {
     cancel: &'a AtomicBool,
     iterations: u64,
     runs: u64,
+    /// Runs that did not come to rest.
+    restless: u64,
 }
 
 impl Search<'_> {
@@ -263,6 +287,7 @@ impl Search<'_> {
         let (end, residual, gradient) = self.method.run(target_gradient(self.direction_deg, l1, self.l2), self.cancel);
         self.iterations += end.iterations as u64;
         self.runs += 1;
+        self.restless += u64::from(end.outcome != Outcome::Minimum);
         Trial { l1, state: end.point.state, gradient, residual, outcome: end.outcome, gradient_norm: end.gradient_norm }
     }
 
@@ -286,6 +311,13 @@ impl Search<'_> {
             let l1 = f64::from(steps) * if upward { options.l1_step } else { -options.l1_step };
             if l1 > L1_MOST {
                 return self.end(Status::NotConverged, low, Some(format!("still within τ at l1 = {L1_MOST}")));
+            }
+            if l1 < L1_LEAST && self.restless > 0 {
+                let note = format!(
+                    "no l1 down to −0.95 reaches its target at this l2, and {} of {} runs did not converge",
+                    self.restless, self.runs
+                );
+                return self.end(Status::NotConverged, high, Some(note));
             }
             if l1 < L1_LEAST {
                 let note = "no l1 down to −0.95 reaches its target at this l2; nothing is proved".to_string();

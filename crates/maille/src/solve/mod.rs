@@ -12,6 +12,7 @@ pub mod qp;
 mod reduced;
 pub mod rows;
 mod saddle;
+pub mod shifted;
 pub mod sparse;
 pub mod sqp;
 pub mod symmetric;
