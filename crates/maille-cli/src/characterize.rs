@@ -137,6 +137,9 @@ struct EnergyArgs {
     /// How the energy is minimised
     #[arg(long, value_enum, default_value_t = MinimiserArg::Newton)]
     minimiser: MinimiserArg,
+    /// Keep every step of every run, with its size and time, in states.jsonl; `maille plot --kind step-times` draws them
+    #[arg(long)]
+    steps: bool,
     /// A run is at rest where |gradient| is below this, in beta R
     #[arg(long, default_value_t = EnergyOptions::default().gradient_tolerance, value_parser = positive)]
     gradient_tolerance: f64,
@@ -279,6 +282,7 @@ impl EnergyArgs {
                 ContactLawArg::Barrier => ContactLaw::Barrier,
                 ContactLawArg::Quadratic => ContactLaw::Quadratic,
             },
+            steps: self.steps,
             minimiser: match self.minimiser {
                 MinimiserArg::Newton => Minimiser::Newton,
                 MinimiserArg::NewtonShifted => Minimiser::NewtonShifted,

@@ -9,8 +9,8 @@ use crate::{
 };
 use maille_io::{
     plot::{
-        Layout, NamedSimulation, PolarPlot, Quantity, Spread, difference_svg, force_svg, parameter_words, poisson_svg,
-        polar_svg, steps_svg, svg_to_png, times_svg,
+        Layout, NamedSimulation, OfStep, PolarPlot, Quantity, Spread, difference_svg, force_svg, parameter_words,
+        poisson_svg, polar_svg, run_svg, steps_svg, svg_to_png, times_svg,
     },
     record::{NamedRecord, Reference, ReferenceCell, SIMULATION, open_simulation},
     with_palette,
@@ -78,6 +78,10 @@ enum Kind {
     Steps,
     /// Wall time
     Times,
+    /// Wall time of each step of one run (records of --steps)
+    StepTimes,
+    /// Size of each step of one run (records of --steps)
+    StepSizes,
     /// Force against stretch of simulated sheets
     Force,
 }
@@ -138,7 +142,7 @@ pub fn run(args: &Args) -> Result<()> {
     if args.quantity.is_some() && !matches!(args.kind, Kind::Polar | Kind::Difference) {
         return Err(wrong(
             exit::USAGE,
-            "poisson, steps, times and force have no --quantity",
+            "only polar plots and differences have a --quantity",
             "leave --quantity out, or choose --kind polar or difference",
         ));
     }
@@ -314,6 +318,13 @@ fn svg(args: &Args, records: &[NamedRecord], cells: &[ReferenceCell]) -> Result<
         })?,
         (Kind::Steps, records) => steps_svg(records, Layout::Beside),
         (Kind::Times, records) => times_svg(records, Layout::Beside),
+        (Kind::StepTimes | Kind::StepSizes, records) => {
+            let shown = if args.kind == Kind::StepTimes { OfStep::Time } else { OfStep::Size };
+            run_svg(records, shown, Layout::Beside).ok_or_else(|| {
+                let help = "`maille characterize DESIGN --method energy --steps` keeps them";
+                wrong(exit::USAGE, "these records have no steps", help)
+            })?
+        }
         (Kind::Force, _) => unreachable!("drawn from simulations"),
     })
 }
@@ -339,6 +350,8 @@ fn usual<'a>(kind: Kind, designs: impl Iterator<Item = &'a str>) -> String {
         Kind::Poisson => "poisson",
         Kind::Steps => "steps",
         Kind::Times => "times",
+        Kind::StepTimes => "step-times",
+        Kind::StepSizes => "step-sizes",
         Kind::Force => "force",
     };
     let mut names: Vec<String> = Vec::new();

@@ -21,7 +21,7 @@ use maille_io::{
     DesignSource, chapter6,
     plot::Quantity,
     record::{FolderLock, Map, NamedRecord},
-    report::{self, MINIMA, MINIMA_DEG, NOTCHED, SCALED, Sheet, Verdict, figures, page, sheet_png, statements},
+    report::{self, MINIMA, MINIMA_DEG, NOTCHED, SCALED, STEPS, Sheet, Verdict, figures, page, sheet_png, statements},
 };
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use serde_json::json;
@@ -87,6 +87,10 @@ const SCALE: (&str, f64) = ("1.1", 7.3);
 const L2: [f64; 6] = [-0.375, -0.25, -0.125, 0.0, 0.125, 0.25];
 /// l2 of the energy method where only its cost is asked.
 const COST_L2: [f64; 3] = [-0.25, 0.0, 0.25];
+/// Pulls of which every step is kept (Figure 6.1): the designs, with --quick those of the first two, the direction and l2.
+const STEPPED: [&str; 4] = ["1.1", "3.1", "2", "5.2"];
+const STEPPED_DEG: f64 = 30.0;
+const STEPPED_L2: [f64; 2] = [-0.25, 0.25];
 
 /// A design of the chapter.
 struct Chosen {
@@ -248,6 +252,10 @@ fn plan(chosen: &[Chosen], quick: bool, out: &Path) -> Result<Vec<Planned>> {
                 let (directions, l2) = (turn(MARKERS_DEG), [-0.25, 0.0]);
                 add(design.clone(), divisor, "energy-rectangular", energy(), rectangular, directions, &l2);
             }
+        }
+        if STEPPED[..if quick { 2 } else { 4 }].contains(&name) {
+            let method = Method::Energy(EnergyOptions { steps: true, ..EnergyOptions::default() });
+            add(design.clone(), 10, &format!("energy{STEPS}"), method, own, vec![STEPPED_DEG], &STEPPED_L2);
         }
         // The energy method's cost alone.
         if if quick { ["1.1", "3.1"].contains(&name) } else { !by_text } {

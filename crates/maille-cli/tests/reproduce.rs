@@ -36,6 +36,7 @@ fn files(folder: &Path, below: &str, into: &mut BTreeMap<String, String>) {
             let content = match name.rsplit('/').next() {
                 Some("run.json") => text(&path).split("\"files\"").next().unwrap().to_owned(),
                 _ if name.ends_with(".csv") => without_times(&path),
+                _ if name.contains("-steps/") => continue,
                 _ => text(&path),
             };
             into.insert(name, content);

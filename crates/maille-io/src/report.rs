@@ -37,6 +37,8 @@ pub struct Map {
     pub rearranged: bool,
     /// Of the directions beside the minima of a curve alone.
     pub minima: bool,
+    /// Of some pulls alone, whose steps were kept.
+    pub steps: bool,
     /// Directions along which neighbours interlock, degrees in [0, 180), sorted.
     pub interlocking_deg: Vec<f64>,
     /// The rows.
@@ -56,6 +58,7 @@ impl Map {
             corners: run.parameters["options"]["protocol"] == "corners",
             rearranged: first_cell != "1x1",
             minima: named.name.ends_with(MINIMA),
+            steps: named.name.ends_with(STEPS),
             interlocking_deg: interlocking(&Model::compile(&run.design, Cell::PRIMITIVE)?),
             rows: named.record.rows.clone(),
         })
@@ -63,7 +66,7 @@ impl Map {
 
     /// A design of the thesis in its own cell, and no bias of the corners.
     fn is_plain(&self) -> bool {
-        !self.rearranged && !self.corners && !self.minima && !self.design.ends_with(SCALED)
+        !self.rearranged && !self.corners && !self.minima && !self.steps && !self.design.ends_with(SCALED)
     }
 
     /// `1.1, r = R/10, exact`.
@@ -71,7 +74,8 @@ impl Map {
         let cell = if self.rearranged { ", rectangular cell" } else { "" };
         let corners = if self.corners { ", corners" } else { "" };
         let minima = if self.minima { ", beside the minima" } else { "" };
-        format!("{}, {}, {}{corners}{cell}{minima}", self.design, ratio_label(self.ratio), self.method)
+        let steps = if self.steps { ", steps kept" } else { "" };
+        format!("{}, {}, {}{corners}{cell}{minima}{steps}", self.design, ratio_label(self.ratio), self.method)
     }
 
     /// The l2 of the rows, from least to largest.
@@ -113,6 +117,9 @@ impl Map {
         if self.method == "exact" { EXACT_TIE } else { ENERGY_TIE }
     }
 }
+
+/// Added to the name of a record that keeps its steps.
+pub const STEPS: &str = "-steps";
 
 /// The same limit, of the exact method.
 const EXACT_TIE: f64 = 1e-6;

@@ -108,7 +108,7 @@ fn beyond() {
             let target = Target::new(&model, Protocol::Strain, target_gradient(0.0, l1, 0.0), 1.0, 100.0);
             let energy = SheetEnergy { target: Some(&target), ..SheetEnergy::new(&model, &contacts) };
             let start = Configuration::start(model.start.clone());
-            let end = minimize(&energy, start, &options.newton(), &NO_CANCEL, &mut |_, _| {});
+            let end = minimize(&energy, start, &options.newton(), &NO_CANCEL, &mut |_, _, _| {});
             let (gap, _) = smallest_gap(&model, &end.point.state).expect("rings are near each other");
             let kept = links_kept(&model, &end.point.state);
             let ended = format!("{:?}", end.outcome);
@@ -176,7 +176,7 @@ fn descent() {
             let begun = Instant::now();
             let start = Configuration::start(model.start.clone());
             let end = match newton {
-                true => minimize(&energy, start, &options.newton(), &NO_CANCEL, &mut |_, _| {}),
+                true => minimize(&energy, start, &options.newton(), &NO_CANCEL, &mut |_, _, _| {}),
                 false => {
                     let many = NewtonOptions { max_iterations: 50_000, ..options.newton() };
                     steepest_descent(&energy, start, &many, &NO_CANCEL)
@@ -227,7 +227,7 @@ fn tilt() {
                 let turn = Vec3::new(rng.random_range(-1.05..1.05), 0.0, 0.0);
                 x.state.poses[1] = x.state.poses[1].moved(&Vec3::zeros(), &turn);
                 before.push(tilt(&x));
-                let end = minimize(&energy, x, &options.newton(), &NO_CANCEL, &mut |_, _| {});
+                let end = minimize(&energy, x, &options.newton(), &NO_CANCEL, &mut |_, _, _| {});
                 after.push(tilt(&end.point));
             }
             let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;

@@ -324,6 +324,7 @@ fn report(found: &Found<'_>, minor_radius: Option<f64>, method: &Method, task: &
         contacts: exact.map_or(Vec::new(), |e| e.contacts.iter().map(contact).collect()),
         chain,
         dual: exact.map_or(Vec::new(), |e| e.dual.iter().map(force).collect()),
+        steps: outcome.steps.clone(),
     };
     Finished { row, state }
 }

@@ -275,6 +275,24 @@ pub struct DualRecord {
     pub force: [f64; 3],
 }
 
+/// One step of a run of the energy method: a Newton iteration.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct StepRecord {
+    /// Which run of the search, from 1.
+    pub run: u64,
+    /// l1 that the run aims at.
+    pub l1: f64,
+    /// Energy after the step, in β R².
+    pub energy: f64,
+    /// The farthest that an element's reference point or a lattice vector moved in it, in R.
+    pub size: f64,
+    /// Whether the step left a saddle, or a stall by a random kick.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub perturbed: bool,
+    /// Its wall time.
+    pub wall_s: f64,
+}
+
 /// One line of `states.jsonl`: the state at the limit of one row (or the last state of a failed search).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StateRecord {
@@ -306,4 +324,7 @@ pub struct StateRecord {
     /// The forces that prove the bound, or that no state has this l2, where the chain does not (exact method).
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub dual: Vec<DualRecord>,
+    /// The steps of all runs (energy method, where they were asked for).
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub steps: Vec<StepRecord>,
 }

@@ -302,7 +302,7 @@ impl Run<'_> {
         let energy = SheetEnergy { loads, seed: setup.options.seed, ..SheetEnergy::new(model, &contacts) };
         let start = Configuration::start(from.clone());
         let mut state_of_run = 0;
-        let mut see = |x: &Configuration, energy: f64| {
+        let mut see = |x: &Configuration, energy: f64, _: usize| {
             (self.watch)(&Accepted { run: runs, state_of_run, share, energy, state: &x.state });
             state_of_run += 1;
         };

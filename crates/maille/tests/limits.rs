@@ -8,7 +8,7 @@ use maille::{
     energy::target::Protocol,
     lattice::Cell,
     limit::{
-        energy::{EnergyOptions, Minimiser},
+        energy::{EnergyMethod, EnergyOptions, Minimiser},
         exact::ExactOptions,
     },
     model::Model,
@@ -256,4 +256,27 @@ fn shifts_lead_to_the_same_limit_and_the_printed_loop_stalls() {
     };
     assert_near(with(Minimiser::NewtonShifted).l1.unwrap(), 0.44, 0.001, "shifted");
     assert_eq!(with(Minimiser::NewtonPrinted).status, Status::NotConverged);
+}
+
+/// Every step of every run, where they are asked for: the energy falls within a run but for perturbations, and nothing else changes.
+#[test]
+fn steps_are_kept_where_they_are_asked_for() {
+    let model = model("1.1", 0.1);
+    let cancel = AtomicBool::new(false);
+    let limit = |steps: bool| {
+        let options = EnergyOptions { l1_step: 0.3, l1_resolution: 0.02, steps, ..EnergyOptions::default() };
+        EnergyMethod::new(&model, options, &cancel).limit(30.0, -0.25, &cancel)
+    };
+    let (kept, plain) = (limit(true), limit(false));
+    assert!(plain.steps.is_empty());
+    assert_eq!((kept.gradient, kept.iterations, kept.runs), (plain.gradient, plain.iterations, plain.runs));
+    // The first point of a run is no step.
+    assert_eq!(kept.steps.len() as u64, kept.iterations - kept.runs);
+    for pair in kept.steps.windows(2).filter(|pair| pair[0].run == pair[1].run && !pair[1].perturbed) {
+        assert!(pair[1].energy <= pair[0].energy, "{pair:?}");
+    }
+    assert!(kept.steps.iter().all(|step| step.size > 0.0 && step.size < 2.0 && step.wall_s > 0.0));
+    let targets: Vec<f64> =
+        (1..=kept.runs).filter_map(|run| kept.steps.iter().find(|s| s.run == run)).map(|s| s.l1).collect();
+    assert!(targets.len() > 3 && targets[..3] == [0.0, 0.3, 0.6], "{targets:?}");
 }

@@ -3,8 +3,8 @@
 use super::{Map, extreme, ratio_label, signed};
 use crate::{
     plot::{
-        Layout, PolarPlot, Quantity, Ray, RayKind, Spread, difference_svg, parameter_words, polar_svg, steps_svg,
-        times_svg,
+        Layout, OfStep, PolarPlot, Quantity, Ray, RayKind, Spread, difference_svg, parameter_words, polar_svg, run_svg,
+        steps_svg, times_svg,
     },
     record::NamedRecord,
     render::{Extent, RenderError, RenderOptions, Subject, View, render},
@@ -43,6 +43,7 @@ pub fn figures(records: &[NamedRecord], maps: &[Map]) -> Vec<Figure> {
     let pairs: Vec<(&NamedRecord, &Map)> = records.iter().zip(maps).collect();
     let mut out = Vec::new();
     costs(&pairs, &mut out);
+    steps_of_runs(&pairs, &mut out);
     for (number, designs) in POLAR {
         for &(named, map) in of(&pairs, designs, |map| map.is_plain() && map.method == "exact").iter() {
             out.push(polar(number, named, map, &pairs));
@@ -205,6 +206,23 @@ fn costs(pairs: &[(&NamedRecord, &Map)], out: &mut Vec<Figure>) {
                 svg: draw(&chosen, Layout::Below),
             });
         }
+    }
+}
+
+/// Figure 6.1's line plot: each step of one pull of each design.
+fn steps_of_runs(pairs: &[(&NamedRecord, &Map)], out: &mut Vec<Figure>) {
+    let kept: Vec<NamedRecord> = pairs.iter().filter(|(_, map)| map.steps).map(|(named, _)| (*named).clone()).collect();
+    let kinds = [
+        ("times", "Time of each step of one pull, energy method", OfStep::Time),
+        ("sizes", "Size of each step of one pull, energy method", OfStep::Size),
+    ];
+    for (kind, title, shown) in kinds {
+        out.extend(run_svg(&kept, shown, Layout::Below).map(|svg| Figure {
+            number: "6.1",
+            file: format!("6.1-{kind}-of-steps"),
+            title: title.into(),
+            svg,
+        }));
     }
 }
 

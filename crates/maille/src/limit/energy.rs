@@ -11,7 +11,7 @@ use crate::{
     },
     lattice::direction,
     model::Model,
-    record::Status,
+    record::{Status, StepRecord},
     solve::{
         descent::steepest_descent,
         newton::{Minimization, NewtonOptions, Outcome, minimize},
@@ -22,7 +22,7 @@ use crate::{
 };
 use nalgebra::Matrix2;
 use serde::{Deserialize, Serialize};
-use std::sync::atomic::AtomicBool;
+use std::{sync::atomic::AtomicBool, time::Instant};
 
 /// How the energy is minimised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -65,6 +65,9 @@ pub struct EnergyOptions {
     pub max_iterations: usize,
     /// Seed of the kicks that end stalls.
     pub seed: u64,
+    /// Keep every step of every run with its size and time.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub steps: bool,
     /// What an overlap costs.
     #[serde(default = "barrier")]
     pub contact_law: ContactLaw,
@@ -109,6 +112,7 @@ impl Default for EnergyOptions {
             minima: MinimaMethod::Enumeration,
             max_iterations: 400,
             seed: 1,
+            steps: false,
             contact_law: ContactLaw::Barrier,
             minimiser: Minimiser::Newton,
             side_signs: false,
@@ -213,7 +217,7 @@ impl<'a> EnergyMethod<'a> {
         let start = model.start.clone();
         let mut method = EnergyMethod { model, options, contacts, side_signs, start, start_note: None };
         if topology::smallest_gap(model, &model.start).is_some_and(|(gap, _)| gap < 0.0) {
-            let (run, _, _) = method.run(Matrix2::identity(), cancel);
+            let (run, _, _) = method.run(Matrix2::identity(), cancel, &mut |_, _, _| {});
             if run.outcome == Outcome::Minimum {
                 method.start = run.point.state;
             } else {
@@ -227,7 +231,13 @@ impl<'a> EnergyMethod<'a> {
     }
 
     /// One minimisation towards the deformation `target`, from the start; with the residual and the measured F.
-    fn run(&self, target: Matrix2<f64>, cancel: &AtomicBool) -> (Minimization<Configuration>, f64, Matrix2<f64>) {
+    /// `watch` sees the steps, see [`minimize`].
+    fn run(
+        &self,
+        target: Matrix2<f64>,
+        cancel: &AtomicBool,
+        watch: &mut dyn FnMut(&Configuration, f64, usize),
+    ) -> (Minimization<Configuration>, f64, Matrix2<f64>) {
         let target = Target::new(self.model, self.options.protocol, target, 1.0, self.options.corner_weight);
         let energy = SheetEnergy {
             target: Some(&target),
@@ -238,7 +248,7 @@ impl<'a> EnergyMethod<'a> {
         };
         let (start, options) = (Configuration::start(self.start.clone()), self.options.newton());
         let end = match self.options.minimiser {
-            Minimiser::Newton => minimize(&energy, start, &options, cancel, &mut |_, _| {}),
+            Minimiser::Newton => minimize(&energy, start, &options, cancel, watch),
             Minimiser::NewtonShifted => shifted_newton(&energy, start, &options, Reading::Corrected, cancel),
             Minimiser::NewtonPrinted => shifted_newton(&energy, start, &options, Reading::Printed, cancel),
             Minimiser::GradientDescent => steepest_descent(&energy, start, &options, cancel),
@@ -250,7 +260,8 @@ impl<'a> EnergyMethod<'a> {
 
     /// The limit of l1 along `direction_deg` with l2 held.
     pub fn limit(&self, direction_deg: f64, l2: f64, cancel: &AtomicBool) -> LimitOutcome {
-        let mut search = Search { method: self, direction_deg, l2, cancel, iterations: 0, runs: 0, restless: 0 };
+        let mut search =
+            Search { method: self, direction_deg, l2, cancel, iterations: 0, runs: 0, restless: 0, steps: Vec::new() };
         let along = direction(direction_deg);
         let linked = topology::binds(self.model, [along.x, along.y]);
         if let Some(note) = &self.start_note {
@@ -280,11 +291,32 @@ struct Search<'a> {
     runs: u64,
     /// Runs that did not come to rest.
     restless: u64,
+    /// Of all runs, where they are kept.
+    steps: Vec<StepRecord>,
+}
+
+/// The farthest that an element's reference point or a lattice vector is from one state to the other, in R.
+fn farthest(from: &State, to: &State) -> f64 {
+    let elements = from.poses.iter().zip(&to.poses).map(|(a, b)| (b.position - a.position).norm());
+    let lattice = [(to.a1 - from.a1).norm(), (to.a2 - from.a2).norm()];
+    elements.chain(lattice).fold(0.0, f64::max)
 }
 
 impl Search<'_> {
     fn trial(&mut self, l1: f64) -> Trial {
-        let (end, residual, gradient) = self.method.run(target_gradient(self.direction_deg, l1, self.l2), self.cancel);
+        let (kept, run) = (&mut self.steps, self.runs + 1);
+        let mut before: Option<(State, Instant, usize)> = None;
+        let mut watch = |x: &Configuration, energy: f64, perturbations: usize| {
+            if let Some((state, begun, earlier)) = &before {
+                let (size, wall_s) = (farthest(state, &x.state), begun.elapsed().as_secs_f64());
+                kept.push(StepRecord { run, l1, energy, size, perturbed: perturbations > *earlier, wall_s });
+            }
+            before = Some((x.state.clone(), Instant::now(), perturbations));
+        };
+        let watch: &mut dyn FnMut(&Configuration, f64, usize) =
+            if self.method.options.steps { &mut watch } else { &mut |_, _, _| {} };
+        let target = target_gradient(self.direction_deg, l1, self.l2);
+        let (end, residual, gradient) = self.method.run(target, self.cancel, watch);
         self.iterations += end.iterations as u64;
         self.runs += 1;
         self.restless += u64::from(end.outcome != Outcome::Minimum);
@@ -388,6 +420,7 @@ impl Search<'_> {
             runs: self.runs,
             note,
             exact: None,
+            steps: self.steps.clone(),
         }
     }
 }

@@ -330,6 +330,7 @@ impl<'a> ExactMethod<'a> {
             runs: 0,
             note: None,
             exact: Some(figures),
+            steps: Vec::new(),
         }
     }
 
@@ -512,7 +513,8 @@ impl<'a> ExactMethod<'a> {
             figures.l1_uncertified = Some(l1);
         }
         let note = above_bound.then(|| format!("l1 = {l1} lies above its proven bound {most}: one of them is wrong"));
-        LimitOutcome { status, state: best.x.state, gradient, residual, iterations, runs, note, exact: Some(figures) }
+        let (state, exact, steps) = (best.x.state, Some(figures), Vec::new());
+        LimitOutcome { status, state, gradient, residual, iterations, runs, note, exact, steps }
     }
 
     /// Starts of the first cell that stand for those of the directions that are images of this one: the images of the same shaken

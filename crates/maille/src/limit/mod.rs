@@ -15,7 +15,7 @@ mod unlinked;
 use crate::{
     bound::{BindingChain, Bound, BoundKind, DualForce},
     constraint::Contact,
-    record::Status,
+    record::{Status, StepRecord},
     solve::certificate::Certificate,
     state::State,
 };
@@ -53,6 +53,8 @@ pub struct LimitOutcome {
     pub note: Option<String>,
     /// What the exact method adds.
     pub exact: Option<ExactFigures>,
+    /// The steps of all runs of the energy method, where they were asked for.
+    pub steps: Vec<StepRecord>,
 }
 
 /// The exact method's figures of one limit.

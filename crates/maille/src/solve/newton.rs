@@ -136,13 +136,13 @@ impl<P> Minimization<P> {
 }
 
 /// Minimises `objective` from `start` until `cancel` or an end. `watch` sees every point with its energy, the start
-/// first; the energy falls from one to the next, kicks excepted.
+/// first, and how many saddles were left and kicks given so far; the energy falls from one to the next, kicks excepted.
 pub fn minimize<O: Objective>(
     objective: &O,
     start: O::Point,
     options: &NewtonOptions,
     cancel: &AtomicBool,
-    watch: &mut dyn FnMut(&O::Point, f64),
+    watch: &mut dyn FnMut(&O::Point, f64, usize),
 ) -> Minimization<O::Point> {
     let mut out = Minimization::at(start);
     let mut patterns = Patterns::default();
@@ -154,7 +154,7 @@ pub fn minimize<O: Objective>(
         }
         let here = objective.derivatives(&out.point);
         (out.energy, out.gradient_norm) = (here.energy, norm(&here.gradient));
-        watch(&out.point, here.energy);
+        watch(&out.point, here.energy, out.escapes + out.kicks);
         let here = match here.decompose(&mut patterns) {
             Ok(here) => here,
             Err(failure) => {
@@ -309,7 +309,7 @@ mod tests {
 
     #[test]
     fn a_symmetric_start_leaves_its_saddle() {
-        let end = minimize(&DoubleWell, [0.0, 0.7], &OPTIONS, &AtomicBool::new(false), &mut |_, _| {});
+        let end = minimize(&DoubleWell, [0.0, 0.7], &OPTIONS, &AtomicBool::new(false), &mut |_, _, _| {});
         assert_eq!(end.outcome, Outcome::Minimum);
         assert!(end.escapes >= 1);
         assert!((end.point[0].abs() - 1.0).abs() < 1e-9 && end.point[1].abs() < 1e-9);
@@ -317,7 +317,7 @@ mod tests {
 
     #[test]
     fn a_cancelled_run_says_so() {
-        let end = minimize(&DoubleWell, [0.3, 0.7], &OPTIONS, &AtomicBool::new(true), &mut |_, _| {});
+        let end = minimize(&DoubleWell, [0.3, 0.7], &OPTIONS, &AtomicBool::new(true), &mut |_, _, _| {});
         assert_eq!((end.outcome, end.iterations), (Outcome::Interrupted, 0));
     }
 }

@@ -27,6 +27,7 @@ fn map(design: &str, ratio: f64, l2: &[f64], l1: impl Fn(f64, f64) -> f64) -> Ma
         corners: false,
         rearranged: false,
         minima: false,
+        steps: false,
         interlocking_deg: vec![0.0, 90.0],
         rows: l2
             .iter()
