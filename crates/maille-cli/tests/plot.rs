@@ -43,7 +43,7 @@ fn every_kind_is_drawn_from_records() {
     };
     assert!(wrong(&["plot", "a", "-o", "x.pdf"]).contains(".svg or .png"));
     assert!(wrong(&["plot", "a", "--where", "l2=7"]).contains("no row is left"));
-    assert!(wrong(&["plot", "a", "--kind", "steps", "--quantity", "l1"]).contains("no --quantity"));
+    assert!(wrong(&["plot", "a", "--kind", "steps", "--quantity", "l1"]).contains("have a --quantity"));
 }
 
 /// Stretches from the widest cell: a record that knows the wide limits of 1.1 measures from one of them, another from its start.

@@ -578,7 +578,7 @@ fn next_to_the_direction_across_a_chain_nothing_is_unbounded() {
 #[test]
 fn that_images_would_be_too_near_is_proved() {
     let specimen = Specimen { dir: tempfile::tempdir().unwrap() };
-    let line = "characterize 1.3 --directions 22.5 --l2 0.125 --cell 1x1 --starts 1 --out record --quiet";
+    let line = "characterize 1.3-small --directions 22.5 --l2 0.125 --cell 1x1 --starts 1 --out record --quiet";
     assert!([0, 5].contains(&code(&maille(specimen.dir.path(), line))), "{line}");
     let (outcome, found) = specimen.verified();
     assert_eq!((outcome, &found["rows"][0]["status"]), (0, &json!("l2-unreachable")), "{found:#}");

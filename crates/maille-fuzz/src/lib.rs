@@ -25,6 +25,7 @@ pub fn sound(target: &str) -> Vec<Vec<u8>> {
     let read = || -> std::io::Result<Vec<Vec<u8>>> {
         let files: std::io::Result<Vec<_>> = std::fs::read_dir(&folder)?.map(|entry| Ok(entry?.path())).collect();
         let mut files = files?;
+        files.retain(|file| file.is_file());
         files.sort();
         files.iter().map(std::fs::read).collect()
     };

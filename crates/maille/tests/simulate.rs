@@ -328,7 +328,7 @@ fn forces(model: &Model, setup: &Setup, end: &Simulation) -> Vec<(ForceRow, Vec3
 /// those of their target, and no floor but where there is one.
 #[test]
 fn grips_push_as_the_energy_says() {
-    let model = sheet("1.3", "2x1");
+    let model = sheet("1.3-small", "2x1");
     let by = Vec3::new(0.7, 0.2, -0.1);
     let setup = Setup {
         fix: vec![0, 1],

@@ -264,6 +264,7 @@ export interface StateRecord {
   contacts?: ContactRecord[];
   chain?: ChainRecord | null;
   dual?: DualRecord[];
+  steps?: StepRecord[];
 }
 
 export type Status =
@@ -277,6 +278,15 @@ export type Status =
   | "not-converged"
   | "infeasible-start"
   | "interrupted";
+
+export interface StepRecord {
+  run: number;
+  l1: number;
+  energy: number;
+  size: number;
+  perturbed: boolean;
+  wall_s: number;
+}
 
 export interface Subject {
   name: string;

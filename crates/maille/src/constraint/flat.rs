@@ -62,12 +62,7 @@ impl SheetProgram<'_> {
     /// a tenth of the largest such offset: from now on they are pairs like all others, and their forces in
     /// `multipliers` are shared by their closed points. Returns whether there was one.
     pub fn release_flat_pairs(&mut self, x: &Posed, multipliers: &mut Vec<Multiplier>, beyond: f64) -> bool {
-        let carrying = self.flat.iter().filter_map(|&key| {
-            let force: f64 = multipliers.iter().filter(|m| m.key == key).map(|m| m.value.max(0.0)).sum();
-            let offset = self.offset(x, key) / self.model.rings[pair_of_key(key).ring_a].major_radius;
-            (force > 0.0 && offset > beyond).then_some((key, force, offset))
-        });
-        let carrying: Vec<(u64, f64, f64)> = carrying.collect();
+        let carrying = self.shifted(x, multipliers, beyond);
         let largest = carrying.iter().map(|(.., offset)| *offset).fold(0.0, f64::max);
         let shifted = carrying.into_iter().filter(|(.., offset)| *offset > MUCH_LESS * largest);
         let shifted: Vec<(u64, f64)> = shifted.map(|(key, force, _)| (key, force)).collect();
@@ -83,6 +78,16 @@ impl SheetProgram<'_> {
             multipliers.extend(closed.iter().map(|&angle| Multiplier { key, angle, minimum: true, value }));
         }
         !shifted.is_empty()
+    }
+
+    /// The flat pairs that carry and whose axes at `x` are more than `beyond` radii apart: key, force and offset.
+    pub fn shifted(&self, x: &Posed, multipliers: &[Multiplier], beyond: f64) -> Vec<(u64, f64, f64)> {
+        let of = |&key: &u64| {
+            let force: f64 = multipliers.iter().filter(|m| m.key == key).map(|m| m.value.max(0.0)).sum();
+            let offset = self.offset(x, key) / self.model.rings[pair_of_key(key).ring_a].major_radius;
+            (force > 0.0 && offset > beyond).then_some((key, force, offset))
+        };
+        self.flat.iter().filter_map(of).collect()
     }
 
     /// Distance of the axes of the pair at `x`, measured in the plane of its first ring.

@@ -54,7 +54,7 @@ pub(super) fn climb(
     rng: &mut ChaCha8Rng,
     cancel: &AtomicBool,
 ) -> Climbed {
-    let mut climber = Climber { model, cancel, iterations: 0 };
+    let mut climber = Climber { model, cancel, iterations: 0, last_resort: None };
     let (mut x, mut best): (Posed, Option<Solve>) = (start, None);
     for kick in 0..=kicks {
         if kick > 0 {
@@ -76,6 +76,9 @@ pub(super) fn climb(
             break;
         }
     }
+    if best.as_ref().is_none_or(|best| !best.certified) {
+        best = climber.last_resort.take().or(best);
+    }
     Climbed { best, iterations: climber.iterations }
 }
 
@@ -83,9 +86,26 @@ struct Climber<'a> {
     model: &'a Model,
     cancel: &'a AtomicBool,
     iterations: u64,
+    /// Certified at the cost of a hair of the value, for want of better.
+    last_resort: Option<Solve>,
 }
 
 impl Climber<'_> {
+    /// Keeps a last resort that has the links of the start, measured by true gaps; its pairs must not be shifted, see `round`.
+    fn keep(&mut self, program: &mut SheetProgram<'_>, found: Option<(Posed, Certificate)>) {
+        let Some((x, mut certificate)) = found.filter(|_| self.last_resort.is_none()) else { return };
+        if !program.shifted(&x, &certificate.multipliers, SHIFTED).is_empty() {
+            return;
+        }
+        measure_gaps(program, &x, &mut certificate);
+        measure_curvature(program, &x, &mut certificate);
+        let links_ok = topology::links_kept(self.model, &x.state);
+        if certificate.holds() && links_ok {
+            let contacts = program.contacts(&x, &certificate.multipliers);
+            self.last_resort = Some(Solve { x, certificate, contacts, links_ok, certified: true });
+        }
+    }
+
     /// Maximises and polishes in turns, until a certificate holds or nothing more is promised.
     fn round(&mut self, program: &mut SheetProgram<'_>, start: Posed) -> (Posed, Solve) {
         let mut x = start;
@@ -96,7 +116,8 @@ impl Climber<'_> {
             let options = SqpOptions { pause_at, first_radius, ..SqpOptions::default() };
             let end = maximize(program, x, known, &options, self.cancel);
             self.iterations += end.iterations as u64;
-            let (polished, mut certificate) = polish(program, &end);
+            let ((polished, mut certificate), last_resort) = polish(program, &end);
+            self.keep(program, last_resort);
             let locked = certificate.holds();
             let mut carrying = certificate.multipliers.clone();
             let shifted = locked && program.release_flat_pairs(&polished, &mut carrying, SHIFTED);

@@ -11,8 +11,10 @@ use super::{
     sqp::{Program, SqpEnd, elastic_program, stiff_where_loaded},
 };
 
-/// The value may fall by this much where overlaps are cleared: what a certificate's complementarity leaves open.
-const MOST_LOSS: f64 = RESIDUAL_TOLERANCE;
+/// The value may fall by this much in that step.
+const MOST_LOSS: f64 = 1e-10;
+/// By this much where nothing else is certified: what a certificate's complementarity leaves open.
+const LAST_LOSS: f64 = RESIDUAL_TOLERANCE;
 /// Shares of the largest multiplier above which a row counts as loaded: with the first, chains that are stretched side by
 /// side all count; with the second, what only touches does not.
 const LOADED: [f64; 2] = [1e-5, 1e-3];
@@ -27,9 +29,14 @@ const MOST_STEP: f64 = 0.05;
 /// Curvature that is added to hold motions without curvature of their own.
 const HOLDS: [f64; 5] = [1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
 
+/// A point with its certificate.
+type Certified<X> = (X, Certificate);
+
 /// Newton on the rows of `end` that are loaded, by either measure of that; the better point with its certificate,
-/// whose curvature is measured if all else holds.
-pub fn polish<P: Program>(program: &P, end: &SqpEnd<P::Point>) -> (P::Point, Certificate) {
+/// whose curvature is measured if all else holds. Where it does not hold, also a point whose certificate holds at the cost of up to
+/// `LAST_LOSS`, if there is one: a last resort.
+pub fn polish<P: Program>(program: &P, end: &SqpEnd<P::Point>) -> (Certified<P::Point>, Option<Certified<P::Point>>) {
+    let mut last_resort = None;
     let most = end.multipliers.iter().map(|m| m.value).fold(0.0, f64::max);
     let mut best: Option<(P::Point, Certificate)> = None;
     let mut tried = 0;
@@ -39,7 +46,7 @@ pub fn polish<P: Program>(program: &P, end: &SqpEnd<P::Point>) -> (P::Point, Cer
             break;
         }
         tried = active.len();
-        let found = polished(program, end.point.clone(), active);
+        let found = polished(program, end.point.clone(), active, &mut last_resort);
         if best.as_ref().is_none_or(|b| found.1.score() < b.1.score()) {
             best = Some(found);
         }
@@ -47,14 +54,21 @@ pub fn polish<P: Program>(program: &P, end: &SqpEnd<P::Point>) -> (P::Point, Cer
             break;
         }
     }
-    best.unwrap_or_else(|| {
+    let best = best.unwrap_or_else(|| {
         let certificate = certify(program, &end.point, &end.multipliers);
         (end.point.clone(), certificate)
-    })
+    });
+    let last_resort = last_resort.filter(|_| !best.1.holds());
+    (best, last_resort)
 }
 
 /// Newton on the rows `active`, with rows taken in and let go until gaps and multipliers have their signs.
-fn polished<P: Program>(program: &P, mut x: P::Point, mut active: Vec<Multiplier>) -> (P::Point, Certificate) {
+fn polished<P: Program>(
+    program: &P,
+    mut x: P::Point,
+    mut active: Vec<Multiplier>,
+    last_resort: &mut Option<Certified<P::Point>>,
+) -> Certified<P::Point> {
     let mut best: Option<(P::Point, Certificate)> = None;
     let mut budget = LEAST_BUDGET.max(program.objective().len() / 2);
     // Where rows were taken in: what stood there before.
@@ -76,8 +90,13 @@ fn polished<P: Program>(program: &P, mut x: P::Point, mut active: Vec<Multiplier
                 continue;
             }
             let again = certify(program, &cleared, &active);
-            if again.holds_to_first_order() && program.value(&cleared) > program.value(&x) - MOST_LOSS {
+            let loss = program.value(&x) - program.value(&cleared);
+            if again.holds_to_first_order() && loss < MOST_LOSS {
                 (x, certificate) = (cleared, again);
+            } else if again.holds_to_first_order() && loss < LAST_LOSS && last_resort.is_none() {
+                let mut last = again;
+                measure_curvature(program, &cleared, &mut last);
+                *last_resort = Some((cleared, last)).filter(|(_, last)| last.holds());
             }
             break;
         }
