@@ -1,4 +1,5 @@
-//! The validation map of the exact method: every thesis design × 25 directions × four l2 at both radii, 2,600 limits.
+//! The validation map of the exact method: the starts of chapter 6 of every thesis design × 25 directions × five l2 at both radii, 3,250
+//! limits.
 //!
 //!     cargo run --release -p maille --example exact_map -- [--designs 1.1,2] [--radii 0.1,0.05] [--cells "1x1 2x1 1x2 2x2 3x3"] [--verbose] [OUT.csv]
 //!
@@ -11,7 +12,7 @@ use maille::{
     model::Model,
     record::Status,
 };
-use maille_io::{builtin, read_design};
+use maille_io::{chapter6, read_design};
 use std::{
     collections::BTreeMap,
     fmt::Write as _,
@@ -20,7 +21,7 @@ use std::{
 };
 
 const DESIGNS: &str = "1.1,1.2,1.3,2,3.1,3.2,3.3,3.4,4.1,4.2,4.3,5.1,5.2";
-const L2: [f64; 4] = [-0.25, -0.125, 0.0, 0.125];
+const L2: [f64; 5] = [-0.25, -0.125, 0.0, 0.125, 0.25];
 
 fn main() {
     let mut options: BTreeMap<String, String> = BTreeMap::new();
@@ -43,8 +44,8 @@ fn main() {
     for name in option("designs", DESIGNS).split(',') {
         for radius in option("radii", "0.1,0.05").split(',') {
             let radius: f64 = radius.parse().expect("a radius");
-            let text = builtin(name).expect("a built-in design");
-            let design = read_design(name, text).expect("valid").with_minor_radius(radius);
+            let start = chapter6(name).expect("a design of the thesis");
+            let design = read_design(start.name, start.toml).expect("valid").with_minor_radius(radius);
             let models: Vec<Model> = cells.iter().map(|c| Model::compile(&design, *c).expect("compiles")).collect();
             let rows = Mutex::new(Vec::<Finished>::new());
             let starts = option("starts", "4").parse().expect("a number");
