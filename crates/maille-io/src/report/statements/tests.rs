@@ -211,7 +211,7 @@ fn minima(ratio: f64, l1: impl Fn(f64, f64) -> f64) -> Map {
 fn notches_are_sharp_or_blunt() {
     let (e, thin) = (0.6, 0.9);
     let both = [minima(0.1, chained(e)), minima(0.05, chained(thin))];
-    for (l2, direction) in [(-0.25, 0.0), (0.0, 90.0), (0.125, 0.0)] {
+    for (l2, direction) in [(-0.25f64, 0.0), (0.0, 90.0), (0.125, 0.0)] {
         let c = 1.0 - (1.0 + l2).powi(2);
         let exact = 1.0 / e + 2.0 * c / (e * e);
         assert!((notch(&both[0], l2, direction).unwrap() - exact).abs() < 1e-3 * (1.0 + exact), "{l2}");
