@@ -223,7 +223,7 @@ pub struct ForceRow {
     /// Force along the pull on an element of the first pulled place, their mean; positive where it stretches the sheet.
     /// Forces are in [`crate::simulate::WEIGHT_UNIT`]s, 1e-3 β R.
     pub mean_force: Option<f64>,
-    /// F in the plane, rows first: F[i][k] = ∂x_i/∂X_k.
+    /// F in the plane, rows first: row i, column k is ∂x_i/∂X_k.
     pub deformation: Option<[[f64; 2]; 2]>,
     /// Energy, in β R².
     pub energy: f64,
