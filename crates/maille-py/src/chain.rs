@@ -21,6 +21,8 @@ use std::{
 pub struct OpenMap {
     name: String,
     open: Mutex<Option<maille_io::record::OpenMap>>,
+    /// What [`Self::finish`] has given: an interrupt can hide that it has.
+    finished: Mutex<Option<maille_io::record::Record>>,
 }
 
 impl OpenMap {
@@ -39,7 +41,7 @@ impl OpenMap {
     #[new]
     fn new(design: &Design, asked: Asked, out: Option<PathBuf>, overwrite: bool) -> PyResult<Self> {
         let open = asked.open(design, out, overwrite)?;
-        Ok(Self { name: design.design.name.clone(), open: Mutex::new(Some(open)) })
+        Ok(Self { name: design.design.name.clone(), open: Mutex::new(Some(open)), finished: Mutex::new(None) })
     }
 
     /// Limits of the map, and those that are not in the record yet.
@@ -88,10 +90,15 @@ impl OpenMap {
         self.lock().take();
     }
 
-    /// Writes the record with what was found.
+    /// Writes the record with what was found; once more, it is the same record.
     fn finish(&self, py: Python<'_>) -> PyResult<Record> {
+        let mut finished = self.finished.lock().unwrap_or_else(|e| e.into_inner());
+        if let Some(record) = &*finished {
+            return Ok(Record { name: self.name.clone(), record: record.clone() });
+        }
         let open = self.lock().take().ok_or_else(closed)?;
         let record = py.detach(|| open.finish()).map_err(|e| error::map(&e))?;
+        *finished = Some(record.clone());
         Ok(Record { name: self.name.clone(), record })
     }
 }

@@ -18,6 +18,7 @@ use self::{
 use crate::{
     model::Model,
     solve::{
+        certificate::CARRIED,
         rows::{Derivatives, Loads, Multiplier, Row},
         sqp::Program,
     },
@@ -178,7 +179,7 @@ impl<'a> SheetProgram<'a> {
 
     /// The contacts that carry `multipliers` at `x`.
     pub fn contacts(&self, x: &Posed, multipliers: &[Multiplier]) -> Vec<Contact> {
-        let loaded = multipliers.iter().filter(|m| m.value > 1e-9 && m.key < bound_key(0xffff));
+        let loaded = multipliers.iter().filter(|m| m.value > CARRIED && m.key < bound_key(0xffff));
         loaded
             .map(|m| {
                 let pair = pair_of_key(m.key);

@@ -38,6 +38,8 @@ pub const RESIDUAL_TOLERANCE: f64 = 1e-9;
 /// Overlaps below this can be cleared by what carries nothing, see the polish.
 const ALMOST: f64 = 0.03;
 
+/// A contact carries where its force for a unit pull is above this: what a record lists, and what counts for the curvature.
+pub const CARRIED: f64 = 1e-9;
 /// Share of the largest multiplier above which one found with a sign counts.
 const CARRIES: f64 = 1e-8;
 
@@ -173,7 +175,7 @@ pub fn measure_curvature<P: Program>(program: &P, x: &P::Point, certificate: &mu
     let loads = Loads::new(&certificate.multipliers);
     let rows = program.rows(x, BAND, Derivatives::Second(&loads));
     let (chosen, multipliers): (Vec<&Row>, Vec<f64>) =
-        matched(&rows, &loads).into_iter().map(|(k, mu)| (&rows[k], mu)).unzip();
+        matched(&rows, &loads).into_iter().filter(|(_, mu)| *mu > CARRIED).map(|(k, mu)| (&rows[k], mu)).unzip();
     let hidden = program.hidden_curvature(x, &certificate.multipliers);
     let moves = |v: &Vec<f64>| (0..n).filter(|&i| v[i] != 0.0).collect();
     let places: Vec<Vec<usize>> = hidden.iter().map(moves).collect();

@@ -72,8 +72,9 @@ def _varied(
     try:
         if isinstance(design, Design) and minor_radius is not None:
             design = design.with_minor_radius(minor_radius)
-        for path, value in numbers if isinstance(design, Design) else []:
-            design = design.with_number(path, value)
+        for path, value in numbers:
+            if isinstance(design, Design):
+                design = design.with_number(path, value)
         if isinstance(design, Design) and spacing is not None:
             design = design.spaced(spacing)
     except MailleError as error:
