@@ -25,7 +25,7 @@ use crate::{
     state::{Pose, State},
     topology::RingPair,
 };
-use maille_geometry::{Vec3, point_circle_distance};
+use maille_geometry::Vec3;
 use nalgebra::{Matrix2, Matrix3, Quaternion, UnitQuaternion};
 use std::collections::BTreeSet;
 
@@ -333,11 +333,8 @@ impl<'a> Image<'a> {
         if a < b || (a == b && shift > [0, 0]) {
             return (RingPair { ring_a, ring_b, shift }, points);
         }
-        // A contact is a point of b and the nearest one of a, which is not the other way round where a flat pair opens by a hair.
-        let pair = RingPair { ring_a: ring_b, ring_b: ring_a, shift: shift.map(|x| -x) };
-        let point_b = points[0] - state.translation(shift);
-        let circle = state.circle(self.to, pair.ring_a, [0, 0]);
-        (pair, [point_circle_distance(&point_b, &circle).point, point_b])
+        let [point_a, point_b] = points.map(|point| point - state.translation(shift));
+        (RingPair { ring_a: ring_b, ring_b: ring_a, shift: shift.map(|x| -x) }, [point_b, point_a])
     }
 
     /// The model of the images.

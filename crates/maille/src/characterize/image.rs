@@ -9,6 +9,7 @@ use crate::{
     state::State,
     symmetry::{Image, Operation, between},
 };
+use maille_geometry::point_circle_distance;
 use std::borrow::Cow;
 
 /// A limit along the image of the direction that was solved.
@@ -86,7 +87,9 @@ fn mapped(
 }
 
 fn mapped_contact(image: &Image<'_>, contact: &Contact, state: &State) -> Contact {
-    let (pair, [point_a, point_b]) = image.contact(&contact.pair, [contact.point_a, contact.point_b], state);
+    let (pair, [_, point_b]) = image.contact(&contact.pair, [contact.point_a, contact.point_b], state);
+    // The point of b and the nearest one of a: where the two rings change their order, that is another one by a hair.
+    let point_a = point_circle_distance(&point_b, &state.circle(image.model(), pair.ring_a, [0, 0])).point;
     Contact { pair, point_a, point_b, force: contact.force }
 }
 
