@@ -32,7 +32,7 @@ cargo xtask COMMAND
   gallery  write docs/gallery: pictures, plots and numbers of every built-in design, by the program
            --quick         few directions, into maille-out/gallery
            --program PATH  this program; otherwise it is built
-  certify  maps of all built-in designs and of random ones, each row verified, as validation/certified.csv; hours; goes on
+  certify  maps of all built-in designs and of random ones, each row verified, as validation/certified.csv; a quarter of an hour; goes on
            where it was stopped
            --quick         few designs and directions, in minutes, beside their records in maille-out/certify
            --program PATH  this program; otherwise it is built

@@ -5,65 +5,14 @@
 //! neither way: what does not change is neither larger nor smaller. Parts are judged apart; the worst counts. A part that
 //! only says that something is to be seen fails where no case shows it.
 
-use super::{ENERGY_TIE, EXACT_TIE, Map, apart, extreme, midway, ratio_label, signed, step};
-use maille::record::LimitRow;
-use serde::Serialize;
+mod cases;
+mod cause;
 
-/// What became of a statement.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Verdict {
-    /// No record speaks of it.
-    NotMeasured,
-    /// No case contradicts it.
-    Holds,
-    /// Some cases do.
-    HoldsWithExceptions,
-    /// More than a quarter of the cases do.
-    Fails,
-}
+use cases::{Cases, finding};
+pub use cases::{Finding, Part, RULE, Verdict};
+use cause::cause;
 
-impl Verdict {
-    /// In words.
-    pub fn words(self) -> &'static str {
-        match self {
-            Verdict::NotMeasured => "not measured",
-            Verdict::Holds => "holds",
-            Verdict::HoldsWithExceptions => "holds with exceptions",
-            Verdict::Fails => "fails",
-        }
-    }
-}
-
-/// A statement beside what was measured.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Finding {
-    /// Number of the statement.
-    pub number: u32,
-    /// What the thesis says.
-    pub statement: &'static str,
-    /// What became of it.
-    pub verdict: Verdict,
-    /// Its parts, each with its cases.
-    pub parts: Vec<Part>,
-    /// What was measured.
-    pub evidence: Vec<String>,
-    /// The cases that contradict it.
-    pub exceptions: Vec<String>,
-}
-
-/// How the cases of one part of a statement came out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct Part {
-    /// What a case shows.
-    pub what: &'static str,
-    /// Cases that show it.
-    pub shown: usize,
-    /// Cases that show neither it nor the contrary.
-    pub ties: usize,
-    /// Cases that show the contrary.
-    pub against: usize,
-}
+use super::{EXACT_TIE, Map, apart, extreme, midway, ratio_label, signed, step};
 
 /// All statements.
 pub fn statements(maps: &[Map]) -> Vec<Finding> {
@@ -78,101 +27,6 @@ pub fn statements(maps: &[Map]) -> Vec<Finding> {
         sharpness(maps),
         shown(maps),
     ]
-}
-
-/// Exceptions up to this part of the cases leave a statement standing.
-const MOST_EXCEPTIONS: f64 = 0.25;
-/// The same where the thesis says "usually".
-const MOST_OF_USUAL: f64 = 0.5;
-
-/// How verdicts come about, for readers of the page.
-pub(super) const RULE: &str = "Each statement is broken into cases. It holds if every case shows it, holds with exceptions if at \
-    least three quarters do (more than half, where the thesis says \u{201c}usually\u{201d}), and fails otherwise. A tie, what stays the \
-    same, counts neither way and is counted apart. Parts are judged apart, and the worst counts.";
-
-/// Cases of one part of a statement.
-#[derive(Default)]
-struct Cases {
-    /// What a case shows.
-    what: &'static str,
-    shown: usize,
-    ties: usize,
-    exceptions: Vec<String>,
-    /// It is enough that some cases show it.
-    some: bool,
-    /// The thesis says "usually".
-    usual: bool,
-}
-
-impl Cases {
-    fn of(what: &'static str) -> Self {
-        Cases { what, ..Cases::default() }
-    }
-
-    fn add(&mut self, holds: bool, what: impl FnOnce() -> String) {
-        if holds {
-            self.shown += 1;
-        } else {
-            self.exceptions.push(what());
-        }
-    }
-
-    /// It holds where `more` is above 0; within `tie` of 0 it is a tie.
-    fn compare(&mut self, more: f64, tie: f64, what: impl FnOnce() -> String) {
-        if more.abs() <= tie { self.ties += 1 } else { self.add(more > 0.0, what) }
-    }
-
-    fn count(&self) -> usize {
-        self.shown + self.exceptions.len()
-    }
-
-    fn verdict(&self) -> Verdict {
-        let count = self.count();
-        match self.exceptions.len() {
-            _ if count == 0 => Verdict::NotMeasured,
-            0 => Verdict::Holds,
-            n if self.some && n < count => Verdict::HoldsWithExceptions,
-            n if self.usual && (n as f64) < MOST_OF_USUAL * count as f64 => Verdict::HoldsWithExceptions,
-            n if n as f64 <= MOST_EXCEPTIONS * count as f64 => Verdict::HoldsWithExceptions,
-            _ => Verdict::Fails,
-        }
-    }
-
-    /// `61 of 64 cases`, with the ties.
-    fn score(&self) -> String {
-        let ties = match self.ties {
-            0 => String::new(),
-            1 => " (and 1 tie)".into(),
-            n => format!(" (and {n} ties)"),
-        };
-        format!("{} of {} cases{ties}", self.shown, self.count())
-    }
-
-    fn part(&self) -> Part {
-        Part { what: self.what, shown: self.shown, ties: self.ties, against: self.exceptions.len() }
-    }
-}
-
-impl Finding {
-    /// Names a case that keeps the statement from holding as it stands, whatever the other cases say.
-    fn except(mut self, what: String) -> Self {
-        if self.verdict != Verdict::NotMeasured {
-            self.verdict = self.verdict.max(Verdict::HoldsWithExceptions);
-        }
-        self.exceptions.push(what);
-        self
-    }
-}
-
-fn finding(number: u32, statement: &'static str, evidence: Vec<String>, parts: Vec<Cases>) -> Finding {
-    Finding {
-        number,
-        statement,
-        verdict: parts.iter().map(Cases::verdict).max().unwrap_or(Verdict::NotMeasured),
-        parts: parts.iter().filter(|part| part.count() + part.ties > 0).map(Cases::part).collect(),
-        evidence,
-        exceptions: parts.into_iter().flat_map(|part| part.exceptions).collect(),
-    }
 }
 
 /// `0°, 5°`; many directions are counted.
@@ -199,46 +53,6 @@ fn by_radius(maps: &[Map]) -> Vec<(&Map, &Map)> {
         pairs.extend(maps.iter().filter(same).map(|thin| (thick, thin)));
     }
     pairs
-}
-
-/// Why a case of these maps is an exception, as far as the records tell: the energy method stopped in a local minimum short of an
-/// exact limit, or rings stack.
-fn cause(of: &[&Map], maps: &[Map], l2: f64) -> String {
-    let rows = |map: &&Map| map.rows.iter().filter(|row| row.l2 == l2).cloned().collect::<Vec<LimitRow>>();
-    if of.iter().any(|map| map.method != "exact") {
-        let short = |map: &&Map| {
-            let alike = |other: &&Map| {
-                (&other.design, other.ratio, other.rearranged) == (&map.design, map.ratio, map.rearranged)
-                    && other.method == "exact"
-                    && !other.minima
-            };
-            let exact = maps.iter().find(alike);
-            let of_row = |row: LimitRow| Some((exact?.l1(row.direction_deg, l2)? - row.l1?, row.direction_deg));
-            rows(map).into_iter().filter_map(of_row).collect::<Vec<_>>()
-        };
-        return match of.iter().flat_map(short).max_by(|a, b| a.0.total_cmp(&b.0)) {
-            Some((short, degrees)) if short > ENERGY_TIE => format!(
-                "The energy method stopped {short:.3} short of the exact limit at {degrees}°: a local minimum, of which the thesis's chapter 7 \
-                 warns."
-            ),
-            Some(_) => format!("It lies within what the energy method leaves open, {ENERGY_TIE} in l₁."),
-            None => "There is no exact limit in these directions to compare with.".into(),
-        };
-    }
-    let of_2 = of.iter().any(|map| map.design == "2");
-    let fallen = |map: &&Map| {
-        let of_row = |row: LimitRow| Some((map.l1(row.direction_deg, 0.0)? - row.l1?, row.direction_deg, row.l1?));
-        rows(map).into_iter().filter(|row| row.l2 < 0.0).filter_map(of_row).collect::<Vec<_>>()
-    };
-    match of.iter().flat_map(fallen).max_by(|a, b| a.0.total_cmp(&b.0)) {
-        Some((fall, degrees, l1)) if fall > EXACT_TIE => format!(
-            "Rings stack under compression, as the thesis says {}: at {degrees}° the limit falls from {:.4} at l₂ = 0 to {l1:.4}.",
-            if of_2 { "of design 2" } else { "of rare cases" },
-            l1 + fall,
-        ),
-        _ if of_2 => "Rows of rings stack along 0°, too thick to pass: of design 2 the thesis names this.".into(),
-        _ => "No limit falls under compression here: a cause that the records do not tell.".into(),
-    }
 }
 
 /// Statement 1.

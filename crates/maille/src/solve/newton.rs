@@ -266,12 +266,12 @@ pub(super) fn norm(v: &[f64]) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use faer::Mat;
 
     /// E = (x² − 1)² + y²: a saddle at the origin, minima at x = ±1.
-    struct DoubleWell;
+    pub(in crate::solve) struct DoubleWell;
 
     impl Objective for DoubleWell {
         type Point = [f64; 2];

@@ -126,37 +126,7 @@ fn descending_step(eigen: &Eigen, gradient: &[f64], shift: &mut f64) -> Option<V
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solve::{curvature::Curvature, newton::Derivatives};
-    use faer::Mat;
-
-    /// E = (x² − 1)² + y²: a saddle at the origin, minima at x = ±1.
-    struct DoubleWell;
-
-    impl Objective for DoubleWell {
-        type Point = [f64; 2];
-        type Guard = ();
-        fn energy(&self, p: &[f64; 2]) -> f64 {
-            (p[0] * p[0] - 1.0).powi(2) + p[1] * p[1]
-        }
-        fn slope(&self, p: &[f64; 2]) -> (f64, Vec<f64>, ()) {
-            (self.energy(p), vec![4.0 * p[0] * (p[0] * p[0] - 1.0), 2.0 * p[1]], ())
-        }
-        fn derivatives(&self, p: &[f64; 2]) -> Derivatives<()> {
-            let hessian = [[12.0 * p[0] * p[0] - 4.0, 0.0], [0.0, 2.0]];
-            let (energy, gradient, guard) = self.slope(p);
-            let hessian = Curvature::dense(Mat::from_fn(2, 2, |i, j| hessian[i][j]));
-            Derivatives { energy, gradient, hessian, guard }
-        }
-        fn largest_step(&self, _: &(), _: &[f64]) -> f64 {
-            1.0
-        }
-        fn moved(&self, p: &[f64; 2], step: &[f64], fraction: f64) -> [f64; 2] {
-            [p[0] + fraction * step[0], p[1] + fraction * step[1]]
-        }
-        fn kick(&self, _: usize) -> Vec<f64> {
-            vec![0.0; 2]
-        }
-    }
+    use crate::solve::newton::tests::DoubleWell;
 
     const OPTIONS: NewtonOptions = NewtonOptions {
         gradient_tolerance: 1e-10,
