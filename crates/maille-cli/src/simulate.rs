@@ -14,7 +14,7 @@ use maille::{
     limit::energy::EnergyOptions,
     model::Model,
     record::{FrameRecord, pose_records},
-    simulate::{Accepted, End, Simulation, along, simulate},
+    simulate::{Accepted, End, Simulation, TAU, along, simulate},
 };
 use maille_geometry::Vec3;
 use maille_io::{
@@ -94,7 +94,7 @@ pub struct Args {
     #[arg(long, default_value_t = EnergyOptions::default().alpha, value_parser = positive)]
     alpha: f64,
     /// A pulled element that misses its place by more than this, in reference radii, means that the sheet has locked
-    #[arg(long, default_value_t = EnergyOptions::default().tau, value_parser = positive)]
+    #[arg(long, default_value_t = TAU, value_parser = positive)]
     tau: f64,
     /// Newton iterations of one step at most
     #[arg(long, default_value_t = 2000, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]

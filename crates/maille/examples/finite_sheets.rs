@@ -10,7 +10,7 @@ use maille::{
     },
     model::Model,
     record::Status,
-    simulate::{Setup, elements_at, simulate},
+    simulate::{Setup, TAU, elements_at, simulate},
 };
 use maille_geometry::Vec3;
 use std::{fmt::Write as _, sync::atomic::AtomicBool, time::Instant};
@@ -37,7 +37,7 @@ fn main() {
                 floor: None,
                 steps: 10,
                 drag: None,
-                options: EnergyOptions { max_iterations: 2000, ..EnergyOptions::default() },
+                options: EnergyOptions { tau: TAU, max_iterations: 2000, ..EnergyOptions::default() },
             };
             let end = simulate(&model, &setup, &cancel, &mut |_| {}).expect("the setup is right");
             let line = format!(

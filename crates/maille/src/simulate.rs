@@ -104,6 +104,10 @@ pub struct Setup {
     pub options: EnergyOptions,
 }
 
+/// τ of a simulated sheet: how far a pulled element misses its place where the sheet locks. Larger than that of a limit, so
+/// that forces at a lock stay small.
+pub const TAU: f64 = 0.002;
+
 /// A gravity or force of size 1 pulls an element with this force, in β R: so small that it makes little overlap.
 pub const WEIGHT_UNIT: f64 = 1e-3;
 /// Under weight, α of the first minimisations, as parts of the last one's.

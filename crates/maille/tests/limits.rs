@@ -220,7 +220,7 @@ fn closer_5_2(minor_radius: f64) -> Model {
 /// method, from below but for the overlap and the τ by which F is missed.
 #[test]
 fn doubled_weaves_come_to_rest_at_their_limits() {
-    let options = EnergyOptions { tau: 1e-4, ..Default::default() };
+    let options = EnergyOptions::default();
     for model in [model("5.1", 0.1), closer_5_2(0.05)] {
         for (direction, l2) in [(0.0, -0.25), (37.5, 0.0), (15.0, 0.25)] {
             let exact = &map(std::slice::from_ref(&model), &[direction], &[l2], &ExactOptions::default())[0].row;

@@ -14,7 +14,7 @@ use maille::{
     model::Model,
     record::ForceRow,
     simulate::{
-        End, Setup, Simulation, WEIGHT_UNIT, along, elements_at,
+        End, Setup, Simulation, TAU, WEIGHT_UNIT, along, elements_at,
         force::{Grip, deformation_gradient, force_row},
         simulate,
     },
@@ -38,7 +38,7 @@ fn setup(model: &Model, fix: &str, pull: Option<(&str, Vec3)>, gravity: Vec3) ->
         floor: None,
         steps: 4,
         drag: None,
-        options: EnergyOptions::default(),
+        options: EnergyOptions { tau: TAU, ..EnergyOptions::default() },
     }
 }
 
@@ -336,7 +336,7 @@ fn grips_push_as_the_energy_says() {
         gravity: Vec3::new(0.1, -0.2, -3.0),
         forces: vec![(1, Vec3::new(5.0, 0.0, 1.0))],
         floor: Some(-1.08),
-        options: EnergyOptions { alpha: 30.0, ..EnergyOptions::default() },
+        options: EnergyOptions { alpha: 30.0, tau: TAU, ..EnergyOptions::default() },
         ..setup(&model, "", None, Vec3::zeros())
     };
     let x = Configuration::start(shaken(&model, 0.03, 5));

@@ -101,7 +101,7 @@ fn usual_alpha() -> f64 {
 }
 
 fn usual_tau() -> f64 {
-    EnergyOptions::default().tau
+    maille::simulate::TAU
 }
 
 fn elements_of(model: &Model, field: &str, place: &str) -> Result<Vec<usize>, InvalidInput> {

@@ -103,7 +103,7 @@ impl Default for EnergyOptions {
             protocol: Protocol::Strain,
             alpha: 1e5,
             corner_weight: 100.0,
-            tau: 0.002,
+            tau: 1e-4,
             l1_step: 0.05,
             l1_resolution: 5e-4,
             samples: 1,
