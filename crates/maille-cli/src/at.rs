@@ -24,7 +24,7 @@ pub enum Place {
 /// Reads `roomiest`, `tightest`, or a place in a record.
 pub fn parse_place(text: &str) -> Result<Place, String> {
     match text.trim() {
-        "roomiest" => Ok(Place::Extreme(Extreme::WidestGap)),
+        "roomiest" => Ok(Place::Extreme(Extreme::LargestClearance)),
         "tightest" => Ok(Place::Extreme(Extreme::ThickestWire)),
         _ => parse_at(text).map(Place::At),
     }

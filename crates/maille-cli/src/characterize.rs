@@ -17,8 +17,8 @@ use maille::{
     energy::{HessianMethod, MinimaMethod, barrier::ContactLaw, target::Protocol},
     lattice::Across,
     limit::{
+        ExactOptions,
         energy::{EnergyOptions, Minimiser},
-        exact::ExactOptions,
     },
     record::LimitRow,
 };

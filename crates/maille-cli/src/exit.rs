@@ -1,5 +1,6 @@
 //! Exit codes by cause, for scripts.
 
+use maille::error::InvalidInput;
 use maille_io::{DesignError, mesh::MeshError, record::RecordError, render::RenderError, study::StudyError};
 use miette::{Diagnostic, Report};
 use std::fmt;
@@ -44,6 +45,11 @@ impl Diagnostic for Wrong {
 /// A report that ends the program with `code`.
 pub fn wrong(code: u8, problem: impl Into<String>, help: impl Into<String>) -> Report {
     Report::new(Wrong { code, problem: problem.into(), help: help.into() })
+}
+
+/// A question that was refused.
+pub fn refused(problem: &InvalidInput) -> Report {
+    wrong(USAGE, &problem.problem, &problem.help)
 }
 
 /// The exit code of what went wrong.

@@ -3,7 +3,7 @@
 
 use crate::{
     certificate,
-    exit::{self, wrong},
+    exit::{self, refused, wrong},
     input::Input,
     interrupt,
     map::pool,
@@ -11,11 +11,15 @@ use crate::{
     output::{self, say},
 };
 use maille::{
+    answer::Answer,
+    characterize::CellChoice,
     design::Design,
     lattice::Cell,
-    limit::extreme::{Extreme, ExtremeOptions, ExtremeOutcome, Size, extreme},
+    limit::extreme::{Extreme, Size},
     model::Model,
+    question::{Goal, Question, Sense},
     record::Status,
+    sheet::Sheet,
 };
 use maille_io::{answer, write_design};
 use miette::Result;
@@ -97,7 +101,7 @@ pub fn tightest(args: &TightestArgs) -> Result<ExitCode> {
 
 /// Runs `roomiest`.
 pub fn roomiest(args: &RoomiestArgs) -> Result<ExitCode> {
-    run(&args.common, Extreme::WidestGap)
+    run(&args.common, Extreme::LargestClearance)
 }
 
 /// Starts and seed where no option names them.
@@ -109,13 +113,13 @@ fn run(args: &Common, what: Extreme) -> Result<ExitCode> {
     let answer = search(&input, what, args.lattice, (args.starts, args.seed), args.threads)?;
     let found = &answer.found;
     if args.json {
-        let document = answer::extreme(&input.design, &answer.model, answer.lattice_free, found);
+        let document = answer::extreme(&input.design, answer.model(), what, answer.lattice_free, found);
         output::print_json(&output::timed(document, begun.elapsed().as_secs_f64()))?;
     } else {
         answer.print(begun.elapsed().as_secs_f64());
     }
     if let (Some(file), Some(_)) = (&args.save, found.value) {
-        output::write(file, write_design(&found.design(&input.design, &answer.model)).as_bytes())?;
+        output::write(file, write_design(&what.design(found, &input.design, answer.model())).as_bytes())?;
         eprintln!("{}", file.display());
     }
     Ok(ExitCode::from(match found.status {
@@ -131,17 +135,21 @@ fn search<'a>(
     lattice: Option<Lattice>,
     (starts, seed): (u32, u64),
     threads: Option<u16>,
-) -> Result<Answer<'a>> {
-    let model = input.compile(&input.design, Cell::PRIMITIVE)?;
-    if model.links.is_empty() {
+) -> Result<Found<'a>> {
+    let sheet = input.sheet(CellChoice::One(Cell::PRIMITIVE))?;
+    if sheet.model().links.is_empty() {
         let help = "`maille inspect` shows links; rings that hold each other bound the wire, and nothing else does";
         return Err(wrong(exit::DESIGN, "no rings of this design are linked", help));
     }
     let lattice_free = lattice.map_or(what == Extreme::ThickestWire, |lattice| lattice == Lattice::Free);
-    let options = ExtremeOptions { lattice_free, starts: starts as usize, seed };
+    let goal = match what {
+        Extreme::ThickestWire => Goal::Wire { lattice_free },
+        Extreme::LargestClearance => Goal::Clearance { lattice_free },
+    };
+    let question = Question { starts: Some(starts as usize), seed, ..Question::new(goal, Sense::Largest) };
     let cancel = interrupt::flag()?;
-    let found = pool(threads)?.install(|| extreme(&model, what, &options, &cancel));
-    Ok(Answer { input, model, what, lattice_free, found })
+    let found = pool(threads)?.install(|| sheet.answer_until(&question, &cancel)).map_err(|e| refused(&e))?;
+    Ok(Found { input, sheet, what, lattice_free, found })
 }
 
 /// The extreme state as a design, and a line on what it is. Fails where no state was found, or Ctrl-C stopped the search.
@@ -161,12 +169,12 @@ pub fn as_design(
         }
         (status, Some(_)) => {
             let unit = input.design.unit.as_deref().map(|unit| format!(" {unit}")).unwrap_or_default();
-            let size = match answer.found.gap(&answer.model) {
+            let size = match what.clearance(&answer.found, answer.model()) {
                 Some(gap) => format!("smallest gap {gap:.9}{unit}"),
-                None => format!("minor radius {:.9}{unit}", answer.found.sizes(&answer.model)[0].minor_radius),
+                None => format!("minor radius {:.9}{unit}", what.sizes(&answer.found, answer.model())[0].minor_radius),
             };
             Ok((
-                answer.found.design(&input.design, &answer.model),
+                answer.what.design(&answer.found, &input.design, answer.model()),
                 format!("{}, {}: {size}", answer.title(), status.name()),
             ))
         }
@@ -177,20 +185,24 @@ pub fn as_design(
 pub fn word(what: Extreme) -> &'static str {
     match what {
         Extreme::ThickestWire => "tightest",
-        Extreme::WidestGap => "roomiest",
+        Extreme::LargestClearance => "roomiest",
     }
 }
 
 /// What was asked, and what was found.
-struct Answer<'a> {
+struct Found<'a> {
     input: &'a Input,
-    model: Model,
+    sheet: Sheet,
     what: Extreme,
     lattice_free: bool,
-    found: ExtremeOutcome,
+    found: Answer,
 }
 
-impl Answer<'_> {
+impl Found<'_> {
+    fn model(&self) -> &Model {
+        self.sheet.model()
+    }
+
     fn title(&self) -> String {
         let lattice = if self.lattice_free { "free" } else { "fixed" };
         let words = if self.what == Extreme::ThickestWire { "thickest wire" } else { "widest gaps" };
@@ -205,19 +217,20 @@ impl Answer<'_> {
             say!("  no start led to a state without overlap; try more --starts, or --lattice free");
             return;
         }
-        if let Some(gap) = self.found.gap(&self.model) {
+        if let Some(gap) = self.what.clearance(found, self.model()) {
             say!("  smallest gap    {gap:.9}{unit}");
         }
-        for size in self.found.sizes(&self.model) {
+        for size in self.what.sizes(found, self.model()) {
             let Size { major_radius, minor_radius } = size;
             say!("  minor radius    {minor_radius:.9}{unit} at major radius {major_radius}{unit}");
             say!("  aspect ratio    {:.6} = inner diameter / wire diameter", size.aspect_ratio());
         }
-        for (name, a) in [("a1", found.state.a1), ("a2", found.state.a2)].map(|(n, a)| (n, a * self.model.unit)) {
+        for (name, a) in [("a1", found.state.a1), ("a2", found.state.a2)].map(|(n, a)| (n, a * self.model().unit)) {
             say!("  {name}              {:.6}, {:.6}{unit}", a.x, a.y);
         }
-        let kept = if found.links_ok { "kept" } else { "LOST" };
-        say!("  {} starts led to {} certified values; links {kept}; {wall_s:.1} s", found.n_starts, found.n_distinct);
+        let (starts, distinct) = (found.n_starts.unwrap_or(0), found.n_distinct.unwrap_or(0));
+        let kept = if found.links_ok == Some(true) { "kept" } else { "LOST" };
+        say!("  {starts} starts led to {distinct} certified values; links {kept}; {wall_s:.1} s");
         if let Some(c) = &found.certificate {
             say!("  {}", certificate::line(c));
         }

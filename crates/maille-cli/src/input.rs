@@ -1,7 +1,9 @@
 //! A design from a built-in name or a file, and its model.
 
 use crate::exit::{self, wrong};
-use maille::{design::Design, error::InvalidInput, lattice::Cell, model::Model};
+use maille::{
+    characterize::CellChoice, design::Design, error::InvalidInput, lattice::Cell, model::Model, sheet::Sheet,
+};
 pub use maille_io::record::file_name;
 use maille_io::{DesignError, DesignSource, builtin, builtin_designs, nearest_builtin, study::Variant, write_design};
 use miette::{IntoDiagnostic, Report, Result, WrapErr};
@@ -73,6 +75,11 @@ impl Input {
     /// `--minor-radius`, named after that option.
     pub fn compile(&self, design: &Design, cell: Cell) -> Result<Model> {
         Model::compile(design, cell).map_err(|problems| self.explain(&problems))
+    }
+
+    /// The same for the cells that a search may go on to.
+    pub fn sheet(&self, cells: CellChoice) -> Result<Sheet> {
+        Sheet::in_cells(&self.design, cells).map_err(|problems| self.explain(&problems))
     }
 
     /// The same for a finite sheet of the cells of `tile`.

@@ -2,7 +2,7 @@
 
 use crate::{
     certificate,
-    exit::{self, wrong},
+    exit::{self, refused, wrong},
     input::Input,
     interrupt,
     numbers::{finite, parse_cell, positive},
@@ -10,10 +10,8 @@ use crate::{
 };
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use maille::{
-    characterize::{CellChoice, Method, strain::StrainQuestion},
-    lattice::Cell,
-    limit::{exact::ExactOptions, strain::Strain},
-    model::Model,
+    characterize::CellChoice,
+    question::{Goal, Question, Sense, Strain},
     record::Status,
 };
 use maille_io::answer::StrainAnswer;
@@ -104,40 +102,34 @@ fn cell_choice(text: &str) -> Result<CellChoice, String> {
     if text == "auto" { Ok(CellChoice::Auto) } else { parse_cell(text).map(CellChoice::One) }
 }
 
-fn question(args: &Args) -> Result<StrainQuestion> {
-    let Some((goal, sign)) = args.maximize.map(|s| (s, 1.0)).or(args.minimize.map(|s| (s, -1.0))) else {
+fn question(args: &Args) -> Result<Question> {
+    let Some((component, sense)) =
+        args.maximize.map(|s| (s, Sense::Largest)).or(args.minimize.map(|s| (s, Sense::Least)))
+    else {
         return Err(wrong(exit::USAGE, "no strain is named", "give --maximize exx, or --minimize exx"));
     };
-    Ok(StrainQuestion {
-        goal,
-        sign,
+    let goal = Goal::Strain {
+        component,
+        direction_deg: args.direction,
         fix: args.fix.iter().map(|held| (held.strain, held.value)).collect(),
         free: args.free.clone(),
-        direction_deg: args.direction,
-        starts: args.starts.map(|starts| starts as usize),
-        seed: args.seed,
-    })
+    };
+    let starts = args.starts.map(|starts| starts as usize);
+    Ok(Question { starts, seed: args.seed, ..Question::new(goal, sense) })
 }
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let question = question(args)?;
-    question.query().map_err(|e| wrong(exit::USAGE, e.problem, e.help))?;
+    question.check().map_err(|e| refused(&e))?;
     let input = Input::read(&args.design, args.minor_radius)?;
-    let cells = args.cell.cells(&Method::Exact(ExactOptions::default()), input.design.elements.len());
-    let models = cells.iter().map(|cell: &Cell| input.compile(&input.design, *cell)).collect::<Result<Vec<Model>>>()?;
+    let sheet = input.sheet(args.cell)?;
     let cancel = interrupt::flag()?;
     let begun = Instant::now();
-    let found = question.answer(&models, &cancel).map_err(|e| wrong(exit::USAGE, e.problem, e.help))?;
-    let answer = StrainAnswer {
-        design: &input.design.name,
-        goal: question.goal,
-        sign: question.sign,
-        free: &question.free,
-        direction_deg: question.direction_deg,
-        cells: &cells,
-        model: &models[found.cell],
-        found: &found,
+    let found = sheet.answer_until(&question, &cancel).map_err(|e| refused(&e))?;
+    let model = sheet.model_of(&found);
+    let Some(answer) = StrainAnswer::new(&input.design.name, &question, &model, &found) else {
+        unreachable!("a strain is asked for")
     };
     let wall_s = begun.elapsed().as_secs_f64();
     match args.json {
@@ -156,7 +148,7 @@ const UNIQUE: f64 = 2e-3;
 
 fn print(answer: &StrainAnswer<'_>, wall_s: f64) {
     let found = answer.found;
-    let most = answer.most();
+    let most = answer.question.sense.name();
     let turned = match answer.direction_deg {
         0.0 => String::new(),
         angle => format!(" with x along {angle}\u{b0}"),
@@ -167,7 +159,8 @@ fn print(answer: &StrainAnswer<'_>, wall_s: f64) {
         Status::Unbounded => return say!("  nothing holds the sheet along this direction: it comes apart"),
         Status::InfeasibleStart => return say!("  the rings of the design overlap, and could not be freed of that"),
         Status::L2NotReached => {
-            return say!("  {} starts did not reach the strains that are held; nothing is proved", found.n_starts);
+            let starts = found.n_starts.unwrap_or(0);
+            return say!("  {starts} starts did not reach the strains that are held; nothing is proved");
         }
         Status::Uncertified if found.value.is_none() => {
             return say!("  no chain of links and no contact held it where the search was stopped; nothing is proved");
@@ -178,7 +171,7 @@ fn print(answer: &StrainAnswer<'_>, wall_s: f64) {
     for strain in Strain::ALL {
         // Rounding shows no sign of a 0.
         let round = |x: f64, digits: f64| (x * digits).round() / digits + 0.0;
-        let value = round(strain.of(&found.strain, answer.direction_deg), 1e9);
+        let value = round(answer.strain(strain), 1e9);
         match answer.range(strain).map(|range| range.map(|x| round(x, 1e6))) {
             // One of many states, which says nothing of the others.
             Some([least, largest]) if largest - least > UNIQUE => {
@@ -191,17 +184,17 @@ fn print(answer: &StrainAnswer<'_>, wall_s: f64) {
         say!("  l1    {l1:>15.9}  of lines along {}", answer.goal.name());
     }
     if let Some(bound) = found.bound {
-        say!("  bound {:>15.9}  proved by the chains of links", answer.sign * bound);
+        say!("  bound {:>15.9}  proved by the chains of links", bound);
     }
-    let kept = if found.links_ok { "kept" } else { "LOST" };
-    let (starts, distinct) = (found.n_starts, found.n_distinct);
+    let kept = if found.links_ok == Some(true) { "kept" } else { "LOST" };
+    let (starts, distinct) = (found.n_starts.unwrap_or(0), found.n_distinct.unwrap_or(0));
     say!(
         "  cell {}; {starts} starts led to {distinct} certified values; links {kept}; {wall_s:.2} s",
         answer.model.cell
     );
-    if found.trend.len() > 1 || answer.sign < 0.0 {
-        for cell in answer.by_cell() {
-            say!("    {}", cell.words(&answer.cells[cell.cell].to_string()));
+    if found.by_cell.len() > 1 || answer.question.sense == Sense::Least {
+        for cell in &found.by_cell {
+            say!("    {}", cell.label());
         }
     }
     if let Some(c) = &found.certificate {

@@ -14,7 +14,7 @@ use maille::{
     design::{Design, Source},
     energy::target::Protocol,
     lattice::Cell,
-    limit::{energy::EnergyOptions, exact::ExactOptions},
+    limit::{ExactOptions, energy::EnergyOptions},
     model::Model,
 };
 use maille_io::{

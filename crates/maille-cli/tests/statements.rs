@@ -6,7 +6,7 @@ use maille::{
     characterize::{Method, characterize},
     design::Design,
     lattice::Cell,
-    limit::exact::ExactOptions,
+    limit::ExactOptions,
     model::Model,
     record::LimitRow,
 };

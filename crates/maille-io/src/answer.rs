@@ -1,14 +1,11 @@
 //! Answers to single questions as JSON documents, with the keys of `docs/json.md`.
 
 use maille::{
+    answer::{Answer, CellTrend},
     design::Design,
-    lattice::Cell,
-    limit::{
-        CellTrend,
-        extreme::ExtremeOutcome,
-        strain::{Strain, StrainOutcome},
-    },
+    limit::extreme::Extreme,
     model::Model,
+    question::{Goal, Question, Strain},
     record::{Status, pose_records},
     solve::certificate::Certificate,
 };
@@ -19,23 +16,27 @@ use serde_json::{Map, Value, json};
 pub struct StrainAnswer<'a> {
     /// Name of the design.
     pub design: &'a str,
+    /// What was asked.
+    pub question: &'a Question,
     /// The strain that was sought.
     pub goal: Strain,
-    /// 1 for the largest value, −1 for the least.
-    pub sign: f64,
     /// Strains that were left to the sheet.
     pub free: &'a [Strain],
     /// Direction of the strains' x axis.
     pub direction_deg: f64,
-    /// The cells that were solved.
-    pub cells: &'a [Cell],
     /// The design, compiled for the cell of the answer.
     pub model: &'a Model,
     /// What was found.
-    pub found: &'a StrainOutcome,
+    pub found: &'a Answer,
 }
 
-impl StrainAnswer<'_> {
+impl<'a> StrainAnswer<'a> {
+    /// The answer to a question on a strain; `None` of other goals.
+    pub fn new(design: &'a str, question: &'a Question, model: &'a Model, found: &'a Answer) -> Option<Self> {
+        let Goal::Strain { component, direction_deg, free, .. } = &question.goal else { return None };
+        Some(StrainAnswer { design, question, goal: *component, free, direction_deg: *direction_deg, model, found })
+    }
+
     /// The status in words of strains.
     pub fn status(&self) -> &'static str {
         match self.found.status {
@@ -45,15 +46,10 @@ impl StrainAnswer<'_> {
         }
     }
 
-    /// `largest`, or `least`.
-    pub fn most(&self) -> &'static str {
-        if self.sign > 0.0 { "largest" } else { "least" }
-    }
-
-    /// What a strain is in the question.
+    /// What a strain is in the question: `largest`, `least`, `free` or `held`.
     pub fn role(&self, strain: Strain) -> &'static str {
         match strain {
-            goal if goal == self.goal => self.most(),
+            goal if goal == self.goal => self.question.sense.name(),
             free if self.free.contains(&free) => "free",
             _ => "held",
         }
@@ -64,15 +60,15 @@ impl StrainAnswer<'_> {
         self.found.ranges.get(self.free.iter().position(|free| *free == strain)?).copied()
     }
 
-    /// What each cell reached, with the sign of the strain.
-    pub fn by_cell(&self) -> impl Iterator<Item = CellTrend> {
-        self.found.trend.iter().map(|t| CellTrend { value: t.value.map(|p| self.sign * p), ..*t })
+    /// A strain of the state.
+    pub fn strain(&self, strain: Strain) -> f64 {
+        strain.of(&self.found.green_strain(), self.direction_deg)
     }
 
     /// l1 of lines along a normal strain that was sought: λ = √(1 + 2 E), l1 = λ − 1.
     pub fn stretch(&self) -> Option<f64> {
         let normal = self.goal != Strain::Exy;
-        self.found.value.filter(|_| normal).map(|p| (1.0 + 2.0 * self.sign * p).max(0.0).sqrt() - 1.0)
+        self.found.value.filter(|_| normal).map(|e| (1.0 + 2.0 * e).max(0.0).sqrt() - 1.0)
     }
 
     /// The document.
@@ -80,38 +76,42 @@ impl StrainAnswer<'_> {
         let found = self.found;
         let solved = found.value.is_some();
         let strain = |s: Strain| {
-            let value = solved.then(|| s.of(&found.strain, self.direction_deg));
+            let value = solved.then(|| self.strain(s));
             let [least, largest] = self.range(s).map_or([None; 2], |range| range.map(Some));
             (s.name().to_owned(), json!({ "value": value, "is": self.role(s), "min": least, "max": largest }))
         };
-        let cell = |t: CellTrend| {
-            let name = self.cells[t.cell].to_string();
-            json!({ "cell": name, "value": t.value, "n_starts": t.n_starts, "n_distinct": t.n_distinct })
+        let cell = |t: &CellTrend| {
+            json!({
+                "cell": t.cell.to_string(),
+                "value": t.value,
+                "n_starts": t.n_starts,
+                "n_distinct": t.n_distinct,
+            })
         };
         json!({
             "design": self.design,
             "status": self.status(),
-            "value": found.value.map(|p| self.sign * p),
-            "bound": found.bound.map(|bound| self.sign * bound),
+            "value": found.value,
+            "bound": found.bound,
             "strains": Strain::ALL.map(strain).into_iter().collect::<Map<_, _>>(),
             "cell": self.model.cell.to_string(),
-            "by_cell": self.by_cell().map(cell).collect::<Vec<_>>(),
+            "by_cell": found.by_cell.iter().map(cell).collect::<Vec<_>>(),
             "direction_deg": self.direction_deg,
             "l1": self.stretch(),
             "a1": solved.then(|| length(self.model, found.state.a1)),
             "a2": solved.then(|| length(self.model, found.state.a2)),
             "poses": solved.then(|| pose_records(self.model, &found.state)),
             "certificate": found.certificate.as_ref().map(|c| certificate(c, self.model.unit)),
-            "links_ok": solved.then_some(found.links_ok),
+            "links_ok": found.links_ok.filter(|_| solved),
             "n_starts": found.n_starts,
             "n_distinct": found.n_distinct,
         })
     }
 }
 
-/// The thickest wire or the widest gap of a design, and the state.
-pub fn extreme(design: &Design, model: &Model, lattice_free: bool, found: &ExtremeOutcome) -> Value {
-    let sizes = found.sizes(model).into_iter().map(|size| {
+/// The thickest wire or the largest clearance of a design, and the state.
+pub fn extreme(design: &Design, model: &Model, what: Extreme, lattice_free: bool, found: &Answer) -> Value {
+    let sizes = what.sizes(found, model).into_iter().map(|size| {
         json!({
             "major_radius": size.major_radius,
             "minor_radius": finite(size.minor_radius),
@@ -122,13 +122,13 @@ pub fn extreme(design: &Design, model: &Model, lattice_free: bool, found: &Extre
         "design": design.name,
         "status": found.status.name(),
         "lattice": if lattice_free { "free" } else { "fixed" },
-        "gap": found.gap(model),
+        "gap": what.clearance(found, model),
         "sizes": sizes.collect::<Vec<_>>(),
         "a1": length(model, found.state.a1),
         "a2": length(model, found.state.a2),
         "poses": pose_records(model, &found.state),
         "certificate": found.certificate.as_ref().map(|c| certificate(c, model.unit)),
-        "links_ok": found.links_ok,
+        "links_ok": found.links_ok.unwrap_or(false),
         "n_starts": found.n_starts,
         "n_distinct": found.n_distinct,
     })

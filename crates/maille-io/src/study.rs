@@ -11,7 +11,7 @@ use maille::{
     design::Design,
     error::InvalidInput,
     lattice::Cell,
-    limit::exact::ExactOptions,
+    limit::ExactOptions,
 };
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode, SourceSpan};
 use serde::Deserialize;

@@ -1,7 +1,7 @@
 //! Designs.
 
 use crate::error;
-use maille::{error::InvalidInput, lattice::Cell, model::Model};
+use maille::{characterize::CellChoice, error::InvalidInput, lattice::Cell, model::Model, sheet::Sheet};
 use maille_io::{DesignSource, NumberPath, builtin, builtin_designs, nearest_builtin, write_design};
 use pyo3::prelude::*;
 
@@ -21,6 +21,11 @@ impl Design {
     /// The model for a cell.
     pub fn compile(&self, cell: Cell) -> PyResult<Model> {
         Model::compile(&self.design, cell).map_err(|problems| self.explain(&problems))
+    }
+
+    /// The sheet in the cells that a search may go on to.
+    pub fn sheet(&self, cells: CellChoice) -> PyResult<Sheet> {
+        Sheet::in_cells(&self.design, cells).map_err(|problems| self.explain(&problems))
     }
 
     /// The model of a finite sheet.

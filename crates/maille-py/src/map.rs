@@ -8,7 +8,7 @@ use crate::{
 use maille::{
     characterize::{CellChoice, Method},
     lattice::Across,
-    limit::{energy::EnergyOptions, exact::ExactOptions},
+    limit::{ExactOptions, energy::EnergyOptions},
 };
 use maille_io::{
     numbers::{USUAL_DIRECTIONS, USUAL_L2, distinct, parse, parse_l2},

@@ -2,17 +2,20 @@
 
 use crate::{design::Design, error, map::cell_choice, wait::wait};
 use maille::{
-    characterize::{Method, strain::StrainQuestion},
+    answer::Answer,
+    characterize::CellChoice,
     lattice::Cell,
-    limit::{
-        exact::ExactOptions,
-        extreme::{Extreme, ExtremeOptions},
-        strain::Strain,
-    },
-    model::Model,
+    limit::extreme::Extreme,
+    question::{Goal, Question, Sense, Strain},
+    sheet::Sheet,
 };
 use maille_io::answer::{self, StrainAnswer};
 use pyo3::prelude::*;
+
+/// Puts the question on threads of their own.
+fn ask(py: Python<'_>, sheet: &Sheet, question: &Question, threads: Option<usize>) -> PyResult<Answer> {
+    wait(py, threads, None, |cancel, _| sheet.answer_until(question, cancel))?.map_err(|e| error::invalid(&e))
+}
 
 fn strain(argument: &str, name: &str) -> PyResult<Strain> {
     let known = Strain::ALL.into_iter().find(|strain| strain.name() == name);
@@ -37,22 +40,15 @@ pub fn limit(
     let goal = strain(if sign > 0.0 { "maximize" } else { "minimize" }, goal)?;
     let fix: Vec<_> = fix.iter().map(|(name, x)| Ok((strain("fix", name)?, *x))).collect::<PyResult<_>>()?;
     let free: Vec<_> = free.iter().map(|name| strain("free", name)).collect::<PyResult<_>>()?;
-    let question = StrainQuestion { goal, sign, fix, free, direction_deg, starts: starts.map(|n| n.max(1)), seed };
-    question.query().map_err(|e| error::invalid(&e))?;
-    let exact = Method::Exact(ExactOptions::default());
-    let cells = cell_choice(cell)?.cells(&exact, design.design.elements.len());
-    let models: Vec<Model> = cells.iter().map(|cell| design.compile(*cell)).collect::<PyResult<_>>()?;
-    let found = wait(py, Some(1), None, |cancel, _| question.answer(&models, cancel))?;
-    let found = found.map_err(|e| error::invalid(&e))?;
-    let answer = StrainAnswer {
-        design: &design.design.name,
-        goal,
-        sign,
-        free: &question.free,
-        direction_deg,
-        cells: &cells,
-        model: &models[found.cell],
-        found: &found,
+    let sense = if sign > 0.0 { Sense::Largest } else { Sense::Least };
+    let goal = Goal::Strain { component: goal, direction_deg, fix, free };
+    let question = Question { starts, seed, ..Question::new(goal, sense) };
+    question.check().map_err(|e| error::invalid(&e))?;
+    let sheet = design.sheet(cell_choice(cell)?)?;
+    let found = ask(py, &sheet, &question, Some(1))?;
+    let model = sheet.model_of(&found);
+    let Some(answer) = StrainAnswer::new(&design.design.name, &question, &model, &found) else {
+        unreachable!("a strain is asked for")
     };
     Ok(answer.json().to_string())
 }
@@ -70,15 +66,19 @@ pub fn extreme(
     seed: u64,
     threads: Option<usize>,
 ) -> PyResult<(String, Option<Design>)> {
-    let model = design.compile(Cell::PRIMITIVE)?;
+    let sheet = design.sheet(CellChoice::One(Cell::PRIMITIVE))?;
+    let model = sheet.model();
     if model.links.is_empty() {
         let remedy = "rings that hold each other bound the wire, and nothing else does";
         return Err(error::argument("design", "no rings of this design are linked", remedy));
     }
-    let what = if thickest { Extreme::ThickestWire } else { Extreme::WidestGap };
-    let options = ExtremeOptions { lattice_free, starts: starts.max(1), seed };
-    let found = wait(py, threads, None, |cancel, _| maille::limit::extreme::extreme(&model, what, &options, cancel))?;
-    let document = answer::extreme(&design.design, &model, lattice_free, &found);
-    let state = found.value.map(|_| Design::of(found.design(&design.design, &model)));
+    let (what, goal) = match thickest {
+        true => (Extreme::ThickestWire, Goal::Wire { lattice_free }),
+        false => (Extreme::LargestClearance, Goal::Clearance { lattice_free }),
+    };
+    let question = Question { starts: Some(starts), seed, ..Question::new(goal, Sense::Largest) };
+    let found = ask(py, &sheet, &question, threads)?;
+    let document = answer::extreme(&design.design, model, what, lattice_free, &found);
+    let state = found.value.map(|_| Design::of(what.design(&found, &design.design, model)));
     Ok((document.to_string(), state))
 }

@@ -14,7 +14,7 @@ use futures_util::stream::unfold;
 use maille::{
     characterize::{CellChoice, Method},
     lattice::{Across, Cell},
-    limit::exact::ExactOptions,
+    limit::ExactOptions,
     model::Model,
     record::{LimitRow, StateRecord},
 };

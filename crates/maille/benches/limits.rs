@@ -4,8 +4,9 @@ use divan::{Bencher, counter::ItemsCount};
 use maille::{
     lattice::Cell,
     limit::{
+        ExactOptions,
         energy::{EnergyMethod, EnergyOptions},
-        exact::{ExactMethod, ExactOptions},
+        stretch::ExactMethod,
     },
     model::Model,
     record::Status,

@@ -4,7 +4,7 @@ use divan::{Bencher, counter::ItemsCount};
 use maille::{
     characterize::{Method, characterize, tasks},
     lattice::Cell,
-    limit::exact::ExactOptions,
+    limit::ExactOptions,
     model::Model,
 };
 use maille_io::{builtin, read_design};

@@ -8,7 +8,7 @@
 use maille::{
     characterize::{Finished, Method, characterize},
     lattice::Cell,
-    limit::exact::ExactOptions,
+    limit::ExactOptions,
     model::Model,
     record::Status,
 };

@@ -3,11 +3,9 @@
 //!     cargo run --release -p maille --example finite_sheets -- [OUT.csv]
 
 use maille::{
+    answer::Answer,
     lattice::Cell,
-    limit::{
-        LimitOutcome,
-        energy::{EnergyMethod, EnergyOptions},
-    },
+    limit::energy::{EnergyMethod, EnergyOptions},
     model::Model,
     record::Status,
     simulate::{Setup, TAU, elements_at, simulate},
@@ -57,7 +55,7 @@ fn main() {
         let method = EnergyMethod::new(&model, EnergyOptions::default(), &cancel);
         let limits = (-4..=8).map(|k| (f64::from(k) * 0.025, method.limit(0.0, f64::from(k) * 0.025, &cancel)));
         let found: Vec<_> = limits.filter(|(_, limit)| limit.status == Status::ThresholdReached).collect();
-        let of = |(l2, limit): &(f64, LimitOutcome)| (limit.gradient[(0, 0)] - 1.0, *l2, limit.iterations);
+        let of = |(l2, limit): &(f64, Answer)| (limit.gradient[(0, 0)] - 1.0, *l2, limit.iterations);
         let at_rest = found.iter().map(of).filter(|(_, l2, _)| *l2 == 0.0);
         let best = found.iter().map(of).max_by(|a, b| a.0.total_cmp(&b.0));
         for (l1, l2, iterations) in at_rest.chain(best) {

@@ -1,24 +1,24 @@
 //! Characterisation: limits over directions and lateral strains, as rows and states of a record.
 
-mod image;
-pub mod strain;
+pub(crate) mod image;
+mod row;
 
+use self::row::Asked;
 use crate::{
-    bound::DualForce,
-    lattice::{Across, Cell, direction},
+    answer::Answer,
+    lattice::{Across, Cell},
     limit::{
-        FreeRanges, LimitOutcome,
+        ExactOptions,
         energy::{EnergyMethod, EnergyOptions},
-        exact::{ExactMethod, ExactOptions},
+        stretch::ExactMethod,
     },
     model::Model,
-    record::{ChainRecord, ContactRecord, DualRecord, LimitRow, StateRecord, Status, pose_records},
+    record::{LimitRow, StateRecord, Status},
     symmetry::{Operation, Orbit, mirrored, operations, orbits},
-    topology,
 };
-use maille_geometry::Vec3;
 use rayon::prelude::*;
 use std::{
+    borrow::Cow,
     sync::atomic::{AtomicBool, Ordering},
     time::Instant,
 };
@@ -155,16 +155,15 @@ pub fn characterize(
             open.par_iter().with_max_len(1).for_each(|task| {
                 if !cancel.load(Ordering::Relaxed) {
                     let begun = Instant::now();
-                    let outcome = energy.limit(task.direction_deg, task.l2, cancel);
-                    let found = Found { model: &models[0], outcome: &outcome, cells: &[], image_of_deg: None };
-                    finished(report(&found, minor_radius, method, task, begun.elapsed().as_secs_f64()));
+                    let answer = energy.limit(task.direction_deg, task.l2, cancel);
+                    let asked = Asked { task, method, minor_radius, image_of_deg: None };
+                    finished(asked.finished(&models[0], &answer, begun.elapsed().as_secs_f64()));
                 }
             });
         }
         Method::Exact(options) => {
             let exact = ExactMethod::new(models, options.clone(), cancel);
             let (operations, chains) = symmetric_chains(&models[0], method, directions_deg);
-            let cells: Vec<Cell> = models.iter().map(|model| model.cell).collect();
             chains.par_iter().with_max_len(1).for_each(|chain| {
                 let solved_deg = chain.representative_deg;
                 let open = |k: usize| {
@@ -175,29 +174,23 @@ pub fn characterize(
                     return;
                 }
                 let mut begun = Instant::now();
-                exact.limits(solved_deg, l2, cancel, &mut |k, mut outcome| {
-                    let free = outcome.exact.as_mut().and_then(|figures| figures.free.as_mut());
-                    if let Some(free) = free.filter(|_| mirrored(&operations, solved_deg)) {
-                        // The states with −γ are there, too.
-                        let most = free.shear[1].max(-free.shear[0]);
-                        free.shear = [-most, most];
-                    }
+                exact.limits(solved_deg, l2, cancel, &mut |k, answer| {
+                    let answer = both_shears(answer, &operations, solved_deg);
                     for task in open(k) {
-                        let image = (task.direction_deg != solved_deg)
-                            .then(|| image::image(&operations, models, &outcome, solved_deg, task.direction_deg));
-                        let found = match &image {
-                            Some(image) => Found {
-                                model: &image.model,
-                                outcome: &image.outcome,
-                                cells: &image.cells,
-                                image_of_deg: Some(solved_deg),
-                            },
-                            None => {
-                                let model = &models[outcome.exact.as_ref().map_or(0, |e| e.cell)];
-                                Found { model, outcome: &outcome, cells: &cells, image_of_deg: None }
+                        let image_of_deg = (task.direction_deg != solved_deg).then_some(solved_deg);
+                        let asked = Asked { task: &task, method, minor_radius, image_of_deg };
+                        let wall_s = begun.elapsed().as_secs_f64();
+                        finished(match image_of_deg {
+                            Some(solved_deg) => {
+                                let (model, answer) =
+                                    image::image(&operations, models, &answer, solved_deg, task.direction_deg);
+                                asked.finished(&model, &answer, wall_s)
                             }
-                        };
-                        finished(report(&found, minor_radius, method, &task, begun.elapsed().as_secs_f64()));
+                            None => {
+                                let model = models.iter().find(|model| model.cell == answer.cell).unwrap_or(&models[0]);
+                                asked.finished(model, &answer, wall_s)
+                            }
+                        });
                         begun = Instant::now();
                     }
                 });
@@ -206,125 +199,33 @@ pub fn characterize(
     }
 }
 
-/// What there is to report of a limit.
-struct Found<'a> {
-    /// The model of its state.
-    model: &'a Model,
-    outcome: &'a LimitOutcome,
-    /// The cells that its trend counts.
-    cells: &'a [Cell],
-    /// The direction that was solved, where this is an image.
-    image_of_deg: Option<f64>,
+/// A limit along a direction that a symmetry of the design maps to itself mirrored: the states with −γ are there, too.
+fn both_shears(mut answer: Answer, operations: &[Operation], direction_deg: f64) -> Answer {
+    if let Some(free) = answer.free.as_mut().filter(|_| mirrored(operations, direction_deg)) {
+        let most = free.shear[1].max(-free.shear[0]);
+        free.shear = [-most, most];
+    }
+    answer
 }
 
-fn report(found: &Found<'_>, minor_radius: Option<f64>, method: &Method, task: &Task, wall_s: f64) -> Finished {
-    let Found { model, outcome, cells, image_of_deg } = *found;
-    let f = outcome.gradient;
-    let earned = matches!(outcome.status, Status::ThresholdReached | Status::Global | Status::Local);
-    let solved = earned || outcome.status == Status::Uncertified;
-    let along = direction(task.direction_deg);
-    let c = f.transpose() * f;
-    let (mean, half) = ((c[(0, 0)] + c[(1, 1)]) / 2.0, ((c[(0, 0)] - c[(1, 1)]) / 2.0).hypot(c[(0, 1)]));
-    // A proof has no state, and a search that found none ends with its last one.
-    let ended = solved || matches!(outcome.status, Status::L2NotReached | Status::NotConverged);
-    let gap = topology::smallest_gap(model, &outcome.state).map(|(gap, _)| gap * model.unit).filter(|_| solved);
-    let number = |x: f64| earned.then_some(x);
-    let l1 = number(along.dot(&(f * along)) - 1.0);
-    let exact = outcome.exact.as_ref();
-    let bound = exact.and_then(|e| e.bound);
-    let certificate = exact.and_then(|e| e.certificate.as_ref());
-    let across = method.across();
-    let word = |free: bool| if free { "free" } else { "fixed" }.to_owned();
-    let held = FreeRanges { l2: [task.l2; 2], shear: [0.0; 2] };
-    let ranges = if across.any() { exact.and_then(|e| e.free) } else { Some(held) }.filter(|_| earned);
-    // Inside a model the unit is R.
-    let [a1, a2] = model.cell.primitive(outcome.state.a1, outcome.state.a2);
-    let trend = exact.map_or(&[][..], |e| &e.trend);
-    let by_cell: Vec<String> = trend.iter().map(|t| t.words(&cells[t.cell].to_string())).collect();
-    // A proven limit does not grow, whichever cell it is found in.
-    let grows = trend.last().filter(|_| trend.len() > 1).zip(exact);
-    let grows = grows.map(|(last, e)| last.cell == e.cell && outcome.status != Status::Global);
-    let row = LimitRow {
-        design: model.name.clone(),
-        minor_radius,
-        direction_deg: task.direction_deg,
-        l2: task.l2,
-        method: method.name().into(),
-        cell: model.cell.to_string(),
-        status: outcome.status,
-        l1,
-        lambda1: number(mean + half),
-        lambda2: number(mean - half),
-        stretch1: number((mean + half).sqrt()),
-        stretch2: number((mean - half).max(0.0).sqrt()),
-        max_overlap: gap.map(|gap| (-gap).max(0.0)),
-        min_gap: gap,
-        iterations: outcome.iterations,
-        runs: outcome.runs,
-        wall_s,
-        bound_l1: bound.map(|b| b.0),
-        bound_kind: bound.map(|b| b.1.to_string()),
-        bound_gap: bound.zip(l1).map(|(b, l1)| b.0 - l1),
-        dual_residual: certificate.map(|c| c.dual_residual),
-        complementarity: certificate.map(|c| c.complementarity),
-        min_multiplier: certificate.map(|c| c.min_multiplier).filter(|m| m.is_finite()),
-        min_curvature: certificate.and_then(|c| c.min_curvature).filter(|m| m.is_finite()),
-        zero_modes: certificate.map(|c| c.zero_modes as u64),
-        links_ok: exact.and_then(|e| e.links_ok).or_else(|| ended.then(|| topology::links_kept(model, &outcome.state))),
-        n_starts: exact.map(|e| e.n_starts),
-        n_distinct: exact.map(|e| e.n_distinct),
-        own_image_force: exact.and_then(|e| e.own_image_force),
-        l1_uncertified: exact.and_then(|e| e.l1_uncertified),
-        lateral: Some(word(across.lateral_free)),
-        shear: Some(word(across.shear_free)),
-        l2_min: ranges.map(|r| r.l2[0]),
-        l2_max: ranges.map(|r| r.l2[1]),
-        shear_min: ranges.map(|r| r.shear[0]),
-        shear_max: ranges.map(|r| r.shear[1]),
-        a1_x: number(a1.x),
-        a1_y: number(a1.y),
-        a2_x: number(a2.x),
-        a2_y: number(a2.y),
-        end: Some(if method.compression() { "least" } else { "largest" }.to_owned()),
-        by_cell: (!by_cell.is_empty()).then(|| by_cell.join("; ")),
-        image_of_deg,
-        grows_with_cell: grows,
-    };
-    let position = |v: Vec3| -> [f64; 3] { (v * model.unit).into() };
-    let poses = pose_records(model, &outcome.state);
-    let contact = |c: &crate::constraint::Contact| ContactRecord {
-        ring_a: c.pair.ring_a,
-        ring_b: c.pair.ring_b,
-        shift: c.pair.shift,
-        point_a: position(c.point_a),
-        point_b: position(c.point_b),
-        normal: (c.point_b - c.point_a).normalize().into(),
-        force: c.force,
-    };
-    let chain = exact.and_then(|e| e.chain.as_ref()).map(|chain| ChainRecord {
-        vector: chain.vector,
-        length: chain.length * model.unit,
-        rings: chain.rings.clone(),
-    });
-    let force = |dual: &DualForce| DualRecord {
-        tie: dual.kind.name().into(),
-        rings: dual.rings.clone(),
-        force: dual.force.into(),
-    };
-    let state = StateRecord {
-        direction_deg: task.direction_deg,
-        l2: task.l2,
-        status: outcome.status,
-        a1: position(outcome.state.a1),
-        a2: position(outcome.state.a2),
-        deformation_gradient: [[f[(0, 0)], f[(0, 1)]], [f[(1, 0)], f[(1, 1)]]],
-        poses,
-        residual: outcome.residual.filter(|r| r.is_finite()),
-        note: outcome.note.clone(),
-        contacts: exact.map_or(Vec::new(), |e| e.contacts.iter().map(contact).collect()),
-        chain,
-        dual: exact.map_or(Vec::new(), |e| e.dual.iter().map(force).collect()),
-        steps: outcome.steps.clone(),
-    };
-    Finished { row, state }
+/// The limit of one stretch, found as a map finds it, with the model of its cell: along the representative of the direction's orbit,
+/// and mapped from there.
+pub(crate) fn one<'a>(
+    models: &'a [Model],
+    options: &ExactOptions,
+    direction_deg: f64,
+    l2: f64,
+    cancel: &AtomicBool,
+) -> (Cow<'a, Model>, Answer) {
+    let method = Method::Exact(options.clone());
+    let (operations, chains) = symmetric_chains(&models[0], &method, &[direction_deg]);
+    let solved_deg = chains[0].representative_deg;
+    let mut answer = Answer::new(&models[0], Status::Interrupted);
+    ExactMethod::new(models, options.clone(), cancel).limits(solved_deg, &[l2], cancel, &mut |_, found| answer = found);
+    let answer = both_shears(answer, &operations, solved_deg);
+    if solved_deg != direction_deg {
+        return image::image(&operations, models, &answer, solved_deg, direction_deg);
+    }
+    let model = models.iter().find(|model| model.cell == answer.cell).unwrap_or(&models[0]);
+    (Cow::Borrowed(model), answer)
 }

@@ -3,6 +3,7 @@
 //! Data flows one way: [`design`] → [`model`] → [`state`] → [`contact`]s → [`energy`] → [`solve`]r → [`limit`] → [`record`].
 //! Inside, lengths are in units of the design's reference radius; records are in the file's unit.
 
+pub mod answer;
 pub mod bound;
 pub mod characterize;
 pub mod constraint;
@@ -13,7 +14,9 @@ pub mod error;
 pub mod lattice;
 pub mod limit;
 pub mod model;
+pub mod question;
 pub mod record;
+pub mod sheet;
 pub mod simulate;
 pub mod solve;
 pub mod state;

@@ -6,7 +6,7 @@ use common::{design, map, model};
 use maille::{
     bound::ChainBound,
     lattice::Cell,
-    limit::exact::ExactOptions,
+    limit::ExactOptions,
     model::Model,
     record::{LimitRow, StateRecord, Status},
 };

@@ -1,9 +1,10 @@
 //! Thickest wire and widest gap against closed forms, an independent check, each other, and a bisection.
 
 use maille::{
+    answer::Answer,
     design::Design,
     lattice::Cell,
-    limit::extreme::{Extreme, ExtremeOptions, ExtremeOutcome, extreme},
+    limit::extreme::{Extreme, ExtremeOptions, extreme},
     model::Model,
     record::Status,
     topology,
@@ -14,16 +15,16 @@ fn design(name: &str) -> Design {
     maille_io::read_design(name, maille_io::builtin(name).unwrap()).unwrap()
 }
 
-fn solve(design: &Design, what: Extreme, options: &ExtremeOptions) -> (Model, ExtremeOutcome) {
+fn solve(design: &Design, what: Extreme, options: &ExtremeOptions) -> (Model, Answer) {
     let model = Model::compile(design, Cell::PRIMITIVE).unwrap();
     let found = extreme(&model, what, options, &AtomicBool::new(false));
     (model, found)
 }
 
-fn certified(found: &ExtremeOutcome) -> f64 {
+fn certified(found: &Answer) -> f64 {
     assert_eq!(found.status, Status::Local);
     let certificate = found.certificate.as_ref().unwrap();
-    assert!(certificate.holds() && found.links_ok && found.n_distinct >= 1);
+    assert!(certificate.holds() && found.links_ok == Some(true) && found.n_distinct >= Some(1));
     found.value.unwrap()
 }
 
@@ -45,7 +46,7 @@ fn the_widest_gap_is_what_the_thickest_wire_fills() {
             let design = design(name);
             let options = ExtremeOptions { lattice_free, ..ExtremeOptions::default() };
             let (model, thick) = solve(&design, Extreme::ThickestWire, &options);
-            let (_, wide) = solve(&design, Extreme::WidestGap, &ExtremeOptions { seed: 7, ..options.clone() });
+            let (_, wide) = solve(&design, Extreme::LargestClearance, &ExtremeOptions { seed: 7, ..options.clone() });
             let r = model.rings[0].minor_radius;
             let (factor, gap) = (certified(&thick), certified(&wide));
             assert!((2.0 * r * (factor - 1.0) - gap).abs() < 1e-8, "{name} {lattice_free}: {factor}, {gap}");
@@ -67,7 +68,7 @@ fn a_bisection_finds_no_thicker_wire() {
         let room = |r: f64, starts: usize| {
             let design = Design { allow_initial_overlap: true, ..design.with_minor_radius(r) };
             let options = ExtremeOptions { starts, ..ExtremeOptions::default() };
-            solve(&design, Extreme::WidestGap, &options).1.value.unwrap()
+            solve(&design, Extreme::LargestClearance, &options).1.value.unwrap()
         };
         let step = 1e-6 * design.reference_radius;
         assert!(room(thickest - step, 2) >= 0.0, "{name}");
@@ -82,7 +83,7 @@ fn a_state_is_a_design() {
     for name in ["european-4-in-1", "1.3-small"] {
         let design = design(name);
         let (model, found) =
-            solve(&design, Extreme::WidestGap, &ExtremeOptions { starts: 2, ..ExtremeOptions::default() });
+            solve(&design, Extreme::LargestClearance, &ExtremeOptions { starts: 2, ..ExtremeOptions::default() });
         let posed = found.state.design(&design, &model);
         let again = Model::compile(&posed, Cell::PRIMITIVE).unwrap();
         let gap = |model: &Model, state: &maille::state::State| topology::smallest_gap(model, state).unwrap().0;

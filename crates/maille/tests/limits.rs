@@ -8,8 +8,8 @@ use maille::{
     energy::target::Protocol,
     lattice::Cell,
     limit::{
+        ExactOptions,
         energy::{EnergyMethod, EnergyOptions, Minimiser},
-        exact::ExactOptions,
     },
     model::Model,
     record::Status,

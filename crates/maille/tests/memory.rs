@@ -4,10 +4,7 @@
 use maille::{
     energy::{Configuration, SheetEnergy},
     lattice::Cell,
-    limit::{
-        energy::EnergyOptions,
-        exact::{ExactMethod, ExactOptions},
-    },
+    limit::{ExactOptions, energy::EnergyOptions, stretch::ExactMethod},
     model::Model,
     solve::{newton::Objective, sparse::Patterns},
     topology::{RingPair, close_pairs},
@@ -31,7 +28,7 @@ fn a_thousand_limits_leave_nothing_behind() {
     let mut map = || {
         let method = ExactMethod::new(&models, ExactOptions::default(), &AtomicBool::new(false));
         for k in 0..24 {
-            let mut count = |_, outcome: maille::limit::LimitOutcome| limits += usize::from(outcome.exact.is_some());
+            let mut count = |_, outcome: maille::answer::Answer| limits += usize::from(outcome.n_starts.is_some());
             method.limits(7.5 * f64::from(k), &[-0.125, 0.0, 0.125], &AtomicBool::new(false), &mut count);
         }
     };

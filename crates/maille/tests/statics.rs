@@ -7,7 +7,7 @@ use maille::{
     characterize::{Finished, Method, characterize},
     design::Design,
     lattice::{Cell, direction},
-    limit::exact::ExactOptions,
+    limit::ExactOptions,
     model::Model,
     record::Status,
 };

@@ -1,15 +1,18 @@
 //! Limits with width or shear free, and queries in the space of strains.
 
 use maille::{
-    characterize::{Method, characterize, strain::StrainQuestion},
+    answer::Answer,
+    characterize::{CellChoice, Method, characterize},
     lattice::{Across, Cell},
     limit::{
+        ExactOptions,
         boundary::{BoundaryOptions, BoundaryVertex, boundary},
-        exact::ExactOptions,
-        strain::{Strain, StrainMethod, StrainOptions, StrainOutcome, StrainQuery},
+        strain::{StrainMethod, StrainOptions},
     },
     model::Model,
+    question::{Goal, Question, Sense, Strain, StrainQuery},
     record::{LimitRow, Status},
+    sheet::Sheet,
 };
 use nalgebra::Matrix2;
 use std::sync::{Mutex, atomic::AtomicBool};
@@ -90,7 +93,7 @@ fn unit(i: usize, j: usize) -> Matrix2<f64> {
     e
 }
 
-fn solve(model: &Model, query: &StrainQuery) -> StrainOutcome {
+fn solve(model: &Model, query: &StrainQuery) -> Answer {
     let models = std::slice::from_ref(model);
     StrainMethod::new(models, StrainOptions::default()).solve(query, &[], &AtomicBool::new(false))
 }
@@ -115,7 +118,7 @@ fn green_strains_of_known_limits() {
     assert!((along.value.unwrap() - (l1 + 0.5 * l1 * l1)).abs() < 1e-8, "{along:?}");
     let held = StrainQuery { held: unit(1, 1) * 0.05, free: vec![unit(0, 0), unit(0, 1)] };
     let with_width = solve(&model, &held);
-    assert!((with_width.strain[(1, 1)] - 0.05).abs() < 1e-12);
+    assert!((with_width.green_strain()[(1, 1)] - 0.05).abs() < 1e-12);
     assert_eq!(with_width.status, Status::Global);
     let impossible = StrainQuery { held: unit(1, 1) * 0.6, free: vec![unit(0, 0), unit(0, 1)] };
     assert_eq!(solve(&model, &impossible).status, Status::L2Unreachable);
@@ -131,7 +134,7 @@ fn free_strains_that_are_not_unique_have_a_range() {
     // As wide as the sheet can be, by its own chain, and narrow by folding.
     assert!((yy[1] - (0.44 + 0.5 * 0.44 * 0.44)).abs() < 1e-5 && yy[1] <= 0.5368 + 1e-9, "{yy:?}");
     assert!(yy[0] < -0.25, "{yy:?}");
-    for (range, value) in [(yy, found.strain[(1, 1)]), (xy, found.strain[(0, 1)])] {
+    for (range, value) in [(yy, found.green_strain()[(1, 1)]), (xy, found.green_strain()[(0, 1)])] {
         assert!(range[0] <= value + 1e-9 && value <= range[1] + 1e-9, "{value} of {range:?}");
     }
     // The largest E_yy of European 4-in-1 with all else free: a single state, but for the slack's root.
@@ -154,7 +157,7 @@ fn european_4_in_1_reaches_the_published_strains() {
         let value = found.value.unwrap();
         assert!(value >= mark, "E_{name} = {value}");
         assert!(matches!(found.status, Status::Local | Status::Global), "{:?}", found.status);
-        assert!(found.links_ok && found.certificate.unwrap().smallest_gap > -1e-12);
+        assert!(found.links_ok == Some(true) && found.certificate.unwrap().smallest_gap > -1e-12);
         assert!(found.bound.unwrap() >= value - 1e-9);
     }
 }
@@ -168,11 +171,11 @@ fn the_least_l1_is_that_of_the_query_and_falls_with_the_cell() {
     let models = ["1x1", "2x1", "1x2"].map(|cell| Model::compile(&design, cell.parse().unwrap()).unwrap());
     let cancel = AtomicBool::new(false);
     let free = vec![-unit(0, 0), unit(1, 1), unit(0, 1)];
-    let options = StrainOptions { starts: 6, compression: true, ..StrainOptions::default() };
+    let options = StrainOptions { starts: 6, sense: Sense::Least, ..StrainOptions::default() };
     let query = StrainMethod::new(&models, options).solve(&StrainQuery { held: Matrix2::zeros(), free }, &[], &cancel);
-    assert_eq!((query.status, query.cell, query.trend.len()), (Status::Local, 1, 3));
-    assert!(query.trend.iter().all(|t| t.n_starts >= 6 && t.n_distinct >= 1));
-    assert!(query.trend[1..].iter().all(|t| t.value.unwrap() >= query.trend[0].value.unwrap() - 1e-7));
+    assert_eq!((query.status, query.cell.to_string().as_str(), query.by_cell.len()), (Status::Local, "2x1", 3));
+    assert!(query.by_cell.iter().all(|t| t.n_starts >= 6 && t.n_distinct >= 1));
+    assert!(query.by_cell[1..].iter().all(|t| t.value.unwrap() <= query.by_cell[0].value.unwrap() + 1e-7));
     let across = Across { lateral_free: true, shear_free: true };
     let method = Method::Exact(ExactOptions { starts: 6, across, compression: true, ..ExactOptions::default() });
     let found = Mutex::new(Vec::new());
@@ -180,7 +183,7 @@ fn the_least_l1_is_that_of_the_query_and_falls_with_the_cell() {
     let found = found.into_inner().unwrap().remove(0);
     let (row, l1) = (&found.row, found.row.l1.unwrap());
     let strain = l1 + 0.5 * l1 * l1;
-    assert!((strain + query.value.unwrap()).abs() < 1e-7, "{strain}, query {:?}", query.value);
+    assert!((strain - query.value.unwrap()).abs() < 1e-7, "{strain}, query {:?}", query.value);
     assert_eq!((row.status, row.cell.as_str(), row.end.as_deref()), (Status::Local, "2x1", Some("least")));
     assert_eq!(row.by_cell.as_ref().unwrap().matches("starts").count(), 3);
     assert!(row.bound_l1.is_none() && row.links_ok == Some(true));
@@ -195,11 +198,11 @@ fn the_least_l1_is_that_of_the_query_and_falls_with_the_cell() {
 fn a_compression_is_never_global() {
     let model = model("1.1");
     let query = StrainQuery { held: Matrix2::zeros(), free: vec![Matrix2::from_element(0.5)] };
-    let status = |compression: bool| {
-        let options = StrainOptions { compression, ..StrainOptions::default() };
+    let status = |sense: Sense| {
+        let options = StrainOptions { sense, ..StrainOptions::default() };
         StrainMethod::new(std::slice::from_ref(&model), options).solve(&query, &[], &AtomicBool::new(false)).status
     };
-    assert_eq!([status(false), status(true)], [Status::Global, Status::Local]);
+    assert_eq!([status(Sense::Largest), status(Sense::Least)], [Status::Global, Status::Local]);
 }
 
 /// Each ray ends within its bound, the axes where queries end, and a run that goes on from some vertices gives the same.
@@ -260,32 +263,25 @@ fn a_limit_has_the_lattice_of_the_design_s_own_cell() {
 /// a map.
 #[test]
 fn the_least_strain_is_the_compression_of_a_map() {
-    let models = [model("1.1")];
+    let design = maille_io::read_design("1.1", maille_io::builtin("1.1").unwrap()).unwrap();
+    let sheet = Sheet::in_cells(&design, CellChoice::One(Cell::PRIMITIVE)).unwrap();
     for (free, across) in [
         (vec![], Across::HELD),
         (vec![Strain::Eyy], LATERAL),
         (vec![Strain::Eyy, Strain::Exy], Across { lateral_free: true, shear_free: true }),
     ] {
-        let question = StrainQuestion {
-            goal: Strain::Exx,
-            sign: -1.0,
-            fix: vec![],
-            free,
-            direction_deg: 60.0,
-            starts: None,
-            seed: 1,
-        };
-        let answer = question.answer(&models, &AtomicBool::new(false)).unwrap();
+        let goal = Goal::Strain { component: Strain::Exx, direction_deg: 60.0, fix: vec![], free };
+        let answer = sheet.answer(&Question::new(goal, Sense::Least)).unwrap();
         let method = Method::Exact(ExactOptions { across, compression: true, ..ExactOptions::default() });
         let found = Mutex::new(Vec::new());
         let cancel = AtomicBool::new(false);
-        characterize(&models, None, &method, &[60.0], &[0.0], &|_| true, &cancel, &|f| {
+        characterize(std::slice::from_ref(sheet.model()), None, &method, &[60.0], &[0.0], &|_| true, &cancel, &|f| {
             found.lock().unwrap().push(f.row)
         });
         let row = found.into_inner().unwrap().remove(0);
         let l1 = row.l1.unwrap_or_else(|| panic!("{across:?}: {:?}", row.status));
         assert_eq!(answer.status, row.status);
-        assert!((answer.value.unwrap() + l1 + 0.5 * l1 * l1).abs() < 1e-12, "{across:?}: {l1}, {:?}", answer.value);
+        assert!((answer.value.unwrap() - l1 - 0.5 * l1 * l1).abs() < 1e-12, "{across:?}: {l1}, {:?}", answer.value);
         assert!(l1 < -0.7 && answer.bound.is_none());
     }
 }

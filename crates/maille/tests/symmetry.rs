@@ -7,7 +7,7 @@ use maille::{
     characterize::{CellChoice, Finished, Method, chains},
     design::Design,
     lattice::Cell,
-    limit::exact::ExactOptions,
+    limit::ExactOptions,
     model::Model,
     state::State,
     symmetry::{Image, Orbit, between, operations, orbits},

@@ -1,10 +1,10 @@
 //! The image of a limit under a symmetry of the design: a limit along another direction, which needs no solve.
 
 use crate::{
+    answer::{Answer, CellTrend, FreeRanges},
     bound::{BindingChain, DualForce, TieKind},
     constraint::Contact,
-    lattice::Cell,
-    limit::{ExactFigures, FreeRanges, LimitOutcome},
+    lattice::{Cell, direction},
     model::Model,
     state::State,
     symmetry::{Image, Operation, between},
@@ -12,78 +12,56 @@ use crate::{
 use maille_geometry::point_circle_distance;
 use std::borrow::Cow;
 
-/// A limit along the image of the direction that was solved.
-pub(super) struct ImageOutcome<'a> {
-    /// The cell of its state.
-    pub model: Cow<'a, Model>,
-    pub outcome: LimitOutcome,
-    /// The images of the cells that were tried.
-    pub cells: Vec<Cell>,
-}
-
-/// The image of `outcome`, a limit along `solved_deg`, along `direction_deg`. Of several operations the first is taken that leads to
-/// one of the cells of `models`.
+/// The image of `answer`, a limit along `solved_deg`, along `direction_deg`, with the model of its cell. Of several operations the
+/// first is taken that leads to one of the cells of `models`.
 ///
-/// Panics if none of `operations` takes the one direction to the other.
-pub(super) fn image<'a>(
+/// # Panics
+/// If none of `operations` takes the one direction to the other.
+pub(crate) fn image<'a>(
     operations: &[Operation],
     models: &'a [Model],
-    outcome: &LimitOutcome,
+    answer: &Answer,
     solved_deg: f64,
     direction_deg: f64,
-) -> ImageOutcome<'a> {
-    let from = &models[outcome.exact.as_ref().map_or(0, |figures| figures.cell)];
+) -> (Cow<'a, Model>, Answer) {
+    let from = models.iter().find(|model| model.cell == answer.cell).unwrap_or(&models[0]);
     let known = |cell: Cell| models.iter().find(|model| model.cell.same_lattice(&cell));
     let possible = || between(operations, solved_deg, direction_deg).filter_map(|o| Some((o, o.cell(from.cell)?)));
     let (operation, model) = possible()
         .find_map(|(operation, cell)| Some((operation, Cow::Borrowed(known(cell)?))))
         .or_else(|| possible().next().map(|(operation, cell)| (operation, Cow::Owned(from.in_cell(cell)))))
         .unwrap_or_else(|| panic!("{direction_deg}° is no image of {solved_deg}°"));
-    let cell_of = |model: &Model| operation.cell(model.cell).map(|cell| known(cell).map_or(cell, |model| model.cell));
-    let cells = models.iter().map(|model| cell_of(model).unwrap_or(model.cell)).collect();
-    let outcome = {
-        let primitive = models[0].primitive();
-        let maps = |from, to| {
-            Image::new(operation, from, to).unwrap_or_else(|| panic!("an operation does not map its own design"))
-        };
-        let (own, first, image) = (maps(&primitive, &primitive), maps(&models[0], &models[0]), maps(from, &model));
-        mapped(&own, &first, &image, from, outcome, solved_deg)
+    let primitive = models[0].primitive();
+    let maps = |from, to| {
+        Image::new(operation, from, to).unwrap_or_else(|| panic!("an operation does not map its own design"))
     };
-    ImageOutcome { model, outcome, cells }
-}
-
-/// What a limit becomes; `first` maps the first cell, whose rings the chain counts, and `own` the design's own, whose rings the
-/// ties count. All that is written of a state passes here.
-fn mapped(
-    own: &Image<'_>,
-    first: &Image<'_>,
-    image: &Image<'_>,
-    from: &Model,
-    outcome: &LimitOutcome,
-    solved_deg: f64,
-) -> LimitOutcome {
+    let (own, first, image) = (maps(&primitive, &primitive), maps(&models[0], &models[0]), maps(from, &model));
     let to = image.model();
     // A search that ends without a state has the start.
-    let (state, gradient) = if outcome.state == from.start {
-        (to.start.clone(), outcome.gradient)
+    let (state, gradient) = if answer.state == from.start {
+        (to.start.clone(), answer.gradient)
     } else {
-        let state = image.state(&outcome.state);
+        let state = image.state(&answer.state);
         let gradient = state.deformation_gradient(to);
         (state, gradient)
     };
-    LimitOutcome {
+    let along = direction(direction_deg);
+    let cell = |cell: Cell| operation.cell(cell).map_or(cell, |cell| known(cell).map_or(cell, |model| model.cell));
+    // All that is written of a state passes here. The chain counts the rings of the first cell, ties those of the design's own.
+    let answer = Answer {
+        value: answer.value.map(|_| along.dot(&(gradient * along)) - 1.0),
         gradient,
-        note: outcome.note.as_ref().map(|note| format!("image of {solved_deg}°: {note}")),
-        exact: outcome.exact.as_ref().map(|figures| ExactFigures {
-            chain: figures.chain.as_ref().map(|chain| mapped_chain(first, chain)),
-            dual: figures.dual.iter().map(|tie| mapped_tie(own, first, tie)).collect(),
-            contacts: figures.contacts.iter().map(|contact| mapped_contact(image, contact, &state)).collect(),
-            free: figures.free.map(|free| mapped_ranges(image, free)),
-            ..figures.clone()
-        }),
+        cell: to.cell,
+        note: answer.note.as_ref().map(|note| format!("image of {solved_deg}°: {note}")),
+        chain: answer.chain.as_ref().map(|chain| mapped_chain(&first, chain)),
+        dual: answer.dual.iter().map(|tie| mapped_tie(&own, &first, tie)).collect(),
+        contacts: answer.contacts.iter().map(|contact| mapped_contact(&image, contact, &state)).collect(),
+        free: answer.free.map(|free| mapped_ranges(&image, free)),
+        by_cell: answer.by_cell.iter().map(|t| CellTrend { cell: cell(t.cell), ..*t }).collect(),
         state,
-        ..outcome.clone()
-    }
+        ..answer.clone()
+    };
+    (model, answer)
 }
 
 fn mapped_contact(image: &Image<'_>, contact: &Contact, state: &State) -> Contact {

@@ -10,10 +10,11 @@
 
 use super::{
     sphere::{Bent, Sphere},
-    strain::{StrainMethod, StrainOptions, StrainQuery},
+    strain::{StrainMethod, StrainOptions},
 };
 use crate::{
     model::Model,
+    question::{Sense, StrainQuery},
     record::Status,
     state::{Pose, State},
 };
@@ -120,7 +121,7 @@ pub struct RaySolver<'a>(StrainMethod<'a>);
 impl<'a> RaySolver<'a> {
     /// For rays of one surface.
     pub fn new(model: &'a Model, options: &BoundaryOptions) -> Self {
-        let options = StrainOptions { starts: options.starts, seed: options.seed, ..StrainOptions::default() };
+        let options = StrainOptions { starts: options.starts, seed: options.seed, sense: Sense::Largest };
         RaySolver(StrainMethod::new(std::slice::from_ref(model), options))
     }
 
@@ -260,8 +261,8 @@ fn solve_ray(
 ) -> Option<BoundaryVertex> {
     let along = Matrix2::new(direction.x, direction.z, direction.z, direction.y);
     let query = StrainQuery { held: Matrix2::zeros(), free: vec![along] };
-    let outcome = method.solve(&query, from, cancel);
-    if cancel.load(Ordering::Relaxed) || outcome.status == Status::Interrupted {
+    let answer = method.solve(&query, from, cancel);
+    if cancel.load(Ordering::Relaxed) || answer.status == Status::Interrupted {
         return None;
     }
     let pose = |pose: &Pose| {
@@ -270,12 +271,12 @@ fn solve_ray(
     };
     Some(BoundaryVertex {
         direction: direction.into(),
-        status: outcome.status,
-        distance: outcome.value,
-        first: outcome.first,
-        bound: outcome.bound.filter(|bound| bound.is_finite()),
-        n_distinct: outcome.n_distinct,
-        lattice: [outcome.state.a1, outcome.state.a2].map(Into::into),
-        poses: outcome.state.poses.iter().map(pose).collect(),
+        status: answer.status,
+        distance: answer.value,
+        first: answer.first,
+        bound: answer.bound.filter(|bound| bound.is_finite()),
+        n_distinct: answer.n_distinct.unwrap_or(0),
+        lattice: [answer.state.a1, answer.state.a2].map(Into::into),
+        poses: answer.state.poses.iter().map(pose).collect(),
     })
 }

@@ -1,8 +1,8 @@
 //! The limit of one pull by the energy method (chapter 5): l1 is raised step by step, the elements reset each time,
 //! until the target is missed by more than τ; then the last step is bisected.
 
-use super::LimitOutcome;
 use crate::{
+    answer::Answer,
     energy::{
         Configuration, ContactOptions, HessianMethod, MinimaMethod, SheetEnergy,
         barrier::ContactLaw,
@@ -259,7 +259,7 @@ impl<'a> EnergyMethod<'a> {
     }
 
     /// The limit of l1 along `direction_deg` with l2 held.
-    pub fn limit(&self, direction_deg: f64, l2: f64, cancel: &AtomicBool) -> LimitOutcome {
+    pub fn limit(&self, direction_deg: f64, l2: f64, cancel: &AtomicBool) -> Answer {
         let mut search =
             Search { method: self, direction_deg, l2, cancel, iterations: 0, runs: 0, restless: 0, steps: Vec::new() };
         let along = direction(direction_deg);
@@ -329,7 +329,7 @@ impl Search<'_> {
 
     /// Steps up from 0 (or down, where 0 itself is missed), then bisects between the last target that was reached and
     /// the first that was missed. A pull that no chain of links binds is over where the sheet has come apart.
-    fn climb(&mut self, linked: bool) -> LimitOutcome {
+    fn climb(&mut self, linked: bool) -> Answer {
         let options = &self.method.options;
         let first = self.trial(0.0);
         let upward = self.reached(&first);
@@ -406,21 +406,36 @@ impl Search<'_> {
         }
     }
 
-    fn end(&self, status: Status, trial: Option<Trial>, note: Option<String>) -> LimitOutcome {
+    fn end(&self, status: Status, trial: Option<Trial>, note: Option<String>) -> Answer {
         let (state, gradient, residual) = match trial {
             Some(t) => (t.state, t.gradient, Some(t.residual)),
             None => (self.method.start.clone(), Matrix2::identity(), None),
         };
-        LimitOutcome {
-            status,
+        let model = self.method.model;
+        let along = direction(self.direction_deg);
+        let answer = Answer {
             state,
             gradient,
             residual,
             iterations: self.iterations,
             runs: self.runs,
             note,
-            exact: None,
             steps: self.steps.clone(),
+            ..Answer::new(model, status)
+        };
+        match status {
+            Status::ThresholdReached => {
+                let value = Some(along.dot(&(gradient * along)) - 1.0);
+                let gap = topology::smallest_gap(model, &answer.state).map(|(gap, _)| gap);
+                let links_ok = Some(topology::links_kept(model, &answer.state));
+                Answer { value, gap, links_ok, ..answer }
+            }
+            // The last state of a search that failed.
+            Status::L2NotReached | Status::NotConverged => {
+                let links_ok = Some(topology::links_kept(model, &answer.state));
+                Answer { links_ok, ..answer }
+            }
+            _ => answer,
         }
     }
 }

@@ -1,28 +1,29 @@
-//! Extremes of a weave that are no pulls: the thickest wire with which it exists, and the state with the most room.
+//! Extremes of a weave that are no strains: the thickest wire with which it exists, and the state with the largest clearance.
 //!
 //! The program of a limit with another parameter p in place of l1. All rings must keep the core distance
 //!
 //! - thickest wire: (1 + p)(r_a + r_b), so that the minor radii (1 + p) r are as large as can be;
-//! - widest gap: r_a + r_b + p, so that the smallest gap p is as large as can be.
+//! - largest clearance: r_a + r_b + p, so that the smallest gap p is as large as can be.
 //!
 //! Over all poses, and over the lattice where it is free: a1 along its direction, a2 in the plane (a common turn changes
 //! nothing). Links are kept as in a limit, and the certificate is the same. No bound is known that proves such a state
 //! the best of all, so the most that is claimed is `local`, with the number of starts and of distinct values they led to.
 
-use super::climb::{Climbed, Solve, climb, shaken_from};
+use super::{
+    local::LocalSolution,
+    multistart::{Entered, Multistart, Start, Target, perturbed_starts, verdict},
+    options::THIN_WIRE,
+};
 use crate::{
-    constraint::{Contact, Parameter, Pull, SheetProgram},
+    answer::Answer,
+    constraint::{Parameter, Pull},
     design::Design,
     model::Model,
     record::Status,
-    solve::certificate::Certificate,
     state::State,
     topology,
 };
 use maille_geometry::Vec3;
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
-use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What is as large as can be.
@@ -31,7 +32,7 @@ pub enum Extreme {
     /// All minor radii, in the proportions of the design.
     ThickestWire,
     /// The smallest gap between the tori of two rings.
-    WidestGap,
+    LargestClearance,
 }
 
 /// How the search goes.
@@ -39,9 +40,9 @@ pub enum Extreme {
 pub struct ExtremeOptions {
     /// Whether the lattice may change.
     pub lattice_free: bool,
-    /// Starts: the design's state, then shaken ones.
+    /// Starts: the design's state, then perturbed ones.
     pub starts: usize,
-    /// Seed of the shaking.
+    /// Seed of the perturbations.
     pub seed: u64,
 }
 
@@ -49,31 +50,6 @@ impl Default for ExtremeOptions {
     fn default() -> Self {
         ExtremeOptions { lattice_free: true, starts: 8, seed: 1 }
     }
-}
-
-/// What was found.
-#[derive(Clone, Debug)]
-pub struct ExtremeOutcome {
-    /// What was sought.
-    pub what: Extreme,
-    /// `local` with a complete certificate, else `uncertified`; `not-converged` where no start led to a feasible state.
-    pub status: Status,
-    /// Thickest wire: factor of the minor radii. Widest gap: the gap, in reference radii. `None` without a feasible state.
-    pub value: Option<f64>,
-    /// The state; the design's where there is none.
-    pub state: State,
-    /// Its certificate.
-    pub certificate: Option<Certificate>,
-    /// Its loaded contacts, force per unit of p.
-    pub contacts: Vec<Contact>,
-    /// Whether the links are those of the design.
-    pub links_ok: bool,
-    /// Starts that were solved.
-    pub n_starts: u64,
-    /// Distinct certified values among them, apart by more than 1e-7.
-    pub n_distinct: u64,
-    /// Quadratic programs.
-    pub iterations: u64,
 }
 
 /// A ring's size in the design's unit.
@@ -95,10 +71,10 @@ impl Size {
 /// A saved design is thinner by this share: what its rounding could make overlap.
 const SPARED: f64 = 1e-9;
 
-impl ExtremeOutcome {
+impl Extreme {
     /// Different sizes of rings with the wire that was found; NaN where none was.
-    pub fn sizes(&self, model: &Model) -> Vec<Size> {
-        let factor = if self.what == Extreme::ThickestWire { self.value.unwrap_or(f64::NAN) } else { 1.0 };
+    pub fn sizes(self, answer: &Answer, model: &Model) -> Vec<Size> {
+        let factor = if self == Extreme::ThickestWire { answer.value.unwrap_or(f64::NAN) } else { 1.0 };
         let mut out: Vec<Size> = Vec::new();
         for ring in &model.rings {
             let [major_radius, minor_radius] = [ring.major_radius, ring.minor_radius * factor].map(|x| x * model.unit);
@@ -109,17 +85,17 @@ impl ExtremeOutcome {
         out
     }
 
-    /// The widest gap, in the design's unit; `None` where the wire was sought.
-    pub fn gap(&self, model: &Model) -> Option<f64> {
-        self.value.filter(|_| self.what == Extreme::WidestGap).map(|gap| gap * model.unit)
+    /// The largest clearance, in the design's unit; `None` where the wire was sought.
+    pub fn clearance(self, answer: &Answer, model: &Model) -> Option<f64> {
+        answer.value.filter(|_| self == Extreme::LargestClearance).map(|gap| gap * model.unit)
     }
 
-    /// The state as a design.
-    pub fn design(&self, design: &Design, model: &Model) -> Design {
-        let mut out = self.state.design(design, model);
-        let (words, factor) = match self.what {
-            Extreme::ThickestWire => ("tightest", self.value.unwrap_or(1.0) * (1.0 - SPARED)),
-            Extreme::WidestGap => ("roomiest", 1.0),
+    /// The state of the answer as a design.
+    pub fn design(self, answer: &Answer, design: &Design, model: &Model) -> Design {
+        let mut out = answer.state.design(design, model);
+        let (words, factor) = match self {
+            Extreme::ThickestWire => ("tightest", answer.value.unwrap_or(1.0) * (1.0 - SPARED)),
+            Extreme::LargestClearance => ("roomiest", 1.0),
         };
         out.name = format!("{} {words}", out.name);
         out.minor_radius = out.minor_radius.map(|r| r * factor);
@@ -129,119 +105,74 @@ impl ExtremeOutcome {
     }
 }
 
-/// What one start led to.
-struct Found {
-    best: Option<Best>,
-    iterations: u64,
+/// An extreme, with the lattice free or held.
+pub(super) struct Sought {
+    pub what: Extreme,
+    pub lattice_free: bool,
 }
 
-/// A [`Solve`] that threads can hand over.
-struct Best {
-    value: f64,
-    state: State,
-    certificate: Certificate,
-    contacts: Vec<Contact>,
-    links_ok: bool,
-    certified: bool,
+impl Target for Sought {
+    /// p first, then the lattice where it is free.
+    fn family(&self, model: &Model) -> Pull {
+        let base = [model.start.a1, model.start.a2];
+        let goal = match self.what {
+            Extreme::ThickestWire => Parameter { thicken: 1.0, weight: 1.0, ..Parameter::default() },
+            Extreme::LargestClearance => Parameter { widen: 1.0, weight: 1.0, ..Parameter::default() },
+        };
+        let mut parameters = vec![goal];
+        if self.lattice_free {
+            let rates = [[base[0].normalize(), Vec3::zeros()], [Vec3::zeros(), Vec3::x()], [Vec3::zeros(), Vec3::y()]];
+            parameters.extend(rates.map(|rate| Parameter { rate, ..Parameter::default() }));
+        }
+        Pull { base, parameters, metric: None }
+    }
+
+    /// With thin wire, or with a p below every gap.
+    fn enter(&self, model: &Model, start: Start, _: &AtomicBool) -> Entered {
+        let p = self.first_parameters(model, &start.state);
+        Entered { at: Some((start.state, p)), iterations: 0 }
+    }
+
+    fn start(&self, solution: &LocalSolution) -> Start {
+        Start::written(solution.state.clone())
+    }
 }
 
-/// Values that differ by less are the same.
-const SAME: f64 = 1e-7;
-/// Kicks of a solve whose certificate stays incomplete.
-const KICKS: usize = 3;
-/// Wire of the starts as a share of the design's: thin, so that elements find their places.
-const THIN: f64 = 0.2;
-/// Amplitudes of the shaken starts, in reference radii and radians.
-const SHAKES: [f64; 6] = [0.03, 0.1, 0.3, 0.05, 0.2, 0.5];
+impl Sought {
+    /// Parameters at a start.
+    pub fn first_parameters(&self, model: &Model, state: &State) -> Vec<f64> {
+        let goal = match self.what {
+            Extreme::ThickestWire => THIN_WIRE - 1.0,
+            Extreme::LargestClearance => topology::smallest_gap(model, state).map_or(0.0, |(gap, _)| gap.min(0.0)),
+        };
+        let lattice = if self.lattice_free { 3 } else { 0 };
+        std::iter::once(goal).chain(std::iter::repeat_n(0.0, lattice)).collect()
+    }
+}
 
 /// Searches for an extreme of `model` on the current thread pool. The result does not depend on the number of threads.
-pub fn extreme(model: &Model, what: Extreme, options: &ExtremeOptions, cancel: &AtomicBool) -> ExtremeOutcome {
-    let pull = pull(model, what, options.lattice_free);
-    let from = |k: usize| -> Found {
-        let mut rng = ChaCha8Rng::seed_from_u64(options.seed.wrapping_mul(0x9e37_79b9).wrapping_add(k as u64));
-        let state = match k {
-            0 => model.start.clone(),
-            _ => shaken_from(model, &model.start, SHAKES[(k - 1) % SHAKES.len()], &mut rng),
-        };
-        let mut p = vec![0.0; pull.parameters.len()];
-        p[0] = first_parameter(model, what, &state);
-        let mut program = SheetProgram::new(model, &pull);
-        let start = program.posed(state, p);
-        let Climbed { best, iterations } = climb(model, &mut program, start, KICKS, &mut rng, cancel);
-        let best = best.map(|Solve { x, certificate, contacts, links_ok, certified }| Best {
-            value: x.p[0],
-            state: x.state,
-            certificate,
-            contacts,
-            links_ok,
-            certified,
-        });
-        Found { best, iterations }
+///
+/// The value is the factor of the minor radii, or the clearance in reference radii. The status is `local` with a complete
+/// certificate, else `uncertified`; `not-converged` where no start led to a state without overlap.
+pub fn extreme(model: &Model, what: Extreme, options: &ExtremeOptions, cancel: &AtomicBool) -> Answer {
+    let target = Sought { what, lattice_free: options.lattice_free };
+    let search = Multistart { target: &target, upper_bound: f64::INFINITY, seed: options.seed, cancel };
+    let straight = std::iter::once(Start::written(model.start.clone()));
+    let found = search.run(model, straight.chain(perturbed_starts(model, options.seed, 1..options.starts)).collect());
+    let interrupted = cancel.load(Ordering::Relaxed);
+    let counted = |answer: Answer| Answer {
+        n_starts: Some(found.runs),
+        n_distinct: Some(found.distinct.len() as u64),
+        runs: found.runs,
+        iterations: found.iterations,
+        ..answer
     };
-    let starts: Vec<usize> = (0..options.starts.max(1)).collect();
-    let solved = starts.par_iter().with_max_len(1).filter(|_| !cancel.load(Ordering::Relaxed)).map(|k| from(*k));
-    let solved: Vec<Found> = solved.collect();
-    let (n_starts, iterations) = (solved.len() as u64, solved.iter().map(|s| s.iterations).sum());
-    let mut distinct: Vec<f64> = Vec::new();
-    let mut best: Option<Best> = None;
-    for solve in solved.into_iter().filter_map(|s| s.best) {
-        let value = solve.value;
-        if solve.certified && !distinct.iter().any(|other| (other - value).abs() < SAME) {
-            distinct.push(value);
-        }
-        // The first of equals counts, whatever thread it came from.
-        if best.as_ref().is_none_or(|b| (solve.certified, value) > (b.certified, b.value + SAME)) {
-            best = Some(solve);
-        }
-    }
-    let nothing = ExtremeOutcome {
-        what,
-        status: if cancel.load(Ordering::Relaxed) { Status::Interrupted } else { Status::NotConverged },
-        value: None,
-        state: model.start.clone(),
-        certificate: None,
-        contacts: Vec::new(),
-        links_ok: false,
-        n_starts,
-        n_distinct: distinct.len() as u64,
-        iterations,
+    let Some(best) = found.best else {
+        let status = if interrupted { Status::Interrupted } else { Status::NotConverged };
+        return counted(Answer { links_ok: Some(false), ..Answer::new(model, status) });
     };
-    let Some(best) = best else { return nothing };
-    let p = best.value;
-    ExtremeOutcome {
-        status: match (nothing.status, best.certified) {
-            (Status::Interrupted, _) => Status::Interrupted,
-            (_, true) => Status::Local,
-            (_, false) => Status::Uncertified,
-        },
-        value: Some(if what == Extreme::ThickestWire { 1.0 + p } else { p }),
-        state: best.state,
-        certificate: Some(best.certificate),
-        contacts: best.contacts,
-        links_ok: best.links_ok,
-        ..nothing
-    }
-}
-
-/// p at a start: thin wire, or below every gap.
-pub(super) fn first_parameter(model: &Model, what: Extreme, state: &State) -> f64 {
-    match what {
-        Extreme::ThickestWire => THIN - 1.0,
-        Extreme::WidestGap => topology::smallest_gap(model, state).map_or(0.0, |(gap, _)| gap.min(0.0)),
-    }
-}
-
-/// p first, then the lattice where it is free.
-pub(super) fn pull(model: &Model, what: Extreme, lattice_free: bool) -> Pull {
-    let base = [model.start.a1, model.start.a2];
-    let goal = match what {
-        Extreme::ThickestWire => Parameter { thicken: 1.0, weight: 1.0, ..Parameter::default() },
-        Extreme::WidestGap => Parameter { widen: 1.0, weight: 1.0, ..Parameter::default() },
-    };
-    let mut parameters = vec![goal];
-    if lattice_free {
-        let rates = [[base[0].normalize(), Vec3::zeros()], [Vec3::zeros(), Vec3::x()], [Vec3::zeros(), Vec3::y()]];
-        parameters.extend(rates.map(|rate| Parameter { rate, ..Parameter::default() }));
-    }
-    Pull { base, parameters, metric: None }
+    let status = if interrupted { Status::Interrupted } else { verdict(&best, f64::INFINITY) };
+    let value = Some(if what == Extreme::ThickestWire { 1.0 + best.value() } else { best.value() });
+    let gradient = best.state.deformation_gradient(model);
+    counted(Answer { value, gradient, ..Answer::new(model, status) }).with_solution(model, best)
 }

@@ -2,13 +2,14 @@
 //!
 //! A design may say that its start overlaps (`allow_initial_overlap`). A limit is then sought from states that overlap, and where
 //! no arrangement of such rings exists, every search for it ends in vain, after a long time. So the rings are asked first, with the
-//! lattice free: by the two programs of [`super::extreme`], the widest gap and the thickest wire, from a few shaken starts each,
+//! lattice free: by the two programs of [`super::extreme`], the largest clearance and the thickest wire, from a few perturbed starts each,
 //! and each is stopped as soon as there is no overlap. Where none gets there nothing is proved: the answer is
 //! [`Status::InfeasibleStart`](crate::record::Status::InfeasibleStart), which says what was tried.
 
 use super::{
-    climb::shaken_from,
-    extreme::{Extreme, first_parameter, pull},
+    extreme::{Extreme, Sought},
+    multistart::{Target, perturbed, rng},
+    options::{FREEING_PERTURBATIONS, SLIGHT_OVERLAP},
 };
 use crate::{
     constraint::SheetProgram,
@@ -16,16 +17,7 @@ use crate::{
     solve::sqp::{SqpOptions, maximize},
     topology,
 };
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 use std::sync::atomic::{AtomicBool, Ordering};
-
-/// An overlap below this, in reference radii, is left to the search of a limit, which starts from such states.
-pub(super) const SLIGHT: f64 = 1e-6;
-/// Starts of each of the two programs.
-pub(super) const STARTS: usize = 4;
-/// Amplitudes of the shaken ones, in reference radii and radians; the first is the start itself.
-pub(super) const SHAKES: [f64; STARTS] = [0.0, 0.03, 0.1, 0.3];
 
 /// A start that overlaps, and no state without overlap was found.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,8 +29,8 @@ pub(super) struct Overlapping {
 }
 
 impl Overlapping {
-    /// In words.
-    pub(super) fn words(&self) -> String {
+    /// What was tried, as a sentence.
+    pub(super) fn message(&self) -> String {
         let Overlapping { widest, starts } = self;
         format!(
             "the start overlaps, and {starts} starts with the lattice free led to no state without overlap: {:.6} R was the \
@@ -53,18 +45,18 @@ impl Overlapping {
 pub(super) fn beyond_repair(model: &Model, seed: u64, cancel: &AtomicBool) -> Option<Overlapping> {
     let gap = |state: &crate::state::State| topology::smallest_gap(model, state).map_or(f64::INFINITY, |(gap, _)| gap);
     let mut widest = gap(&model.start);
-    if widest >= -SLIGHT {
+    if widest >= -SLIGHT_OVERLAP {
         return None;
     }
     let options = SqpOptions { enough: 0.0, ..SqpOptions::default() };
     let mut starts = 0;
-    for what in [Extreme::WidestGap, Extreme::ThickestWire] {
-        let pull = pull(model, what, true);
-        for (k, size) in SHAKES.into_iter().enumerate() {
-            let mut rng = ChaCha8Rng::seed_from_u64(seed.wrapping_mul(0x9e37_79b9).wrapping_add(k as u64));
-            let state = shaken_from(model, &model.start, size, &mut rng);
-            let mut p = vec![0.0; pull.parameters.len()];
-            p[0] = first_parameter(model, what, &state);
+    for what in [Extreme::LargestClearance, Extreme::ThickestWire] {
+        let sought = Sought { what, lattice_free: true };
+        let pull = sought.family(model);
+        for (k, size) in FREEING_PERTURBATIONS.into_iter().enumerate() {
+            let mut stream = rng(seed.wrapping_mul(0x9e37_79b9).wrapping_add(k as u64));
+            let state = perturbed(model, &model.start, size, &mut stream);
+            let p = sought.first_parameters(model, &state);
             let program = SheetProgram::new(model, &pull);
             let end = maximize(&program, program.posed(state, p), Vec::new(), &options, cancel);
             if cancel.load(Ordering::Relaxed) {
@@ -75,7 +67,7 @@ pub(super) fn beyond_repair(model: &Model, seed: u64, cancel: &AtomicBool) -> Op
                 continue;
             }
             widest = widest.max(gap(&end.point.state));
-            if widest >= -SLIGHT {
+            if widest >= -SLIGHT_OVERLAP {
                 return None;
             }
         }

@@ -5,11 +5,12 @@
 //! of rings, say: then there is a limit as any other, only without a bound.
 
 use super::{
-    ExactFigures, LimitOutcome,
-    exact::{ExactMethod, Search, Tally},
-    pull::Strained,
+    multistart::{Entered, Start, Target},
+    options::{UNLINKED_STAGE, UNLINKED_STAGES},
+    stretch::{ExactMethod, Stretch},
 };
 use crate::{
+    answer::Answer,
     constraint::SheetProgram,
     model::Model,
     record::Status,
@@ -17,88 +18,86 @@ use crate::{
         certificate::GAP_TOLERANCE,
         sqp::{SqpOptions, maximize},
     },
+    state::State,
     topology::{self, apart::comes_apart},
 };
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// The first stage of a pull; each further one is twice as long.
-const STAGE: f64 = 0.125;
-/// Stages at most: l1 = 128.
-const STAGES: i32 = 10;
+/// A sheet that has come apart: a state and its parameters.
+struct Separated {
+    state: State,
+    p: Vec<f64>,
+}
 
 impl ExactMethod<'_> {
-    /// The limit of a pull that no chain of links binds; with the state of one that is found.
+    /// The limit of a stretch that no chain of links binds; with the state of one that is found.
     pub(super) fn unlinked(
         &self,
-        direction_deg: f64,
-        l2: f64,
-        neighbour: Option<Strained>,
+        stretch: &Stretch,
+        neighbour: Option<Start>,
         cancel: &AtomicBool,
-    ) -> (LimitOutcome, Option<Strained>) {
-        let across = self.options.across;
-        let starts: Vec<Strained> = neighbour.into_iter().chain(self.fresh(0, 0..self.options.starts.max(1))).collect();
-        let mut search = self.searching(0, direction_deg, l2, across, cancel);
+    ) -> (Answer, Vec<Option<Start>>) {
+        let model = &self.models[0];
+        let none = vec![None; self.models.len()];
+        let starts: Vec<Start> = neighbour.into_iter().chain(self.fresh(0..self.options.starts)).collect();
+        let (mut runs, mut iterations) = (0, 0);
         for start in starts.clone() {
-            let apart = search.pull_apart(start, direction_deg);
+            let (apart, more) = pull_apart(model, stretch, start, cancel);
+            (runs, iterations) = (runs + 1, iterations + more);
             if cancel.load(Ordering::Relaxed) {
-                return (self.nothing(Status::Interrupted, ExactFigures::default()), None);
+                return (self.without_state(Status::Interrupted), none);
             }
-            if let Some(at) = apart {
-                let gradient = search.family.gradient(&search.family.parameters(&at), l2);
-                let (runs, iterations) = (search.runs, search.iterations);
-                let note = Some(format!("no chain of links; at l1 = {:.3} nothing is left that could hold it", at.l1));
-                let nothing = self.nothing(Status::Unbounded, ExactFigures::default());
-                return (LimitOutcome { state: at.state, gradient, runs, iterations, note, ..nothing }, None);
+            if let Some(Separated { state, p }) = apart {
+                let gradient = stretch.lattices(model).gradient(&p, stretch.l2);
+                let note = Some(format!("no chain of links; at l1 = {:.3} nothing is left that could hold it", p[0]));
+                let nothing = self.without_state(Status::Unbounded);
+                return (Answer { state, gradient, runs, iterations, note, ..nothing }, none);
             }
         }
-        let (runs, iterations) = (search.runs, search.iterations);
-        let unbounded = f64::INFINITY;
-        let found = self.search(0, direction_deg, l2, starts, (unbounded, across), cancel);
+        let search = self.search(stretch, f64::INFINITY, cancel);
+        let mut found = search.run(model, starts);
         if cancel.load(Ordering::Relaxed) {
-            return (self.nothing(Status::Interrupted, ExactFigures::default()), None);
+            return (self.without_state(Status::Interrupted), none);
         }
-        let reached = found.best.as_ref().map(|best| Strained::at(best, 1.0, l2, across));
-        let tally = Tally { runs: found.runs + runs, iterations: found.iterations + iterations, ..found };
-        let (runs, iterations) = (tally.runs, tally.iterations);
-        let mut outcome = self.judge(0, direction_deg, l2, unbounded, tally, ExactFigures::default(), cancel);
-        match outcome.status {
-            Status::Local => outcome.note = Some("held by contacts without a chain of links: there is no bound".into()),
-            // No limit, only where the search was stopped.
-            Status::Uncertified if outcome.exact.as_ref().is_none_or(|figures| figures.contacts.is_empty()) => {
-                let note = Some("no chain of links, and no contact held it where the search was stopped".into());
-                let nothing = self.nothing(Status::Uncertified, ExactFigures::default());
-                return (LimitOutcome { runs, iterations, note, ..nothing }, None);
+        (found.runs, found.iterations) = (found.runs + runs, found.iterations + iterations);
+        let mut reached = none.clone();
+        reached[0] = found.best.as_ref().map(|best| stretch.start(best));
+        let answer = self.judge(0, stretch, f64::INFINITY, found, cancel);
+        match answer.status {
+            Status::Local => {
+                let note = Some("held by contacts without a chain of links: there is no bound".into());
+                (Answer { note, ..answer }, reached)
             }
-            _ => {}
+            // No limit, only where the search was stopped.
+            Status::Uncertified if answer.contacts.is_empty() => {
+                let note = Some("no chain of links, and no contact held it where the search was stopped".into());
+                let Answer { runs, iterations, .. } = answer;
+                (Answer { runs, iterations, note, ..self.without_state(Status::Uncertified) }, none)
+            }
+            _ => (answer, reached),
         }
-        (outcome, reached)
     }
 }
 
-impl Search<'_> {
-    /// Pulls in stages to a state from which the pull can go on for ever, if it gets there.
-    fn pull_apart(&mut self, from: Strained, direction_deg: f64) -> Option<Strained> {
-        self.runs += 1;
-        let at = self.at_lateral(from)?;
-        let model: &Model = self.model;
-        let pull = self.family.pull(self.l2);
-        let program = SheetProgram::new(model, &pull);
-        let p = self.family.parameters(&at);
-        let mut x = program.posed(at.state, p);
-        let mut known = Vec::new();
-        for stage in 0..STAGES {
-            let enough = x.p[0] + STAGE * 2.0_f64.powi(stage);
-            let end = maximize(&program, x, known, &SqpOptions { enough, ..SqpOptions::default() }, self.cancel);
-            self.iterations += end.iterations as u64;
-            if end.point.p[0] <= enough || end.violation > GAP_TOLERANCE {
-                return None;
-            }
-            (x, known) = (end.point, end.multipliers);
-            if comes_apart(model, &x.state, direction_deg) && topology::links_kept(model, &x.state) {
-                let [l2, shear] = self.family.free_of(&x.p, self.l2);
-                return Some(Strained { l1: x.p[0], l2, shear, state: x.state });
-            }
+/// Pulls in stages to a state from which the pull can go on for ever, if it gets there; with the quadratic programs that it took.
+fn pull_apart(model: &Model, stretch: &Stretch, from: Start, cancel: &AtomicBool) -> (Option<Separated>, u64) {
+    let Entered { at, mut iterations } = stretch.enter(model, from, cancel);
+    let Some((state, p)) = at else { return (None, iterations) };
+    let pull = stretch.family(model);
+    let program = SheetProgram::new(model, &pull);
+    let mut x = program.posed(state, p);
+    let mut known = Vec::new();
+    for stage in 0..UNLINKED_STAGES {
+        let enough = x.p[0] + UNLINKED_STAGE * 2.0_f64.powi(stage);
+        let end = maximize(&program, x, known, &SqpOptions { enough, ..SqpOptions::default() }, cancel);
+        iterations += end.iterations as u64;
+        if end.point.p[0] <= enough || end.violation > GAP_TOLERANCE {
+            return (None, iterations);
         }
-        None
+        (x, known) = (end.point, end.multipliers);
+        if comes_apart(model, &x.state, stretch.direction_deg) && topology::links_kept(model, &x.state) {
+            return (Some(Separated { state: x.state, p: x.p }), iterations);
+        }
     }
+    (None, iterations)
 }

@@ -5,7 +5,7 @@ use maille::{
     characterize::{Finished, Method, characterize, tasks},
     design::Design,
     lattice::Cell,
-    limit::exact::ExactOptions,
+    limit::ExactOptions,
     model::Model,
     state::State,
 };

@@ -1,11 +1,16 @@
-//! The lattices of one pull, and what of them is free.
+//! The lattices of a stretch, and what of them is free.
 //!
 //! F = (1 + l1) D Dᵀ + (1 + l2) D⊥ D⊥ᵀ + γ D D⊥ᵀ (see [`Across`]): linear in l1, l2, γ. A limit maximises l1 with the free ones of
 //! l2 and γ as further unknowns. At a limit they need not be unique, so two more solves for each give the least and the
 //! largest value that was found with l1 held at the limit.
 
-use super::{FreeRanges, climb::Solve, exact::FREE_SLACK};
+use super::{
+    local::LocalSolution,
+    multistart::Start,
+    options::{FEASIBLE, FREE_SLACK, RANGE_ROUNDS},
+};
 use crate::{
+    answer::FreeRanges,
     bound::{Bound, ChainBound, LinkBound, best_bound_across},
     constraint::{Parameter, Pull, SheetProgram},
     lattice::{Across, direction},
@@ -18,36 +23,8 @@ use maille_geometry::Vec3;
 use nalgebra::{Matrix2, Vector2};
 use std::sync::atomic::AtomicBool;
 
-/// Solves for an end of a range, each from where the last one paused.
-const ROUNDS: usize = 3;
-/// Violation that such an end may have.
-const FEASIBLE: f64 = 1e-9;
-
-/// A state with the strains of its lattice in one direction.
-#[derive(Clone)]
-pub(super) struct Strained {
-    pub state: State,
-    pub l1: f64,
-    pub l2: f64,
-    pub shear: f64,
-}
-
-impl Strained {
-    /// A state with the written lattice.
-    pub fn start(state: State) -> Self {
-        Strained { state, l1: 0.0, l2: 0.0, shear: 0.0 }
-    }
-
-    /// The state of a solve that made `sign` · l1 as large as can be; `l2` is what was held.
-    pub fn at(solve: &Solve, sign: f64, l2: f64, across: Across) -> Self {
-        let mut free = solve.x.p[1..].iter().copied();
-        let l2 = if across.lateral_free { free.next().unwrap_or(l2) } else { l2 };
-        Strained { state: solve.x.state.clone(), l1: sign * solve.x.p[0], l2, shear: free.next().unwrap_or(0.0) }
-    }
-}
-
-/// The lattice family of one pull.
-pub(super) struct Family {
+/// The lattices of a stretch along one direction.
+pub(super) struct StretchLattices {
     reference: [Vec3; 2],
     along: Vec3,
     pub across: Across,
@@ -61,7 +38,7 @@ pub(super) fn farthest(model: &Model, pull: &Pull, state: &State, cancel: &Atomi
     let program = SheetProgram::new(model, pull);
     let mut x = program.posed(state.clone(), vec![0.0; pull.parameters.len()]);
     let (mut known, mut iterations, mut end) = (Vec::new(), 0, None);
-    for _ in 0..ROUNDS {
+    for _ in 0..RANGE_ROUNDS {
         let found = maximize(&program, x, known, &SqpOptions::default(), cancel);
         iterations += found.iterations as u64;
         (x, known) = (found.point, found.multipliers);
@@ -75,15 +52,11 @@ pub(super) fn farthest(model: &Model, pull: &Pull, state: &State, cancel: &Atomi
     (end, iterations)
 }
 
-impl Family {
-    pub fn new(model: &Model, direction_deg: f64, across: Across) -> Self {
+impl StretchLattices {
+    /// `sign` is 1 where l1 is maximised, −1 where it is minimised.
+    pub fn new(model: &Model, direction_deg: f64, across: Across, sign: f64) -> Self {
         let d = direction(direction_deg);
-        Family { reference: [model.start.a1, model.start.a2], along: Vec3::new(d.x, d.y, 0.0), across, sign: 1.0 }
-    }
-
-    /// The same lattices, l1 to be made as small as can be.
-    pub fn least(self) -> Self {
-        Family { sign: -1.0, ..self }
+        StretchLattices { reference: [model.start.a1, model.start.a2], along: Vec3::new(d.x, d.y, 0.0), across, sign }
     }
 
     fn side(&self) -> Vec3 {
@@ -135,14 +108,14 @@ impl Family {
     }
 
     /// The parameters of [`Self::pull`] at a state.
-    pub fn parameters(&self, at: &Strained) -> Vec<f64> {
+    pub fn parameters(&self, at: &Start) -> Vec<f64> {
         let lateral = self.across.lateral_free.then_some(at.l2);
         let shear = self.across.shear_free.then_some(at.shear);
         [Some(self.sign * at.l1), lateral, shear].into_iter().flatten().collect()
     }
 
     /// From the l2 of a state towards `to`, l1 free, γ as it is there.
-    pub fn approach(&self, at: &Strained, to: f64) -> Pull {
+    pub fn approach(&self, at: &Start, to: f64) -> Pull {
         let [along, lateral, _] = self.rates();
         let sign = (to - at.l2).signum();
         let l1 = Parameter { rate: along, ..Parameter::default() };
@@ -153,10 +126,10 @@ impl Family {
 
     /// Least and largest l2 and γ that are found from the state of a limit, with l1 held there less a slack of
     /// [`FREE_SLACK`] (1 + l1); with the quadratic programs that it took.
-    pub fn ranges(&self, model: &Model, limit: &Solve, l2: f64, cancel: &AtomicBool) -> (FreeRanges, u64) {
-        let l1 = self.sign * limit.x.p[0];
+    pub fn ranges(&self, model: &Model, limit: &LocalSolution, l2: f64, cancel: &AtomicBool) -> (FreeRanges, u64) {
+        let l1 = self.sign * limit.p[0];
         let l1 = l1 - self.sign * FREE_SLACK * (1.0 + l1);
-        let [l2, shear] = self.free_of(&limit.x.p, l2);
+        let [l2, shear] = self.free_of(&limit.p, l2);
         let [_, lateral_rate, shear_rate] = self.rates();
         let wanted = [(self.across.lateral_free, lateral_rate), (self.across.shear_free, shear_rate)];
         let mut iterations = 0;
@@ -172,7 +145,7 @@ impl Family {
                     ..Parameter::default()
                 });
                 let pull = Pull { base: self.lattice(l1, l2, shear), parameters: parameters.collect(), metric: None };
-                let (moved, more) = farthest(model, &pull, &limit.x.state, cancel);
+                let (moved, more) = farthest(model, &pull, &limit.state, cancel);
                 iterations += more;
                 end[side] = moved.map_or(from, |moved| from + sign * moved);
             }

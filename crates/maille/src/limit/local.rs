@@ -1,5 +1,10 @@
-//! The best that one start leads to: maximise, polish, certify, and kick where no certificate holds.
+//! Local maximisation from one start: maximise, polish, certify, and begin again from a perturbed state where no certificate
+//! holds.
 
+use super::{
+    multistart::perturbed,
+    options::{FEASIBLE, RESTART_SIZE, ROUNDS},
+};
 use crate::{
     constraint::{
         Contact, Posed, SheetProgram,
@@ -12,57 +17,65 @@ use crate::{
         rows::{Derivatives, Multiplier, violation},
         sqp::{Program, SqpOptions, maximize},
     },
-    state::{Pose, State},
-    topology::{
-        self,
-        crossing::{Motion, StepBound},
-    },
+    state::State,
+    topology,
 };
-use maille_geometry::Vec3;
-use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Rounds of maximising and polishing between kicks.
-pub(super) const ROUNDS: usize = 10;
-/// Size of the first kick, in reference radii and radians; the next ones are multiples.
-const KICK: f64 = 0.003;
-
-/// A solve from one start.
-pub(super) struct Solve {
-    pub(super) x: Posed,
-    pub(super) certificate: Certificate,
-    pub(super) contacts: Vec<Contact>,
-    pub(super) links_ok: bool,
-    pub(super) certified: bool,
+/// What one start led to.
+pub(super) struct LocalSolution {
+    pub state: State,
+    /// Parameters; the first is what was maximised.
+    pub p: Vec<f64>,
+    pub certificate: Certificate,
+    /// Contacts that carry, force per unit of the first parameter.
+    pub contacts: Vec<Contact>,
+    pub links_ok: bool,
+    /// Whether the certificate holds and the links are those of the start.
+    pub certified: bool,
 }
 
-/// What [`climb`] found.
-pub(super) struct Climbed {
-    /// The certified state, or the best feasible one.
-    pub(super) best: Option<Solve>,
-    /// Quadratic programs.
-    pub(super) iterations: u64,
+impl LocalSolution {
+    /// What was maximised.
+    pub fn value(&self) -> f64 {
+        self.p[0]
+    }
+
+    fn of(solve: Solve) -> Self {
+        let Solve { x: Posed { state, p, .. }, certificate, contacts, links_ok, certified } = solve;
+        LocalSolution { state, p, certificate, contacts, links_ok, certified }
+    }
 }
 
-/// From a start to a certified state, with up to `kicks` kicks.
-pub(super) fn climb(
+/// The end of a round.
+struct Solve {
+    x: Posed,
+    certificate: Certificate,
+    contacts: Vec<Contact>,
+    links_ok: bool,
+    certified: bool,
+}
+
+/// From a start to a certified state, or to the best feasible one; with the quadratic programs that it took. Where no certificate
+/// holds, the search begins again from a perturbed state, up to `restarts` times.
+pub(super) fn local_maximize(
     model: &Model,
     program: &mut SheetProgram<'_>,
     start: Posed,
-    kicks: usize,
+    restarts: usize,
     rng: &mut ChaCha8Rng,
     cancel: &AtomicBool,
-) -> Climbed {
-    let mut climber = Climber { model, cancel, iterations: 0, last_resort: None };
+) -> (Option<LocalSolution>, u64) {
+    let mut rounds = Rounds { model, cancel, iterations: 0, last_resort: None };
     let (mut x, mut best): (Posed, Option<Solve>) = (start, None);
-    for kick in 0..=kicks {
-        if kick > 0 {
-            let size = KICK * kick as f64;
+    for restart in 0..=restarts {
+        if restart > 0 {
+            let size = RESTART_SIZE * restart as f64;
             program.forget_released_pairs();
-            x = program.posed(shaken_from(model, &x.state, size, rng), x.p.clone());
+            x = program.posed(perturbed(model, &x.state, size, rng), x.p.clone());
         }
-        let (end, solve) = climber.round(program, x);
+        let (end, solve) = rounds.round(program, x);
         if solve.certified {
             best = Some(solve);
             break;
@@ -77,12 +90,12 @@ pub(super) fn climb(
         }
     }
     if best.as_ref().is_none_or(|best| !best.certified) {
-        best = climber.last_resort.take().or(best);
+        best = rounds.last_resort.take().or(best);
     }
-    Climbed { best, iterations: climber.iterations }
+    (best.map(LocalSolution::of), rounds.iterations)
 }
 
-struct Climber<'a> {
+struct Rounds<'a> {
     model: &'a Model,
     cancel: &'a AtomicBool,
     iterations: u64,
@@ -90,7 +103,7 @@ struct Climber<'a> {
     last_resort: Option<Solve>,
 }
 
-impl Climber<'_> {
+impl Rounds<'_> {
     /// Keeps a last resort that has the links of the start, measured by true gaps; its pairs must not be shifted, see `round`.
     fn keep(&mut self, program: &mut SheetProgram<'_>, found: Option<(Posed, Certificate)>) {
         let Some((x, mut certificate)) = found.filter(|_| self.last_resort.is_none()) else { return };
@@ -156,37 +169,5 @@ impl Climber<'_> {
 }
 
 fn feasible(program: &SheetProgram<'_>, x: &Posed) -> bool {
-    violation(&program.rows(x, 0.0, Derivatives::None)) < 1e-9
-}
-
-/// `state` with its elements moved and turned by up to `size`, less where circles could meet.
-pub(super) fn shaken_from(model: &Model, state: &State, size: f64, rng: &mut ChaCha8Rng) -> State {
-    let mut vector = || Vec3::from_fn(|_, _| size * rng.random_range(-1.0..1.0));
-    let elements = state.poses.iter().map(|_| (vector(), vector())).collect();
-    let motion = Motion { elements, lattice: [Vec3::zeros(); 2], carried: false };
-    let fraction = StepBound::new(model, state).largest_fraction(model, &motion, f64::INFINITY);
-    let moved = state
-        .poses
-        .iter()
-        .zip(&motion.elements)
-        .map(|(p, (shift, turn))| p.moved(&(shift * fraction), &(turn * fraction)));
-    State { poses: moved.collect(), ..state.clone() }
-}
-
-/// Largest force between an element and its own image.
-pub(super) fn own_image_force(model: &Model, contacts: &[Contact]) -> f64 {
-    let element = |ring: usize| model.rings[ring].element;
-    let own = contacts.iter().filter(|c| element(c.pair.ring_a) == element(c.pair.ring_b));
-    own.map(|c| c.force).fold(0.0, f64::max)
-}
-
-/// A primitive cell's state repeated over the cell of `model`.
-pub(super) fn tiled(model: &Model, state: &State) -> State {
-    let copies = model.cell.cosets();
-    let poses = copies.iter().flat_map(|&coset| {
-        let shift = state.translation(coset);
-        state.poses.iter().map(move |pose| Pose { position: pose.position + shift, ..*pose })
-    });
-    let [a1, a2] = model.cell.vectors(state.a1, state.a2);
-    State { poses: poses.collect(), a1, a2 }
+    violation(&program.rows(x, 0.0, Derivatives::None)) < FEASIBLE
 }

@@ -1,0 +1,166 @@
+//! What came of one question.
+
+use crate::{
+    bound::{BindingChain, Bound, BoundKind, DualForce},
+    constraint::Contact,
+    lattice::Cell,
+    model::Model,
+    record::{Status, StepRecord},
+    solve::certificate::Certificate,
+    state::State,
+};
+use nalgebra::Matrix2;
+
+/// What came of one question, by either method. Lengths are in reference radii.
+#[derive(Clone, Debug)]
+pub struct Answer {
+    /// How sure it is, or why there is none.
+    pub status: Status,
+    /// What was asked for: l1 of a stretch, a Green strain, the distance along a ray of strains, the factor of the minor radii,
+    /// or the clearance. Certified if the status says so; of an `uncertified` answer the best feasible value. `None` where
+    /// nothing was found.
+    pub value: Option<f64>,
+    /// Value of the first start, which goes straight from the design's state (strains and rays).
+    pub first: Option<f64>,
+    /// Proven bound of the value: no state lies beyond it.
+    pub bound: Option<f64>,
+    /// Where the bound comes from; `None` for strains, whose bound is that of the chains.
+    pub bound_kind: Option<BoundKind>,
+    /// The chain of links that binds in the bound.
+    pub chain: Option<BindingChain>,
+    /// The forces that prove the bound, or that there is no state, where one chain does not.
+    pub dual: Vec<DualForce>,
+    /// The cell that was solved.
+    pub cell: Cell,
+    /// Its state: the answer's, or the last one of a failed search.
+    pub state: State,
+    /// Deformation gradient of that state.
+    pub gradient: Matrix2<f64>,
+    /// Smallest gap between the tori of two rings in it, where there is a value.
+    pub gap: Option<f64>,
+    /// Whether its links are those of the start.
+    pub links_ok: Option<bool>,
+    /// The certificate, complete or not (exact method).
+    pub certificate: Option<Certificate>,
+    /// Contacts that carry force, per unit of the value (exact method).
+    pub contacts: Vec<Contact>,
+    /// Largest force between an element and its own image in the solved cell (exact method).
+    pub own_image_force: Option<f64>,
+    /// Ranges of l2 and of the shear at a stretch that leaves them free.
+    pub free: Option<FreeRanges>,
+    /// Least and largest value found of each strain that was left free, with the value given way by a millionth; cut off where
+    /// the bound excludes them. A range of some width: the state is not the only one. Empty where the answer is not certified.
+    pub ranges: Vec<[f64; 2]>,
+    /// What each cell found, where larger cells were searched.
+    pub by_cell: Vec<CellTrend>,
+    /// Starts that were solved (exact method).
+    pub n_starts: Option<u64>,
+    /// Distinct certified values among them, more than 1e-7 from each other (exact method).
+    pub n_distinct: Option<u64>,
+    /// Minimisations, or local maximisations.
+    pub runs: u64,
+    /// Newton iterations, or quadratic programs, of all runs.
+    pub iterations: u64,
+    /// Last residual: how far the state is from its target (energy method), or its deepest overlap (exact method).
+    pub residual: Option<f64>,
+    /// What happened, where the status does not say it.
+    pub note: Option<String>,
+    /// The steps of all runs (energy method, where they were asked for).
+    pub steps: Vec<StepRecord>,
+}
+
+/// What the search of one cell found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CellTrend {
+    /// The cell.
+    pub cell: Cell,
+    /// Its best certified value.
+    pub value: Option<f64>,
+    /// Starts that were solved.
+    pub n_starts: u64,
+    /// Distinct certified values among them.
+    pub n_distinct: u64,
+}
+
+impl CellTrend {
+    /// As `1x1 -0.037600000 (8 starts, 3 limits)`.
+    pub fn label(&self) -> String {
+        let value = self.value.map_or("none".to_owned(), |x| format!("{x:.9}"));
+        format!("{} {value} ({} starts, {} limits)", self.cell, self.n_starts, self.n_distinct)
+    }
+}
+
+/// Least and largest value found at a limit, of l2 and of the shear γ; both the same where it was held.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FreeRanges {
+    /// Of l2.
+    pub l2: [f64; 2],
+    /// Of γ.
+    pub shear: [f64; 2],
+}
+
+impl Answer {
+    /// An answer with the status, and with the start for its state.
+    pub fn new(model: &Model, status: Status) -> Self {
+        Answer {
+            status,
+            value: None,
+            first: None,
+            bound: None,
+            bound_kind: None,
+            chain: None,
+            dual: Vec::new(),
+            cell: model.cell,
+            state: model.start.clone(),
+            gradient: Matrix2::identity(),
+            gap: None,
+            links_ok: None,
+            certificate: None,
+            contacts: Vec::new(),
+            own_image_force: None,
+            free: None,
+            ranges: Vec::new(),
+            by_cell: Vec::new(),
+            n_starts: None,
+            n_distinct: None,
+            runs: 0,
+            iterations: 0,
+            residual: None,
+            note: None,
+            steps: Vec::new(),
+        }
+    }
+
+    /// The same with what a bound says of it.
+    pub(crate) fn bounded_by(self, bound: &Bound) -> Self {
+        Answer {
+            bound: bound.l1(),
+            bound_kind: bound.l1().and(bound.kind()),
+            chain: bound.chain().cloned(),
+            dual: bound.dual().to_vec(),
+            ..self
+        }
+    }
+
+    /// Whether the value is certified, or reached by the energy method: a search that ended well.
+    pub fn is_limit(&self) -> bool {
+        matches!(self.status, Status::ThresholdReached | Status::Global | Status::Local)
+    }
+
+    /// The certified value, or what the energy method reached.
+    pub fn limit(&self) -> Option<f64> {
+        self.value.filter(|_| self.is_limit())
+    }
+
+    /// Green strain E = (FᵀF − 1)/2 of the state.
+    pub fn green_strain(&self) -> Matrix2<f64> {
+        (self.gradient.transpose() * self.gradient - Matrix2::identity()) * 0.5
+    }
+
+    /// Eigenvalues of C = FᵀF of the state, the larger one first: squares of the principal stretches.
+    pub fn principal_squared(&self) -> [f64; 2] {
+        let c = self.gradient.transpose() * self.gradient;
+        let (mean, half) = ((c[(0, 0)] + c[(1, 1)]) / 2.0, ((c[(0, 0)] - c[(1, 1)]) / 2.0).hypot(c[(0, 1)]));
+        [mean + half, mean - half]
+    }
+}

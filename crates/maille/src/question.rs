@@ -1,0 +1,307 @@
+//! What can be asked of a sheet.
+
+use crate::{
+    constraint::metric::factor,
+    error::InvalidInput,
+    lattice::{Across, direction},
+};
+use nalgebra::{Matrix2, Vector2};
+use serde::{Deserialize, Serialize};
+
+/// One question: something of a sheet as large or as small as it can be.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Question {
+    /// What is sought, and what is held meanwhile.
+    pub goal: Goal,
+    /// Its largest or its least value.
+    #[serde(default)]
+    pub sense: Sense,
+    /// Starts of the search; `None`: as many as the goal takes by itself, see [`Question::starts`].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub starts: Option<usize>,
+    /// Seed of the perturbations.
+    #[serde(default = "usual_seed")]
+    pub seed: u64,
+}
+
+/// What is sought.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub enum Goal {
+    /// l1: lines along the direction are stretched by 1 + l1.
+    Stretch {
+        /// Direction of the pull, degrees counter-clockwise from x.
+        direction_deg: f64,
+        /// Stretch − 1 across it, where it is held.
+        l2: f64,
+        /// Whether width and shear are held or left to the sheet.
+        #[serde(default)]
+        across: Across,
+    },
+    /// One Green strain.
+    Strain {
+        /// Which.
+        component: Strain,
+        /// Direction of the strains' x axis, in degrees.
+        direction_deg: f64,
+        /// Strains that are held.
+        fix: Vec<(Strain, f64)>,
+        /// Strains that are left to the sheet; those that are neither are held at 0.
+        free: Vec<Strain>,
+    },
+    /// The distance from the written lattice along a ray in the space of Green strains.
+    Ray {
+        /// Unit vector (E_xx, E_yy, E_xy).
+        direction: [f64; 3],
+    },
+    /// All minor radii, in the proportions of the design: the thickest wire with which the weave exists.
+    Wire {
+        /// Whether the lattice may change.
+        lattice_free: bool,
+    },
+    /// The smallest gap between the tori of two rings.
+    Clearance {
+        /// Whether the lattice may change.
+        lattice_free: bool,
+    },
+}
+
+/// Which end of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Sense {
+    /// As large as can be.
+    #[default]
+    Largest,
+    /// As small as can be.
+    Least,
+}
+
+impl Sense {
+    /// 1 for the largest value, −1 for the least.
+    pub fn sign(self) -> f64 {
+        if self == Sense::Largest { 1.0 } else { -1.0 }
+    }
+
+    /// `largest` or `least`.
+    pub fn name(self) -> &'static str {
+        if self == Sense::Largest { "largest" } else { "least" }
+    }
+}
+
+fn usual_seed() -> u64 {
+    1
+}
+
+impl Question {
+    /// A question with the usual search.
+    pub fn new(goal: Goal, sense: Sense) -> Self {
+        Question { goal, sense, starts: None, seed: usual_seed() }
+    }
+
+    /// How far the sheet stretches along a direction, in degrees, with its width held and no shear.
+    pub fn stretch_along(direction_deg: f64) -> Self {
+        Question::new(Goal::Stretch { direction_deg, l2: 0.0, across: Across::HELD }, Sense::Largest)
+    }
+
+    /// The thickest wire with which the weave exists, its lattice free.
+    pub fn thickest_wire() -> Self {
+        Question::new(Goal::Wire { lattice_free: true }, Sense::Largest)
+    }
+
+    /// The state in which the smallest gap is largest, its lattice held.
+    pub fn largest_clearance() -> Self {
+        Question::new(Goal::Clearance { lattice_free: false }, Sense::Largest)
+    }
+
+    /// The same stretch with the width held at 1 + l2 times the written one. Other goals stay as they are.
+    pub fn with_lateral(mut self, lateral: f64) -> Self {
+        if let Goal::Stretch { l2, .. } = &mut self.goal {
+            *l2 = lateral;
+        }
+        self
+    }
+
+    /// The same stretch with the width, or the shear, or both left to the sheet. Other goals stay as they are.
+    pub fn with_free(mut self, free: Across) -> Self {
+        if let Goal::Stretch { across, .. } = &mut self.goal {
+            *across = free;
+        }
+        self
+    }
+
+    /// The same with the least value in place of the largest.
+    pub fn least(self) -> Self {
+        Question { sense: Sense::Least, ..self }
+    }
+
+    /// The number of starts: the one that was asked for, or 4 for a stretch, 2 for a ray, 8 for all else.
+    pub fn starts(&self) -> usize {
+        self.starts.unwrap_or(match self.goal {
+            Goal::Stretch { .. } => 4,
+            Goal::Ray { .. } => 2,
+            Goal::Strain { .. } | Goal::Wire { .. } | Goal::Clearance { .. } => 8,
+        })
+    }
+
+    /// Whether it can be asked.
+    ///
+    /// # Errors
+    /// Without starts; for a number that is not finite, an l2 of −1 or less, a strain that is named twice, strains that no
+    /// lattice has, a ray without direction, and for the least wire or clearance, which nothing bounds.
+    pub fn check(&self) -> Result<(), InvalidInput> {
+        if self.starts == Some(0) {
+            return Err(InvalidInput::new("starts", "0 starts find nothing", "give 1 or more"));
+        }
+        let finite = |field: &str, x: f64| match x.is_finite() {
+            true => Ok(()),
+            false => Err(InvalidInput::new(field, format!("{x} is no number"), "give a finite number")),
+        };
+        match &self.goal {
+            Goal::Stretch { direction_deg, l2, .. } => {
+                finite("direction_deg", *direction_deg)?;
+                finite("l2", *l2)?;
+                if *l2 <= -1.0 {
+                    let help = "a width of 0 is l2 = -1; give a larger l2";
+                    return Err(InvalidInput::new("l2", format!("no sheet has l2 = {l2}"), help));
+                }
+            }
+            Goal::Strain { direction_deg, fix, .. } => {
+                finite("direction_deg", *direction_deg)?;
+                fix.iter().try_for_each(|(_, value)| finite("fix", *value))?;
+            }
+            Goal::Ray { direction } => {
+                direction.iter().try_for_each(|x| finite("direction", *x))?;
+                if direction.iter().all(|x| *x == 0.0) {
+                    return Err(InvalidInput::new("direction", "a ray without direction", "give a unit vector"));
+                }
+            }
+            Goal::Wire { .. } | Goal::Clearance { .. } if self.sense == Sense::Least => {
+                return Err(InvalidInput::new("sense", "nothing bounds it from below", "ask for the largest"));
+            }
+            Goal::Wire { .. } | Goal::Clearance { .. } => {}
+        }
+        self.strain_query().map(drop)
+    }
+
+    /// The question in the space of Green strains; `None` for goals that are no strains.
+    ///
+    /// # Errors
+    /// Where a strain is named twice, or no lattice has the strains that are held.
+    pub fn strain_query(&self) -> Result<Option<StrainQuery>, InvalidInput> {
+        match &self.goal {
+            Goal::Strain { component, direction_deg, fix, free } => {
+                StrainQuery::of(*component, self.sense.sign(), fix, free, *direction_deg).map(Some)
+            }
+            Goal::Ray { direction: [xx, yy, xy] } => {
+                let along = Matrix2::new(*xx, *xy, *xy, *yy) * self.sense.sign();
+                Ok(Some(StrainQuery { held: Matrix2::zeros(), free: vec![along] }))
+            }
+            Goal::Stretch { .. } | Goal::Wire { .. } | Goal::Clearance { .. } => Ok(None),
+        }
+    }
+
+    /// The stretch that asks the same as a question on a normal strain, if one does: with the other normal strain held and no
+    /// shear, or with the width free, with or without the shear. E_DD = l1 + l1²/2 grows with l1, so their extremes are the same.
+    /// With the width held and the shear free a stretch holds the distance across the direction, and not a strain.
+    pub fn as_stretch(&self) -> Option<Question> {
+        let Goal::Strain { component, direction_deg, fix, free } = &self.goal else { return None };
+        let (side, turn_deg) = match component {
+            Strain::Exx => (Strain::Eyy, 0.0),
+            Strain::Eyy => (Strain::Exx, 90.0),
+            Strain::Exy => return None,
+        };
+        let held = |strain: Strain| fix.iter().find(|(named, _)| *named == strain).map_or(0.0, |(_, value)| *value);
+        let across = Across { lateral_free: free.contains(&side), shear_free: free.contains(&Strain::Exy) };
+        if held(Strain::Exy) != 0.0 || !across.lateral_free && across.shear_free {
+            return None;
+        }
+        let l2 = if across.lateral_free { 0.0 } else { (1.0 + 2.0 * held(side)).sqrt() - 1.0 };
+        let goal = Goal::Stretch { direction_deg: direction_deg + turn_deg, l2, across };
+        Some(Question { goal, ..self.clone() })
+    }
+}
+
+/// A line or a plane or all of the space of strains, and the end of it that is sought.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StrainQuery {
+    /// What is held: E where all parameters are 0.
+    pub held: Matrix2<f64>,
+    /// Rates of E with the parameters, orthogonal to each other; the first parameter is maximised.
+    pub free: Vec<Matrix2<f64>>,
+}
+
+/// A component of E.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Strain {
+    /// Along x.
+    Exx,
+    /// Along y.
+    Eyy,
+    /// The tensor shear.
+    Exy,
+}
+
+impl Strain {
+    /// All of them.
+    pub const ALL: [Strain; 3] = [Strain::Exx, Strain::Eyy, Strain::Exy];
+
+    /// `exx`, `eyy` or `exy`.
+    pub fn name(self) -> &'static str {
+        ["exx", "eyy", "exy"][self as usize]
+    }
+
+    /// E where this component is 1 and the others are 0, with x along `direction_deg`.
+    pub fn unit(self, direction_deg: f64) -> Matrix2<f64> {
+        let (x, y) = axes(direction_deg);
+        match self {
+            Strain::Exx => x * x.transpose(),
+            Strain::Eyy => y * y.transpose(),
+            Strain::Exy => x * y.transpose() + y * x.transpose(),
+        }
+    }
+
+    /// This component of E, with x along `direction_deg`.
+    pub fn of(self, e: &Matrix2<f64>, direction_deg: f64) -> f64 {
+        let (x, y) = axes(direction_deg);
+        let (a, b) = [(x, x), (y, y), (x, y)][self as usize];
+        a.dot(&(e * b))
+    }
+}
+
+/// The axes of the strains.
+fn axes(direction_deg: f64) -> (Vector2<f64>, Vector2<f64>) {
+    let x = direction(direction_deg);
+    (x, Vector2::new(-x.y, x.x))
+}
+
+impl StrainQuery {
+    /// The largest (`sign` 1) or least (−1) value of `goal`, with the strains of `fix` held, those of `free` left to the sheet,
+    /// and the others held at 0, x along `direction_deg`. Refused where a strain is named twice or no lattice has what is held.
+    pub fn of(
+        goal: Strain,
+        sign: f64,
+        fix: &[(Strain, f64)],
+        free: &[Strain],
+        direction_deg: f64,
+    ) -> Result<Self, InvalidInput> {
+        let mut named = vec![goal];
+        for strain in fix.iter().map(|(strain, _)| *strain).chain(free.iter().copied()) {
+            if named.contains(&strain) {
+                let problem = format!("{} is named twice", strain.name());
+                let help = "a strain is sought, held, or left to the sheet: name it once";
+                return Err(InvalidInput::new("fix", problem, help));
+            }
+            named.push(strain);
+        }
+        let held = fix.iter().map(|(strain, value)| strain.unit(direction_deg) * *value).sum::<Matrix2<f64>>();
+        if factor(&(Matrix2::identity() + held * 2.0)).is_none() {
+            let help = "a strain of -0.5 is a length of 0; take larger values, or a smaller exy";
+            return Err(InvalidInput::new("fix", "no lattice has the strains that are held", help));
+        }
+        let rest = free.iter().map(|strain| strain.unit(direction_deg));
+        Ok(StrainQuery { held, free: std::iter::once(goal.unit(direction_deg) * sign).chain(rest).collect() })
+    }
+}

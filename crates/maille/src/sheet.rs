@@ -1,0 +1,152 @@
+//! A sheet to which questions are put: a design compiled for its own cell and for larger ones.
+
+use crate::{
+    answer::{Answer, CellTrend},
+    characterize::{CellChoice, one},
+    constraint::{Contact, metric::factor},
+    design::Design,
+    error::InvalidInput,
+    lattice::Cell,
+    limit::{
+        ExactOptions,
+        extreme::{Extreme, ExtremeOptions, extreme},
+        strain::{StrainMethod, StrainOptions},
+    },
+    model::Model,
+    question::{Goal, Question, Sense},
+    state::{Pose, State},
+};
+use maille_geometry::Vec3;
+use nalgebra::{Matrix2, Rotation3, UnitQuaternion};
+use std::{borrow::Cow, sync::atomic::AtomicBool};
+
+/// A design, compiled for cells of growing size.
+#[derive(Clone, Debug)]
+pub struct Sheet {
+    models: Vec<Model>,
+}
+
+impl Sheet {
+    /// The sheet of a design: its own cell, and the larger ones to which a search goes on where it has reason to.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the design.
+    pub fn compile(design: &Design) -> Result<Self, Vec<InvalidInput>> {
+        Self::in_cells(design, CellChoice::Auto)
+    }
+
+    /// The same with a choice of cells.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the design.
+    pub fn in_cells(design: &Design, cells: CellChoice) -> Result<Self, Vec<InvalidInput>> {
+        let cells = cells.exact_cells(design.elements.len());
+        let models = cells.into_iter().map(|cell| Model::compile(design, cell)).collect::<Result<_, _>>()?;
+        Ok(Sheet { models })
+    }
+
+    /// The design's own cell, or the one that was chosen.
+    pub fn model(&self) -> &Model {
+        &self.models[0]
+    }
+
+    /// The model in whose cell a state of an answer is.
+    pub fn model_of(&self, answer: &Answer) -> Cow<'_, Model> {
+        self.models
+            .iter()
+            .find(|model| model.cell == answer.cell)
+            .map_or_else(|| Cow::Owned(self.models[0].in_cell(answer.cell)), Cow::Borrowed)
+    }
+
+    /// The answer to a question, by the exact method, on the current thread pool; it does not depend on the number of threads.
+    ///
+    /// # Errors
+    /// What [`Question::check`] refuses.
+    pub fn answer(&self, question: &Question) -> Result<Answer, InvalidInput> {
+        self.answer_until(question, &AtomicBool::new(false))
+    }
+
+    /// The same; after `cancel` the answer comes back as interrupted.
+    ///
+    /// # Errors
+    /// What [`Question::check`] refuses.
+    pub fn answer_until(&self, question: &Question, cancel: &AtomicBool) -> Result<Answer, InvalidInput> {
+        question.check()?;
+        let (starts, seed, sense) = (question.starts(), question.seed, question.sense);
+        let extreme = |what: Extreme, lattice_free: bool| {
+            extreme(&self.models[0], what, &ExtremeOptions { lattice_free, starts, seed }, cancel)
+        };
+        Ok(match question.goal {
+            Goal::Stretch { direction_deg, l2, across } => {
+                let options = ExactOptions { starts, seed, across, compression: sense == Sense::Least };
+                one(&self.models, &options, direction_deg, l2, cancel).1
+            }
+            Goal::Wire { lattice_free } => extreme(Extreme::ThickestWire, lattice_free),
+            Goal::Clearance { lattice_free } => extreme(Extreme::LargestClearance, lattice_free),
+            Goal::Strain { .. } | Goal::Ray { .. } => self.strain(question, cancel)?,
+        })
+    }
+
+    /// One strain: where a stretch asks the same, found as that, so that one question has one answer.
+    fn strain(&self, question: &Question, cancel: &AtomicBool) -> Result<Answer, InvalidInput> {
+        let Some(query) = question.strain_query()? else { unreachable!("a strain or a ray is asked for") };
+        let options = StrainOptions { starts: question.starts(), seed: question.seed, sense: question.sense };
+        let method = StrainMethod::new(&self.models, options);
+        let Some(stretch) = question.as_stretch() else { return Ok(method.solve(&query, &[], cancel)) };
+        let answer = self.answer_until(&stretch, cancel)?;
+        // A state of a cell that is the image of another one has no model here.
+        if !self.models.iter().any(|model| model.cell == answer.cell) {
+            return Ok(method.solve(&query, &[], cancel));
+        }
+        let answer = as_strain(answer);
+        Ok(if answer.is_limit() { method.with_ranges(&query, answer, cancel) } else { answer })
+    }
+}
+
+/// The limit of a stretch as an extreme of E_DD = l1 + l1²/2. Its state is turned so that F is triangular, as that of an extreme is.
+fn as_strain(answer: Answer) -> Answer {
+    let green = |l1: f64| l1 + 0.5 * l1 * l1;
+    let (f, l1) = (answer.gradient, answer.value.unwrap_or(0.0));
+    let turned = factor(&(f.transpose() * f)).zip(f.try_inverse()).filter(|_| answer.value.is_some());
+    let turn = turned.map_or(Matrix2::identity(), |(triangular, inverse)| triangular * inverse);
+    let turn = Rotation3::from_axis_angle(&Vec3::z_axis(), turn[(1, 0)].atan2(turn[(0, 0)]));
+    let pose = |pose: &Pose| Pose {
+        position: turn * pose.position,
+        rotation: UnitQuaternion::from_rotation_matrix(&turn) * pose.rotation,
+    };
+    // dE = (1 + l1) dl1.
+    let contact = |c: &Contact| Contact {
+        point_a: turn * c.point_a,
+        point_b: turn * c.point_b,
+        force: c.force * (1.0 + l1),
+        ..*c
+    };
+    let cell = |t: &CellTrend| CellTrend { value: t.value.map(green), ..*t };
+    let mut by_cell: Vec<CellTrend> = answer.by_cell.iter().map(cell).collect();
+    if by_cell.is_empty() {
+        let (n_starts, n_distinct) = (answer.n_starts.unwrap_or(0), answer.n_distinct.unwrap_or(0));
+        by_cell.push(CellTrend { cell: answer.cell, value: answer.limit().map(green), n_starts, n_distinct });
+    }
+    let State { poses, a1, a2 } = &answer.state;
+    let state = State { poses: poses.iter().map(pose).collect(), a1: turn * a1, a2: turn * a2 };
+    let gradient = turn.matrix().fixed_view::<2, 2>(0, 0) * f;
+    Answer {
+        value: answer.value.map(green),
+        bound: answer.bound.map(green),
+        bound_kind: None,
+        contacts: answer.contacts.iter().map(contact).collect(),
+        own_image_force: answer.own_image_force.map(|force| force * (1.0 + l1)),
+        free: None,
+        by_cell,
+        gradient,
+        state,
+        ..answer
+    }
+}
+
+impl CellChoice {
+    /// The cells that the exact method may search.
+    fn exact_cells(self, elements: usize) -> Vec<Cell> {
+        self.cells(&crate::characterize::Method::Exact(ExactOptions::default()), elements)
+    }
+}
