@@ -43,7 +43,7 @@ design = "3.1"
 COMMANDS = {
     "characterize": "characterize 1.1 --directions 0:180:5 --l2=-0.25,-0.125,0 --cell 1x1 --out out --quiet",
     "sweep": "sweep study.toml --out out --quiet",
-    "reproduce": "reproduce --quick --designs 1.1 --out out --quiet",
+    "reproduce": "reproduce --quick --only 1.1 --out out --quiet",
     "boundary": "boundary european-4-in-1 --vertices 162 --tolerance 0.5 --starts 1 --out out --quiet",
     "dask": "-m maille.dask study.toml --workers 1 --out out --quiet",
 }

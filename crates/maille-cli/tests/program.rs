@@ -135,7 +135,7 @@ fn every_key_of_the_json_output_is_documented() {
     keys(&check, &mut found);
     keys(&json(folder, "verify 1.1 --json --quiet"), &mut found);
     let mut summary = summary;
-    summary["statuses"] = Value::Null; // its keys are the statuses of the README
+    summary["statuses"] = Value::Null; // its keys are the statuses of docs/record.md
     keys(&summary, &mut found);
     let missing: Vec<&String> = found.iter().filter(|key| !documented.contains(&format!("`{key}`"))).collect();
     assert!(missing.is_empty(), "{missing:?}");

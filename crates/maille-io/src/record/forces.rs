@@ -30,18 +30,18 @@ const fn column(name: &'static str, unit: &'static str, meaning: &'static str) -
 /// The columns before those of the places.
 pub const FORCE_COLUMNS: [ForceColumn; 10] = [
     column("frame", "1", "line of frames.jsonl, from 0, as in --at frame=3"),
-    column("share", "1", "share of the pull that is done"),
+    column("share", "1", "fraction of the pull that is done"),
     column(
         "stretch",
         "1",
-        "distance between the first pulled place and the one opposite to it, along the pull, by that at the start",
+        "distance between the first pulled place and the one opposite to it, along the pull, divided by that at the start",
     ),
     column(
         "mean_force",
         "β R/1000",
-        "force along the pull on an element of the first pulled place, their mean; negative where it pushes the sheet together",
+        "mean force along the pull on an element of the first pulled place; negative where it compresses the sheet",
     ),
-    column("f_xx", "1", "F, the affine map of the plane that fits the way of all elements best"),
+    column("f_xx", "1", "F, the linear map of the plane that best fits the motion of all elements"),
     column("f_xy", "1", "its shear of lines along y towards x"),
     column("f_yx", "1", "its shear of lines along x towards y"),
     column("f_yy", "1", "its stretch of lines along y"),
