@@ -8,7 +8,7 @@ mod common;
 use common::{Family, Pair, circle, degenerate, direction, linked, near_degenerate, rng, symmetric, thin_gap, uniform};
 use divan::{Bencher, black_box, counter::ItemsCount};
 use maille_geometry::{
-    Approaches, Instructions, circle_distance_approaches_with, circle_distance_floor, circle_distance_minima,
+    Approaches, Instructions, circle_distance_approaches_with, circle_distance_lower_bound, circle_distance_minima,
     circle_distance_minima_polynomial, linking_number, point_circle_distance,
 };
 use rand::RngExt;
@@ -87,7 +87,7 @@ fn batch<const SET: usize>(bencher: Bencher<'_, '_>, family: &str) {
 /// The lower bound that sorts pairs out.
 #[divan::bench(args = ["near", "uniform"])]
 fn floor(bencher: Bencher<'_, '_>, family: &str) {
-    time(bencher, family, |(a, b)| circle_distance_floor(a, b));
+    time(bencher, family, |(a, b)| circle_distance_lower_bound(a, b));
 }
 
 #[divan::bench(args = ["linked", "uniform"])]

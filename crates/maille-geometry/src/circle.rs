@@ -1,8 +1,10 @@
 //! A circle in space, and the distance of a point from it.
 
+use crate::tolerance::{MAX_LENGTH, MIN_LENGTH};
 use nalgebra::UnitVector3;
 
-use crate::Vec3;
+/// A vector or point in space.
+pub type Vec3 = nalgebra::Vector3<f64>;
 
 /// A circle in space, oriented: it runs counter-clockwise when its normal points at the eye.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,15 +18,11 @@ pub struct Circle {
 }
 
 /// Whether the numbers of two circles are such that distances can be found: finite but for the place of both together.
-pub(crate) fn are_sound(a: &Circle, b: &Circle) -> bool {
-    let sized = |c: &Circle| (SMALLEST..=LARGEST).contains(&c.radius) && (c.normal.norm_squared() - 1.0).abs() < 1e-6;
-    sized(a) && sized(b) && (b.center - a.center).iter().all(|x| x.abs() <= LARGEST)
+pub(crate) fn are_valid(a: &Circle, b: &Circle) -> bool {
+    let sized =
+        |c: &Circle| (MIN_LENGTH..=MAX_LENGTH).contains(&c.radius) && (c.normal.norm_squared() - 1.0).abs() < 1e-6;
+    sized(a) && sized(b) && (b.center - a.center).iter().all(|x| x.abs() <= MAX_LENGTH)
 }
-
-/// Radii from here and lengths up to [`LARGEST`] have squares and cubes that are ordinary numbers.
-pub(crate) const SMALLEST: f64 = 1e-90;
-/// See [`SMALLEST`].
-pub(crate) const LARGEST: f64 = 1e90;
 
 impl Circle {
     /// The circle with this centre, normal and radius (positive and finite, asserted in debug builds).
@@ -35,7 +33,7 @@ impl Circle {
 
     /// Unit vectors `(U, V)` in the circle's plane with `U × V = N`; every angle on the circle is measured in them.
     ///
-    /// They depend on `N` alone and are orthonormal to rounding (Duff et al. 2017, "Building an Orthonormal Basis,
+    /// They depend on `N` alone and are orthonormal to rounding (Duff et al. 2017, "Building an Orthonormal BernsteinBasis,
     /// Revisited"): `N = e_z` gives `(e_x, e_y)`. No continuous choice exists; this one jumps where `N_z` changes sign.
     pub fn frame(&self) -> (Vec3, Vec3) {
         let n = &self.normal;

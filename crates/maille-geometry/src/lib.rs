@@ -9,7 +9,7 @@
 //! | where is the distance of two circles locally smallest? | [`circle_distance_minima`]: all such places |
 //! | the same for many pairs | [`circle_distance_approaches`]: several at once, by the machine's widest registers |
 //! | the same by the polynomial of degree 8 | [`circle_distance_minima_polynomial`]: a cross-check, fragile in doubles |
-//! | how wide are the gaps between two rings? | [`torus_score`], [`torus_scores`] |
+//! | how wide are the gaps between two rings? | [`torus_gap`], [`torus_gaps`] |
 //! | are two rings linked, and in which sense? | [`linking_number`], [`interlocks`] |
 //!
 //! The order of the modules is `circle ← lane, grid ← reduced ← relative ← arcs ← count ← brackets ← halving, quick, bounds ←
@@ -21,41 +21,20 @@
 //! Lengths carry the caller's unit, angles are radians. Radii must be positive and finite and normals of unit length;
 //! debug builds assert it in [`Circle::new`].
 
-mod arcs;
-mod batch;
-mod bounds;
-mod brackets;
 mod circle;
-mod count;
-mod floor;
-mod grid;
-mod halving;
-mod lane;
+mod circle_circle;
 mod linking;
-mod minima;
-mod placed;
-mod polynomial;
-mod quick;
-mod reduced;
-mod relative;
-mod search;
-mod single;
-mod solve;
+mod simd;
+mod tolerance;
 mod torus;
 
-/// A vector or point in space.
-pub type Vec3 = nalgebra::Vector3<f64>;
-
-/// What counts as rounding, relative to the largest length of a pair: `1e-14`, about fifty units in the last place.
-///
-/// Two circles whose distance varies by less along the whole circle are a continuum of minima, planes tilted by less
-/// are parallel. It is the only tolerance of this crate that decides between answers.
-pub const ROUNDING: f64 = 1e-14;
-
-pub use batch::{Approach, Approaches, Instructions, circle_distance_approaches, circle_distance_approaches_with};
-pub use circle::{Circle, PointOnCircle, point_circle_distance};
-pub use floor::circle_distance_floor;
+pub use circle::{Circle, PointOnCircle, Vec3, point_circle_distance};
+pub use circle_circle::approach::{Approach, Approaches};
+pub use circle_circle::lower_bound::circle_distance_lower_bound;
+pub use circle_circle::many_pairs::{Instructions, circle_distance_approaches, circle_distance_approaches_with};
+pub use circle_circle::minimum::{MAX_MINIMA, Minima, Minimum, PairKind};
+pub use circle_circle::one_pair::circle_distance_minima;
+pub use circle_circle::polynomial::circle_distance_minima_polynomial;
 pub use linking::{interlocks, linking_number};
-pub use minima::{MAX_MINIMA, Minima, Minimum, PairKind, circle_distance_minima};
-pub use polynomial::circle_distance_minima_polynomial;
-pub use torus::{Torus, torus_score, torus_scores};
+pub use tolerance::ROUNDING;
+pub use torus::{Torus, torus_gap, torus_gaps};

@@ -1,6 +1,7 @@
 //! Are two circles linked, and in which sense?
 
-use crate::{Circle, ROUNDING, Vec3};
+use crate::circle::{Circle, Vec3};
+use crate::tolerance::ROUNDING;
 
 /// Where circle B crosses the plane of circle A, if it does: at `t = atan2(b, a) ± acos(−k/A)`, the roots of
 ///

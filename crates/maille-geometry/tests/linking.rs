@@ -5,7 +5,7 @@ mod common;
 use std::f64::consts::{PI, TAU};
 
 use common::{FAMILIES, circle, oracle, rng, sample_angles, uniform};
-use maille_geometry::{Circle, Torus, circle_distance_minima, interlocks, linking_number, torus_score, torus_scores};
+use maille_geometry::{Circle, Torus, circle_distance_minima, interlocks, linking_number, torus_gap, torus_gaps};
 use rand::RngExt;
 
 /// `1/4π ∮∮ (A − B)·(dA × dB)/|A − B|³` by the trapezium rule, which converges exponentially for circles apart.
@@ -85,10 +85,10 @@ fn scores_are_gaps() {
         let (a, b) = uniform(&mut rng);
         let mut torus = |circle| Torus { circle, minor_radius: rng.random_range(0.01..0.15) };
         let (p, q) = (torus(a), torus(b));
-        let (minima, gaps) = torus_scores(&p, &q);
+        let (minima, gaps) = torus_gaps(&p, &q);
         let gaps: Vec<f64> = gaps.collect();
         assert_eq!(gaps.len(), minima.as_slice().len());
-        assert_eq!(gaps[0], torus_score(&p, &q));
+        assert_eq!(gaps[0], torus_gap(&p, &q));
         assert!(gaps.is_sorted());
         let mut sampled: Vec<f64> = oracle(&a, &b, &angles).iter().map(|o| o.distance).collect();
         sampled.sort_by(f64::total_cmp);

@@ -1,6 +1,6 @@
 //! A quick lower bound of the distance between two circles.
 
-use crate::Circle;
+use crate::circle::Circle;
 
 /// A distance that no point of one circle comes nearer than to the other: what spheres and slabs show in some 20 ns.
 ///
@@ -8,7 +8,7 @@ use crate::Circle;
 /// are R away. Over A's plane the points of B are at heights z₀ ± r s (s the sine of the tilt), and at |e₀| ± r from
 /// A's axis; so d² ≥ (|z₀| − r s)₊² + (||e₀| − R| − r)₊². The same with the circles exchanged. The largest counts, less
 /// what rounding could add. Linked circles get 0, or near it.
-pub fn circle_distance_floor(a: &Circle, b: &Circle) -> f64 {
+pub fn circle_distance_lower_bound(a: &Circle, b: &Circle) -> f64 {
     let between = b.center - a.center;
     let (apart_sq, apart) = (between.norm_squared(), between.norm());
     let tilt_cos = a.normal.dot(&b.normal);
@@ -49,7 +49,8 @@ mod tests {
             let unit = nalgebra::UnitVector3::new_normalize;
             let a = Circle::new(Vec3::zeros(), unit(n), 1.0);
             let b = Circle::new(center, unit(m), rng.random_range(0.1..1.5));
-            let (floor, distance) = (circle_distance_floor(&a, &b), circle_distance_minima(&a, &b).closest().distance);
+            let (floor, distance) =
+                (circle_distance_lower_bound(&a, &b), circle_distance_minima(&a, &b).closest().distance);
             assert!(floor <= distance, "{a:?} {b:?}: {floor} {distance}");
             tight += usize::from(floor > 0.5 * distance);
         }

@@ -3,13 +3,13 @@
 //! A second way to the same answers, to check the enumeration and to show what the polynomial costs: how it finds the
 //! minima is its own, what it then polishes and evaluates is the same `h`.
 
-use std::f64::consts::TAU;
-
+use crate::circle::{Circle, Vec3};
+use crate::circle_circle::exhaustive::MinimumAngles;
+use crate::circle_circle::minimum::Minima;
+use crate::circle_circle::pair_frame::PairFrame;
+use crate::tolerance::ROUNDING;
 use nalgebra::Complex;
-
-use crate::relative::Relative;
-use crate::search::Angles;
-use crate::{Circle, Minima, ROUNDING};
+use std::f64::consts::TAU;
 
 /// Real coefficients, constant first.
 type Polynomial = [f64; DEGREE + 1];
@@ -34,17 +34,17 @@ const REACH_RAD: f64 = 0.1;
 /// the lowest of them, polished. Always at least one answer, not always all; see [`crate::circle_distance_minima`] for
 /// the one to use.
 pub fn circle_distance_minima_polynomial(a: &Circle, b: &Circle) -> Minima {
-    let pair = Relative::new(a, b);
+    let pair = PairFrame::new(a, b);
     let lowest_sample = || {
-        let distance = |angle_rad: &f64| pair.at_angle(*angle_rad).distance();
+        let distance = |angle_rad: &f64| pair.sample_at_angle(*angle_rad).distance();
         let samples = (0..64).map(|i| (f64::from(i) + 0.5) * TAU / 64.0);
         samples.min_by(|p, q| distance(p).total_cmp(&distance(q))).unwrap_or(0.0)
     };
     let Some(phi) = phi(a, b, pair.scale) else {
-        return Minima::at_angles(&pair, &[lowest_sample()], true, false);
+        return pair.minima_at_angles(&[lowest_sample()], true, false);
     };
     let offset_rad = pair.moving_frame_angle_rad();
-    let mut angles = Angles::default();
+    let mut angles = MinimumAngles::default();
     for root in roots(&phi) {
         if root.im.abs() > SPLIT || root.re.abs() > 1.0 + SPLIT {
             continue;
@@ -60,7 +60,7 @@ pub fn circle_distance_minima_polynomial(a: &Circle, b: &Circle) -> Minima {
         let start_rad = lowest_sample();
         angles.add(&pair, polish(&pair, start_rad).unwrap_or(start_rad));
     }
-    Minima::at_angles(&pair, angles.as_slice(), angles.continuum, false)
+    pair.minima_at_angles(angles.as_slice(), angles.continuum, false)
 }
 
 /// The coefficients of `φ`, lengths in units of `scale`; nothing if it vanishes to rounding.
@@ -73,7 +73,7 @@ fn phi(a: &Circle, b: &Circle, scale: f64) -> Option<Polynomial> {
     let d = (b.center - a.center) / scale;
     let (u, v) = b.frame();
     let (u, v) = (u * radius_b, v * radius_b);
-    let flat = |x: &crate::Vec3| x - *a.normal * a.normal.dot(x);
+    let flat = |x: &Vec3| x - *a.normal * a.normal.dot(x);
     let (d_flat, u_flat, v_flat) = (flat(&d), flat(&u), flat(&v));
     let (a0, a1, a2) = (d.dot(&u), d.dot(&v), d_flat.norm_squared());
     let (a3, a4) = (d_flat.dot(&u_flat), d_flat.dot(&v_flat));
@@ -164,10 +164,10 @@ fn roots(coefficients: &Polynomial) -> [Complex<f64>; DEGREE] {
 }
 
 /// The minimum near a candidate by Newton's method on `h′`, or nothing.
-fn polish(pair: &Relative<'_>, start_rad: f64) -> Option<f64> {
+fn polish(pair: &PairFrame<'_>, start_rad: f64) -> Option<f64> {
     let mut angle_rad = start_rad;
     for _ in 0..40 {
-        let sample = pair.at_angle(angle_rad);
+        let sample = pair.sample_at_angle(angle_rad);
         if sample.curvature <= 0.0 {
             return None;
         }

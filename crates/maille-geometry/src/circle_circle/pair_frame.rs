@@ -1,10 +1,14 @@
 //! The relative position of two circles in six numbers, and the distance from one circle along the other.
 
-use crate::reduced::Reduced;
-use crate::{Circle, Minimum, PairKind, ROUNDING, Vec3};
+use crate::circle::{Circle, Vec3};
+use crate::circle_circle::angle::Direction;
+use crate::circle_circle::minimum::{Minima, Minimum, PairKind};
+use crate::circle_circle::normalized_pair::NormalizedPair;
+use crate::tolerance::ROUNDING;
+use arrayvec::ArrayVec;
 
 /// Lengths below this part of the pair's scale are 0.
-const NOTHING: f64 = 1e-100;
+const NEGLIGIBLE: f64 = 1e-100;
 
 /// A pair of circles, a **base** and a **moving** one whose angle is the unknown, reduced to six numbers.
 ///
@@ -16,7 +20,7 @@ const NOTHING: f64 = 1e-100;
 ///
 /// Lengths are divided by `scale`, the largest of the radii and the distance of the centres. For parallel planes every
 /// `Y` in them serves, and one is chosen.
-pub(crate) struct Relative<'a> {
+pub(crate) struct PairFrame<'a> {
     pub base: &'a Circle,
     pub moving: &'a Circle,
     /// The unit of length.
@@ -33,7 +37,7 @@ pub(crate) struct Relative<'a> {
     pub tilt_sin: f64,
     axes: [Vec3; 2],
     steepest: Vec3,
-    direct_below: f64,
+    direct_product_below: f64,
 }
 
 /// The squared distance along the moving circle: `h(θ) = ½ d²`, `d² = z² + (ρ − R)²`, and its derivatives.
@@ -71,12 +75,12 @@ impl Sample {
     }
 
     /// Does the distance change by no more than [`ROUNDING`] per radian here?
-    pub fn is_level(&self) -> bool {
+    pub fn is_stationary(&self) -> bool {
         self.slope.abs() <= ROUNDING * (self.distance() + ROUNDING)
     }
 }
 
-impl<'a> Relative<'a> {
+impl<'a> PairFrame<'a> {
     pub fn new(base: &'a Circle, moving: &'a Circle) -> Self {
         let offset = moving.center - base.center;
         let scale = offset.norm().max(base.radius).max(moving.radius);
@@ -89,22 +93,22 @@ impl<'a> Relative<'a> {
         let tilt_cos = n.dot(m);
         let tilt_sin = y.dot(&cross);
         // Far below rounding, and their squares would have no digits: such a circle is a point.
-        let sized = |length: f64| if length.abs() < NOTHING * scale { 0.0 } else { length / scale };
-        let offset = [x.dot(&offset), y.dot(&offset), n.dot(&offset)].map(sized);
-        let radius = sized(moving.radius);
+        let normalize = |length: f64| if length.abs() < NEGLIGIBLE * scale { 0.0 } else { length / scale };
+        let offset = [x.dot(&offset), y.dot(&offset), n.dot(&offset)].map(normalize);
+        let radius = normalize(moving.radius);
         let (across, along) = (tilt_cos * offset[0], offset[1]);
         Self {
             base,
             moving,
             scale,
-            base_radius: sized(base.radius),
+            base_radius: normalize(base.radius),
             radius,
             offset,
             tilt_cos,
             tilt_sin,
             axes: [x, y],
             steepest: y.cross(m),
-            direct_below: (across * across + along * along).sqrt() + radius * tilt_sin * tilt_sin,
+            direct_product_below: (across * across + along * along).sqrt() + radius * tilt_sin * tilt_sin,
         }
     }
 
@@ -117,14 +121,14 @@ impl<'a> Relative<'a> {
     /// near the axis of the base, where the scalar product of the vectors is the more accurate. On the axis `h` has a
     /// kink upwards (a maximum, if anything), and `ρ′ = ρ″ = 0` are returned.
     #[inline]
-    pub fn at(&self, cos: f64, sin: f64) -> Sample {
+    pub fn sample(&self, cos: f64, sin: f64) -> Sample {
         let [x0, y0, z0] = self.offset;
         let (r, c, s) = (self.radius, self.tilt_cos, self.tilt_sin);
         let e = [x0 + r * c * cos, y0 + r * sin];
         let z = z0 + r * s * cos;
         let (z1, z2) = (-r * s * sin, -r * s * cos);
         let rho = (e[0] * e[0] + e[1] * e[1]).sqrt();
-        let ee1 = if rho < self.direct_below {
+        let ee1 = if rho < self.direct_product_below {
             r * (e[1] * cos - e[0] * c * sin)
         } else {
             r * (y0 * cos - c * x0 * sin) + (r * s) * (r * s) * sin * cos
@@ -148,14 +152,14 @@ impl<'a> Relative<'a> {
     }
 
     /// The six numbers, for the quick kernel.
-    pub fn reduced(&self) -> Reduced<f64> {
-        Reduced::new(self.base_radius, self.radius, self.offset, self.tilt_cos, self.tilt_sin)
+    pub fn normalized(&self) -> NormalizedPair<f64> {
+        NormalizedPair::new(self.base_radius, self.radius, self.offset, self.tilt_cos, self.tilt_sin)
     }
 
-    /// [`Self::at`] an angle.
-    pub fn at_angle(&self, angle_rad: f64) -> Sample {
+    /// [`Self::sample`] an angle.
+    pub fn sample_at_angle(&self, angle_rad: f64) -> Sample {
         let (sin, cos) = angle_rad.sin_cos();
-        self.at(cos, sin)
+        self.sample(cos, sin)
     }
 
     /// The angle of `θ = 0` in the moving circle's own frame.
@@ -186,7 +190,7 @@ impl<'a> Relative<'a> {
 
     /// `g_θθ = |P′|² + (P − A)·P″`, the second derivative of half the squared distance from the foot `A`, held fixed.
     /// Accurate on the axis of the base too, where `h″` is not; at minima it is not negative.
-    pub fn at_fixed_foot(&self, cos: f64, sin: f64, at: &Sample) -> f64 {
+    pub fn second_derivative_at_fixed_foot(&self, cos: f64, sin: f64, at: &Sample) -> f64 {
         let (r, foot) = (self.radius, at.foot());
         let radial = at.radial * (foot[0] * self.tilt_cos * cos + foot[1] * sin);
         r * (r - radial - at.z * self.tilt_sin * cos)
@@ -194,8 +198,8 @@ impl<'a> Relative<'a> {
 
     /// The distance at this angle, in the caller's lengths, and the directions from the centres to the two points, that on
     /// the base first.
-    pub fn approach(&self, cos: f64, sin: f64) -> (f64, [Vec3; 2]) {
-        let sample = self.at(cos, sin);
+    pub fn distance_and_directions(&self, cos: f64, sin: f64) -> (f64, [Vec3; 2]) {
+        let sample = self.sample(cos, sin);
         let (foot, [x, y]) = (sample.foot(), self.axes);
         (self.scale * sample.distance(), [x * foot[0] + y * foot[1], self.steepest * cos + y * sin])
     }
@@ -205,7 +209,7 @@ impl<'a> Relative<'a> {
     /// With `g(α, θ) = ½ |A(α) − P(θ)|²` and α the angle of the foot: `g_α = 0` by construction, `g_θ = h′`,
     /// `g_αα = R ρ`, `g_αθ = −A′·P′ = −R (e × e′)/ρ`, `g_θθ = h″ + g_αθ²/g_αα = |P′|² + (P − A)·P″`.
     pub fn minimum(&self, cos: f64, sin: f64, swapped: bool) -> Minimum {
-        let sample = self.at(cos, sin);
+        let sample = self.sample(cos, sin);
         let Sample { rho, slope, .. } = sample;
         let [x, y] = self.axes;
         let foot = sample.foot();
@@ -217,12 +221,36 @@ impl<'a> Relative<'a> {
         let base_point = self.base.center + base_direction * self.base.radius;
         let moving_point = self.moving.center + moving_direction * self.moving.radius;
         let base = self.base_radius * rho * unit_sq;
-        let moving = self.at_fixed_foot(cos, sin, &sample) * unit_sq;
+        let moving = self.second_derivative_at_fixed_foot(cos, sin, &sample) * unit_sq;
         let (mixed, slope) = (mixed * unit_sq, slope * unit_sq);
         let (circle_b, direction) = if swapped { (self.base, base_direction) } else { (self.moving, moving_direction) };
         let (u, v) = circle_b.frame();
         let direction_b = [direction.dot(&u), direction.dot(&v)];
-        Minimum::of_base(distance, [base_point, moving_point], direction_b, slope, [base, mixed, moving], swapped)
+        Minimum::from_base(distance, [base_point, moving_point], direction_b, slope, [base, mixed, moving], swapped)
+    }
+
+    /// The minima at these angles of the moving circle (at least one, at most [`MAX_MINIMA`]), put in order.
+    /// `swapped` says that the moving circle is A.
+    pub fn minima_at_angles(&self, angles_rad: &[f64], continuum: bool, swapped: bool) -> Minima {
+        self.minima_at(angles_rad.iter().map(|&angle_rad| Direction::at(angle_rad)), continuum, swapped)
+    }
+
+    /// [`Self::minima_at_angles`] by cosines and sines.
+    pub fn minima_at(
+        &self,
+        directions: impl ExactSizeIterator<Item = Direction>,
+        continuum: bool,
+        swapped: bool,
+    ) -> Minima {
+        let kind = match self.kind() {
+            PairKind::Coaxial => PairKind::Coaxial,
+            _ if continuum => PairKind::Equidistant,
+            kind => kind,
+        };
+        let mut found: ArrayVec<_, _> =
+            directions.map(|Direction { cos, sin }| self.minimum(cos, sin, swapped)).collect();
+        found.sort_unstable_by(|p, q| p.distance.total_cmp(&q.distance));
+        Minima { kind, continuum, found }
     }
 }
 
@@ -235,11 +263,11 @@ mod tests {
         let normal = |x, y, z| nalgebra::UnitVector3::new_normalize(Vec3::new(x, y, z));
         let a = Circle::new(Vec3::new(0.3, -0.2, 0.1), normal(0.1, 0.4, 1.0), 1.0);
         let b = Circle::new(Vec3::new(0.9, 0.5, -0.4), normal(1.0, -0.3, 0.2), 0.8);
-        let pair = Relative::new(&a, &b);
-        let half_sq = |angle: f64| 0.5 * pair.at_angle(angle).distance().powi(2);
+        let pair = PairFrame::new(&a, &b);
+        let half_sq = |angle: f64| 0.5 * pair.sample_at_angle(angle).distance().powi(2);
         for i in 0..100 {
             let (angle, step) = (f64::from(i) * 0.0628, 1e-4);
-            let sample = pair.at_angle(angle);
+            let sample = pair.sample_at_angle(angle);
             let slope = (half_sq(angle + step) - half_sq(angle - step)) / (2.0 * step);
             let curvature = (half_sq(angle + step) - 2.0 * half_sq(angle) + half_sq(angle - step)) / (step * step);
             assert!((sample.slope - slope).abs() < 1e-7, "{angle}: {} {slope}", sample.slope);

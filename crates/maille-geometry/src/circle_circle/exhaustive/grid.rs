@@ -1,5 +1,6 @@
 //! Where the search for minima cuts the circle: angles and widths that do not depend on the pair, with their cosines.
 
+use crate::circle_circle::angle::{Direction, START_RAD};
 use std::f64::consts::TAU;
 use std::sync::LazyLock;
 
@@ -7,37 +8,6 @@ use std::sync::LazyLock;
 pub(crate) const INTERVALS: usize = 16;
 /// Halvings at most: width 2π · 2⁻²⁴.
 pub(crate) const MAX_LEVEL: usize = 20;
-/// The grid starts at an angle that no symmetric design singles out.
-pub(crate) const START_RAD: f64 = 0.123_456_789_101_112;
-
-/// A direction on the moving circle.
-#[derive(Clone, Copy, Default)]
-pub(crate) struct Direction {
-    pub cos: f64,
-    pub sin: f64,
-}
-
-impl Direction {
-    pub fn at(angle_rad: f64) -> Self {
-        let (sin, cos) = angle_rad.sin_cos();
-        Self { cos, sin }
-    }
-
-    /// Turned by twice the angle whose tangent is given.
-    pub fn ahead(self, tan: f64) -> Self {
-        let inverse = 1.0 / (1.0 + tan * tan);
-        let (cos, sin) = ((1.0 - tan * tan) * inverse, 2.0 * tan * inverse);
-        Self { cos: self.cos * cos - self.sin * sin, sin: self.sin * cos + self.cos * sin }
-    }
-
-    /// Turned by `±` the angle of another.
-    pub fn turned(self, by: Self) -> [Self; 2] {
-        let (cc, ss) = (self.cos * by.cos, self.sin * by.sin);
-        let (sc, cs) = (self.sin * by.cos, self.cos * by.sin);
-        [Self { cos: cc + ss, sin: sc - cs }, Self { cos: cc - ss, sin: sc + cs }]
-    }
-}
-
 /// Directions that do not depend on the pair: of the first intervals' ends and centres, and of the widths.
 pub(crate) struct Grid {
     pub ends: [Direction; INTERVALS + 1],

@@ -9,7 +9,7 @@
 //!    `h″ = (w·w′)′ − R ρ″ = (w·w′)′ − R ((|e′|² − (w·w′)²/R²)/ρ + e·e″/ρ)`, which is negative, a maximum, if
 //!    `(w·w′)² < R² (|e′|² − ρ K)` with `K = (max |(w·w′)′| + R max |e″|)/R`.
 
-use crate::relative::{Relative, Sample};
+use crate::circle_circle::pair_frame::{PairFrame, Sample};
 
 /// What is proven of an interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,7 +23,7 @@ pub(crate) enum Verdict {
 }
 
 /// Amplitudes on the whole circle; bounds on an interval are made from them and the sample at its centre.
-pub(crate) struct Bounds {
+pub(crate) struct IntervalBounds {
     /// Of z.
     rise: f64,
     /// Of `(e·e′)′`, `(e·e′)″` and `(e·e′)‴`.
@@ -32,8 +32,8 @@ pub(crate) struct Bounds {
     ww: f64,
 }
 
-impl Bounds {
-    pub fn new(pair: &Relative<'_>) -> Self {
+impl IntervalBounds {
+    pub fn new(pair: &PairFrame<'_>) -> Self {
         let [x0, y0, _] = pair.offset;
         let rise = pair.radius * pair.tilt_sin;
         let first = pair.radius * (pair.tilt_cos * x0).hypot(y0);
@@ -46,7 +46,7 @@ impl Bounds {
     }
 
     /// The tests of the module's head, for the interval of half width σ around the angle of a sample.
-    pub fn verdict(&self, pair: &Relative<'_>, at: &Sample, half_width: f64) -> Verdict {
+    pub fn verdict(&self, pair: &PairFrame<'_>, at: &Sample, half_width: f64) -> Verdict {
         let (r, base_radius) = (pair.radius, pair.base_radius);
         // |e′|² + z′² = r²: the speed of e at the centre, and its bounds.
         let speed = (r * r - at.z1 * at.z1).max(0.0).sqrt();
@@ -76,7 +76,14 @@ impl Bounds {
     /// factor is bounded, so that it stays small for nearly coaxial pairs; and from `h‴ = (w·w′)″ − R ρ‴`.
     ///
     /// `ρ′ = e·e′/ρ`, `ρ″ = ((e·e′)′ − ρ′²)/ρ`, `ρ‴ = ((e·e′)″ − 3 ρ′ρ″)/ρ`, and `|ρ′| ≤ |e′|`.
-    fn third_derivative(&self, pair: &Relative<'_>, at: &Sample, rho_min: f64, speed_max: f64, half_width: f64) -> f64 {
+    fn third_derivative(
+        &self,
+        pair: &PairFrame<'_>,
+        at: &Sample,
+        rho_min: f64,
+        speed_max: f64,
+        half_width: f64,
+    ) -> f64 {
         let inverse = 1.0 / rho_min;
         let ee2 = self.ee[1].min((at.ee[0] + 3.0 * at.z1 * at.z2).abs() + half_width * self.ee[2]);
         let ee1 = self.ee[0].min(at.ee[1].abs() + half_width * ee2);
@@ -109,10 +116,10 @@ mod tests {
             let normal = |v: Vec3| nalgebra::UnitVector3::new_normalize(v);
             let a = Circle::new(Vec3::zeros(), normal(vector(1.0)), 1.0);
             let b = Circle::new(vector(1.5), normal(vector(1.0)), rng.random_range(0.1..1.5));
-            let pair = Relative::new(&a, &b);
+            let pair = PairFrame::new(&a, &b);
             let (center, half_width) = (rng.random_range(-3.0..3.0), 0.4 * rng.random_range(0.01_f64..1.0).powi(2));
-            let verdict = Bounds::new(&pair).verdict(&pair, &pair.at_angle(center), half_width);
-            let inside = (0..=400).map(|i| pair.at_angle(center + half_width * (f64::from(i) / 200.0 - 1.0)));
+            let verdict = IntervalBounds::new(&pair).verdict(&pair, &pair.sample_at_angle(center), half_width);
+            let inside = (0..=400).map(|i| pair.sample_at_angle(center + half_width * (f64::from(i) / 200.0 - 1.0)));
             let inside: Vec<_> = inside.collect();
             let minimum = inside.windows(2).any(|pair| pair[0].slope < -1e-14 && pair[1].slope > 1e-14);
             match verdict {

@@ -7,7 +7,7 @@ use pulp::Simd;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// One number, or a register of numbers.
-pub(crate) trait Lane:
+pub(crate) trait SimdReal:
     Copy
     + Add<Output = Self>
     + Sub<Output = Self>
@@ -19,42 +19,42 @@ pub(crate) trait Lane:
     /// A truth value for each number.
     type Mask: Copy;
     /// A constant.
-    fn like(self, value: f64) -> Self;
+    fn splat(self, value: f64) -> Self;
     /// `self · factor + term`, rounded once or twice.
-    fn fused(self, factor: Self, term: Self) -> Self;
+    fn mul_add(self, factor: Self, term: Self) -> Self;
     /// `from − self · factor`, rounded once or twice.
-    fn taken(self, factor: Self, from: Self) -> Self;
+    fn neg_mul_add(self, factor: Self, from: Self) -> Self;
     fn sqrt(self) -> Self;
     fn abs(self) -> Self;
     fn max(self, other: Self) -> Self;
-    fn below(self, other: Self) -> Self::Mask;
-    fn pick(mask: Self::Mask, yes: Self, no: Self) -> Self;
-    fn both(p: Self::Mask, q: Self::Mask) -> Self::Mask;
-    fn either(p: Self::Mask, q: Self::Mask) -> Self::Mask;
+    fn lt(self, other: Self) -> Self::Mask;
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+    fn and(p: Self::Mask, q: Self::Mask) -> Self::Mask;
+    fn or(p: Self::Mask, q: Self::Mask) -> Self::Mask;
     fn any(mask: Self::Mask) -> bool;
 
     /// One more where it is true.
     #[inline(always)]
-    fn more(self, mask: Self::Mask) -> Self {
-        Self::pick(mask, self + self.like(1.0), self)
+    fn add_one_if(self, mask: Self::Mask) -> Self {
+        Self::select(mask, self + self.splat(1.0), self)
     }
 }
 
-impl Lane for f64 {
+impl SimdReal for f64 {
     type Mask = bool;
 
     #[inline(always)]
-    fn like(self, value: f64) -> f64 {
+    fn splat(self, value: f64) -> f64 {
         value
     }
 
     #[inline(always)]
-    fn fused(self, factor: f64, term: f64) -> f64 {
+    fn mul_add(self, factor: f64, term: f64) -> f64 {
         self * factor + term
     }
 
     #[inline(always)]
-    fn taken(self, factor: f64, from: f64) -> f64 {
+    fn neg_mul_add(self, factor: f64, from: f64) -> f64 {
         from - self * factor
     }
 
@@ -74,22 +74,22 @@ impl Lane for f64 {
     }
 
     #[inline(always)]
-    fn below(self, other: f64) -> bool {
+    fn lt(self, other: f64) -> bool {
         self < other
     }
 
     #[inline(always)]
-    fn pick(mask: bool, yes: f64, no: f64) -> f64 {
+    fn select(mask: bool, yes: f64, no: f64) -> f64 {
         if mask { yes } else { no }
     }
 
     #[inline(always)]
-    fn both(p: bool, q: bool) -> bool {
+    fn and(p: bool, q: bool) -> bool {
         p & q
     }
 
     #[inline(always)]
-    fn either(p: bool, q: bool) -> bool {
+    fn or(p: bool, q: bool) -> bool {
         p | q
     }
 
@@ -108,7 +108,7 @@ pub(crate) struct Register<S: Simd> {
 
 /// A truth value for each number of a register.
 #[derive(Clone, Copy)]
-pub(crate) struct Truth<S: Simd> {
+pub(crate) struct Mask<S: Simd> {
     simd: S,
     value: S::m64s,
 }
@@ -116,7 +116,7 @@ pub(crate) struct Truth<S: Simd> {
 impl<S: Simd> Register<S> {
     /// One number in all lanes.
     #[inline(always)]
-    pub fn all(simd: S, value: f64) -> Self {
+    pub fn broadcast(simd: S, value: f64) -> Self {
         Self { simd, value: simd.splat_f64s(value) }
     }
 
@@ -164,25 +164,25 @@ impl<S: Simd> Mul<f64> for Register<S> {
 
     #[inline(always)]
     fn mul(self, factor: f64) -> Self {
-        self * self.like(factor)
+        self * self.splat(factor)
     }
 }
 
-impl<S: Simd> Lane for Register<S> {
-    type Mask = Truth<S>;
+impl<S: Simd> SimdReal for Register<S> {
+    type Mask = Mask<S>;
 
     #[inline(always)]
-    fn like(self, value: f64) -> Self {
+    fn splat(self, value: f64) -> Self {
         Self { simd: self.simd, value: self.simd.splat_f64s(value) }
     }
 
     #[inline(always)]
-    fn fused(self, factor: Self, term: Self) -> Self {
+    fn mul_add(self, factor: Self, term: Self) -> Self {
         Self { simd: self.simd, value: self.simd.mul_add_e_f64s(self.value, factor.value, term.value) }
     }
 
     #[inline(always)]
-    fn taken(self, factor: Self, from: Self) -> Self {
+    fn neg_mul_add(self, factor: Self, from: Self) -> Self {
         Self { simd: self.simd, value: self.simd.negate_mul_add_e_f64s(self.value, factor.value, from.value) }
     }
 
@@ -202,27 +202,27 @@ impl<S: Simd> Lane for Register<S> {
     }
 
     #[inline(always)]
-    fn below(self, other: Self) -> Truth<S> {
-        Truth { simd: self.simd, value: self.simd.less_than_f64s(self.value, other.value) }
+    fn lt(self, other: Self) -> Mask<S> {
+        Mask { simd: self.simd, value: self.simd.less_than_f64s(self.value, other.value) }
     }
 
     #[inline(always)]
-    fn pick(mask: Truth<S>, yes: Self, no: Self) -> Self {
+    fn select(mask: Mask<S>, yes: Self, no: Self) -> Self {
         Self { simd: yes.simd, value: yes.simd.select_f64s(mask.value, yes.value, no.value) }
     }
 
     #[inline(always)]
-    fn both(p: Truth<S>, q: Truth<S>) -> Truth<S> {
-        Truth { simd: p.simd, value: p.simd.and_m64s(p.value, q.value) }
+    fn and(p: Mask<S>, q: Mask<S>) -> Mask<S> {
+        Mask { simd: p.simd, value: p.simd.and_m64s(p.value, q.value) }
     }
 
     #[inline(always)]
-    fn either(p: Truth<S>, q: Truth<S>) -> Truth<S> {
-        Truth { simd: p.simd, value: p.simd.or_m64s(p.value, q.value) }
+    fn or(p: Mask<S>, q: Mask<S>) -> Mask<S> {
+        Mask { simd: p.simd, value: p.simd.or_m64s(p.value, q.value) }
     }
 
     #[inline(always)]
-    fn any(mask: Truth<S>) -> bool {
+    fn any(mask: Mask<S>) -> bool {
         mask.simd.first_true_m64s(mask.value) < S::F64_LANES
     }
 }
