@@ -1,25 +1,83 @@
-//! Distances, contacts and linking of circles and tori in space.
+//! Exact distances, gaps and linking numbers of circles and tori in three-dimensional space.
 //!
-//! Pure kernels on `f64`: no files, no threads, no heap. A ring of chainmail is a [`Torus`], the set of points at
-//! distance `r` from a [`Circle`]; everything that the mechanics asks about two rings follows from their circles:
+//! A ring of round wire is a [`Torus`]: a core [`Circle`] of radius `R` and a wire of radius `r`. Whether two rings
+//! touch, overlap or are linked follows from their core circles alone, so this crate is about two circles. All functions
+//! work on `f64`, start no threads and allocate nothing on the heap.
 //!
-//! | question | answer |
-//! | --- | --- |
-//! | how far is a point from a circle? | [`point_circle_distance`] |
-//! | where is the distance of two circles locally smallest? | [`circle_distance_minima`]: all such places |
-//! | the same for many pairs | [`circle_distance_approaches`]: several at once, by the machine's widest registers |
-//! | the same by the polynomial of degree 8 | [`circle_distance_minima_polynomial`]: a cross-check, fragile in doubles |
-//! | how wide are the gaps between two rings? | [`torus_gap`], [`torus_gaps`] |
-//! | are two rings linked, and in which sense? | [`linking_number`], [`interlocks`] |
+//! # Example
 //!
-//! The order of the modules is `circle ← lane, grid ← reduced ← relative ← arcs ← count ← brackets ← halving, quick, bounds ←
-//! search ← placed ← single, minima ← solve, batch, polynomial, torus`, with `linking` and `floor` beside them: `relative`
-//! reduces a pair to six numbers and evaluates the distance along one circle, `count`, `brackets` and `quick` find the minima of
-//! ordinary pairs, `single` those of one pair in registers, `halving`, `placed`, `solve` and `batch` those of many, `bounds`
-//! proves what it can on an interval, `search` (on the angles of `grid`) and `polynomial` find the minima in two other ways.
+//! Two unit rings in perpendicular planes, linked like two links of a chain:
 //!
-//! Lengths carry the caller's unit, angles are radians. Radii must be positive and finite and normals of unit length;
-//! debug builds assert it in [`Circle::new`].
+//! ```
+//! use maille_geometry::{Circle, Torus, Vec3, circle_distance_minima, linking_number, torus_gap};
+//!
+//! let a = Circle::new(Vec3::zeros(), Vec3::z_axis(), 1.0);
+//! let b = Circle::new(Vec3::new(0.8, 0.0, 0.0), Vec3::y_axis(), 1.0);
+//!
+//! // Every local minimum of the distance, smallest first: the circles are 0.8 apart at two places.
+//! let minima = circle_distance_minima(&a, &b);
+//! assert_eq!(minima.as_slice().len(), 2);
+//! assert!((minima.closest().distance - 0.8).abs() < 1e-15);
+//!
+//! // With wire of radius 0.1, a gap of 0.6 is left between the surfaces.
+//! let wire = 0.1;
+//! let gap = torus_gap(&Torus { circle: a, minor_radius: wire }, &Torus { circle: b, minor_radius: wire });
+//! assert!((gap - 0.6).abs() < 1e-15);
+//!
+//! // They are linked once; the sign depends on the orientation of the normals.
+//! assert_eq!(linking_number(&a, &b), 1);
+//! ```
+//!
+//! # What is computed, and where
+//!
+//! | question | function | source |
+//! | --- | --- | --- |
+//! | How far is a point from a circle? | [`point_circle_distance`] | `circle.rs` |
+//! | Where does the distance of two circles have a local minimum? | [`circle_distance_minima`] | `circle_circle/one_pair` |
+//! | The same for many pairs at once | [`circle_distance_approaches`] | `circle_circle/many_pairs` |
+//! | A cheap lower bound of the distance | [`circle_distance_lower_bound`] | `circle_circle/lower_bound.rs` |
+//! | The minima from the roots of a polynomial, as a cross-check | [`circle_distance_minima_polynomial`] | `circle_circle/polynomial.rs` |
+//! | How wide is the gap between two tori? | [`torus_gap`], [`torus_gaps`] | `torus.rs` |
+//! | Are two circles linked, and with which sign? | [`linking_number`], [`interlocks`] | `linking.rs` |
+//!
+//! # Method
+//!
+//! The distance of two circles can have two local minima, and rings often touch at both. A local search from one start
+//! finds one of them, so the minima are *isolated* first, by a proof that none is missed, and only then computed:
+//!
+//! 1. The pair is reduced to six numbers in a common frame; the smaller circle is described by its angle θ
+//!    (`circle_circle/pair_frame.rs`, `normalized_pair.rs`).
+//! 2. *Fast method* (`circle_circle/fast`), for nearly all pairs: Descartes' rule of signs on Bernstein coefficients
+//!    counts the critical points on eight arcs of θ, arcs in doubt are subdivided, and Halley's iteration finds the minimum
+//!    on each isolating arc. It is written once, over a trait that stands for one `f64` or a SIMD register (`simd.rs`).
+//! 3. *Exhaustive method* (`circle_circle/exhaustive`), for degenerate and nearly degenerate pairs: bounds on the third
+//!    derivative decide each interval of θ, or it is bisected.
+//!
+//! A file imports only files above it in this list: `tolerance`, `circle`, `simd`, then within `circle_circle` the result
+//! types (`minimum`, `approach`), the frames (`angle`, `normalized_pair`, `pair_frame`, `simd_frame`), `fast` and
+//! `exhaustive`, `one_pair`, `many_pairs`; `lower_bound`, `polynomial`, `linking` and `torus` stand beside or above them.
+//!
+//! # Accuracy
+//!
+//! Distances are accurate to about `1e-15` of the pair's largest length (radii and distance of the centres), in degenerate
+//! positions too. Tested on 120,000 random pairs of six families against dense sampling: no minimum missed, no false one,
+//! and no distance more than `7e-16` above the sampled one (`tests/completeness.rs`). Random pairs have met at most two
+//! minima; at most three isolated ones are possible.
+//!
+//! # Degenerate positions
+//!
+//! - **Constant distance** (coaxial circles, and two other families, see [`PairKind`]): the minima form a continuum; one
+//!   representative is returned, and [`Minima::continuum`] is set.
+//! - **A point on the axis of the other circle** has no nearest point there: the distance has a kink, which is never a minimum
+//!   except on a continuum; [`PointOnCircle::on_axis`] reports it for a single point.
+//! - **Circles that intersect** have distance 0 at each intersection; their linking number is undefined.
+//! - **Invalid input** (non-finite numbers, non-positive radii, normals that are not unit vectors, lengths beyond `1e±90`):
+//!   the minima are NaN. [`Circle::new`] asserts valid radii in debug builds.
+//!
+//! # Units
+//!
+//! Lengths are in the caller's unit, angles in radians. [`ROUNDING`], relative to the largest length of a pair, is the only
+//! tolerance that decides between answers.
 
 mod circle;
 mod circle_circle;
@@ -38,3 +96,8 @@ pub use circle_circle::polynomial::circle_distance_minima_polynomial;
 pub use linking::{interlocks, linking_number};
 pub use tolerance::ROUNDING;
 pub use torus::{Torus, torus_gap, torus_gaps};
+
+/// Runs the example of the README as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

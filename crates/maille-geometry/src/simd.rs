@@ -1,12 +1,19 @@
-//! Numbers that the quick kernel is written in: one `f64`, or a register of them, one pair of circles in each.
+//! The numbers that the fast method is written in: one `f64`, or a SIMD register with one value per lane.
 //!
-//! Only operations that IEEE 754 rounds in one way: every lane of an instruction set computes the same bits, whatever is
-//! in the others. Products and sums are fused where the set can, so that two sets differ by rounding.
+//! Kernels are generic over [`SimdReal`] and compiled once for `f64` and once per instruction set, through `pulp`. All operations
+//! are correctly rounded (IEEE 754), so every lane gives the same bits whatever the other lanes hold. The one
+//! difference between instruction sets is [`SimdReal::mul_add`], fused where the hardware can: they differ by rounding.
+//!
+//! Kernels contain no closures: a closure is not always inlined into the function that enables the instruction set, and
+//! then runs without it.
 
 use pulp::Simd;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// One number, or a register of numbers.
+/// A real number, or a register of real numbers. Operations act lane by lane.
+///
+/// Call the methods through a type parameter only: on a plain `f64`, `x.mul_add(…)` means the always fused method of the
+/// standard library.
 pub(crate) trait SimdReal:
     Copy
     + Add<Output = Self>
@@ -16,24 +23,32 @@ pub(crate) trait SimdReal:
     + Neg<Output = Self>
     + Mul<f64, Output = Self>
 {
-    /// A truth value for each number.
+    /// One truth value per lane.
     type Mask: Copy;
-    /// A constant.
+    /// The same value in every lane; `self` serves only to name the instruction set.
     fn splat(self, value: f64) -> Self;
-    /// `self · factor + term`, rounded once or twice.
+    /// `self · factor + term`, rounded once (fused) or twice, depending on the instruction set.
     fn mul_add(self, factor: Self, term: Self) -> Self;
-    /// `from − self · factor`, rounded once or twice.
-    fn neg_mul_add(self, factor: Self, from: Self) -> Self;
+    /// `term − self · factor`, rounded like [`Self::mul_add`].
+    fn neg_mul_add(self, factor: Self, term: Self) -> Self;
+    /// Square root.
     fn sqrt(self) -> Self;
+    /// Absolute value.
     fn abs(self) -> Self;
+    /// The larger of the two.
     fn max(self, other: Self) -> Self;
+    /// `self < other`; false for NaN.
     fn lt(self, other: Self) -> Self::Mask;
+    /// `yes` where the mask is true, `no` elsewhere.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+    /// `p ∧ q`.
     fn and(p: Self::Mask, q: Self::Mask) -> Self::Mask;
+    /// `p ∨ q`.
     fn or(p: Self::Mask, q: Self::Mask) -> Self::Mask;
+    /// Is the mask true in any lane?
     fn any(mask: Self::Mask) -> bool;
 
-    /// One more where it is true.
+    /// `self + 1` where the mask is true, `self` elsewhere.
     #[inline(always)]
     fn add_one_if(self, mask: Self::Mask) -> Self {
         Self::select(mask, self + self.splat(1.0), self)
@@ -54,8 +69,8 @@ impl SimdReal for f64 {
     }
 
     #[inline(always)]
-    fn neg_mul_add(self, factor: f64, from: f64) -> f64 {
-        from - self * factor
+    fn neg_mul_add(self, factor: f64, term: f64) -> f64 {
+        term - self * factor
     }
 
     #[inline(always)]
@@ -99,14 +114,14 @@ impl SimdReal for f64 {
     }
 }
 
-/// A register of the instruction set `S`.
+/// A register of `f64` lanes of the instruction set `S`.
 #[derive(Clone, Copy)]
 pub(crate) struct Register<S: Simd> {
     pub simd: S,
     pub value: S::f64s,
 }
 
-/// A truth value for each number of a register.
+/// One truth value per lane of a register.
 #[derive(Clone, Copy)]
 pub(crate) struct Mask<S: Simd> {
     simd: S,
@@ -114,32 +129,33 @@ pub(crate) struct Mask<S: Simd> {
 }
 
 impl<S: Simd> Register<S> {
-    /// One number in all lanes.
+    /// The same value in every lane.
     #[inline(always)]
     pub fn broadcast(simd: S, value: f64) -> Self {
         Self { simd, value: simd.splat_f64s(value) }
     }
 
-    /// Some of the numbers of a row.
+    /// Loads `S::F64_LANES` values, beginning at index `from`.
     #[inline(always)]
-    pub fn load(simd: S, row: &[f64], from: usize) -> Self {
-        Self { simd, value: S::as_simd_f64s(&row[from..from + S::F64_LANES]).0[0] }
+    pub fn load(simd: S, values: &[f64], from: usize) -> Self {
+        Self { simd, value: S::as_simd_f64s(&values[from..from + S::F64_LANES]).0[0] }
     }
 
+    /// Stores the lanes, beginning at index `from`.
     #[inline(always)]
-    pub fn store(self, row: &mut [f64], from: usize) {
-        S::as_mut_simd_f64s(&mut row[from..from + S::F64_LANES]).0[0] = self.value;
+    pub fn store(self, values: &mut [f64], from: usize) {
+        S::as_mut_simd_f64s(&mut values[from..from + S::F64_LANES]).0[0] = self.value;
     }
 }
 
 macro_rules! operator {
-    ($trait:ident, $name:ident, $of:ident) => {
+    ($trait:ident, $name:ident, $method:ident) => {
         impl<S: Simd> $trait for Register<S> {
             type Output = Self;
 
             #[inline(always)]
             fn $name(self, other: Self) -> Self {
-                Self { simd: self.simd, value: self.simd.$of(self.value, other.value) }
+                Self { simd: self.simd, value: self.simd.$method(self.value, other.value) }
             }
         }
     };
@@ -182,8 +198,8 @@ impl<S: Simd> SimdReal for Register<S> {
     }
 
     #[inline(always)]
-    fn neg_mul_add(self, factor: Self, from: Self) -> Self {
-        Self { simd: self.simd, value: self.simd.negate_mul_add_e_f64s(self.value, factor.value, from.value) }
+    fn neg_mul_add(self, factor: Self, term: Self) -> Self {
+        Self { simd: self.simd, value: self.simd.negate_mul_add_e_f64s(self.value, factor.value, term.value) }
     }
 
     #[inline(always)]

@@ -1,12 +1,13 @@
-//! The one tolerance of the crate, and the range of lengths that it accepts.
+//! The tolerance that decides between answers, and the range of accepted lengths.
 
-/// What counts as rounding, relative to the largest length of a pair: `1e-14`, about fifty units in the last place.
+/// Relative size of what counts as rounding error: `1e-14` of the largest length of a pair, about fifty units in the last
+/// place.
 ///
-/// Two circles whose distance varies by less along the whole circle are a continuum of minima, planes tilted by less
-/// are parallel. It is the only tolerance of this crate that decides between answers.
+/// If the distance of two circles varies by less than this along a whole circle, the minima are a continuum; if two planes
+/// are tilted by less, they count as parallel. No other tolerance of this crate decides between answers.
 pub const ROUNDING: f64 = 1e-14;
 
-/// Radii from here and lengths up to [`MAX_LENGTH`] have squares and cubes that are ordinary numbers.
+/// Smallest valid radius. Squares and cubes of lengths from `MIN_LENGTH` to [`MAX_LENGTH`] are normal `f64` numbers.
 pub(crate) const MIN_LENGTH: f64 = 1e-90;
-/// See [`MIN_LENGTH`].
+/// Largest valid radius or coordinate difference, see [`MIN_LENGTH`].
 pub(crate) const MAX_LENGTH: f64 = 1e90;

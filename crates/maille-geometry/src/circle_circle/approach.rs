@@ -1,19 +1,20 @@
-//! Approaches.
+//! The compact result type of a batch: distance and direction on circle B only.
 
 use crate::circle::{Circle, Vec3};
 use crate::circle_circle::minimum::{MAX_MINIMA, PairKind};
 use crate::circle_circle::pair_frame::PairFrame;
 
-/// A minimum of the distance of two circles, as the batch gives it.
+/// A local minimum of the distance of two circles, as returned for batches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Approach {
-    /// The distance.
+    /// The distance (length).
     pub distance: f64,
-    /// Unit vector from the centre of B to its point.
+    /// Unit vector from the centre of B to the nearest point of B.
     pub direction_b: Vec3,
 }
 
-/// The minima of one pair, in ascending order of distance; none if the circles are farther apart than was asked for.
+/// The minima of one pair of a batch, in ascending order of distance; empty if the circles are certainly farther apart than
+/// the requested reach.
 #[derive(Clone, Copy, Debug)]
 pub struct Approaches {
     pub(crate) found: [Approach; MAX_MINIMA],
@@ -29,19 +30,21 @@ impl Approaches {
         continuum: false,
     };
 
-    /// The minima.
+    /// The minima, in ascending order of distance.
     pub fn as_slice(&self) -> &[Approach] {
         &self.found[..self.count]
     }
 
-    /// The distance is constant along a whole circle, as in [`Minima`](crate::Minima): one representative is given.
+    /// Whether the distance is constant along a whole circle, as in [`Minima`](crate::Minima::continuum). One representative
+    /// is then returned.
     pub fn continuum(&self) -> bool {
         self.continuum
     }
 
-    /// The special position of the pair that these are the minima of, as [`circle_distance_minima`] reports it.
+    /// The special position of the pair, as [`circle_distance_minima`](crate::circle_distance_minima) reports it. `a` and `b`
+    /// must be the circles that these minima belong to.
     pub fn kind(&self, a: &Circle, b: &Circle) -> PairKind {
-        // Nearly every pair is told at once by planes and centres that are apart.
+        // Tilted planes and distinct centres: nearly every pair is generic and needs no frame.
         let offset_sq = (b.center - a.center).norm_squared();
         let scale_sq = offset_sq.max(a.radius * a.radius).max(b.radius * b.radius);
         let tilt_sq = a.normal.cross(&b.normal).norm_squared();

@@ -1,62 +1,67 @@
-//! The local minima of the distance between two circles: what they are, and how they are handed over.
+//! The result types: one local minimum of the distance between two circles, and all minima of a pair.
+//!
+//! Symbols: angles `α` on circle A and `β` on circle B (radians), half the squared distance `g(α, β) = ½ |A(α) − B(β)|²`
+//! (length²).
 
 use crate::circle::Vec3;
 use arrayvec::ArrayVec;
 
-/// The most minima that are kept of a pair.
+/// The largest number of minima stored for a pair.
 ///
-/// Isolated ones are at most three (see the `count` module), and more than two have never been observed, over millions of
-/// pairs; the fourth place is for what rounding makes of nearly constant distances.
+/// There are at most three isolated minima (proof in `circle_circle/fast/root_count.rs`), and no more than two have been
+/// observed in millions of pairs. The fourth place is a reserve for nearly constant distances, where rounding can create
+/// more.
 pub const MAX_MINIMA: usize = 4;
 
-/// Special positions of a pair of circles, each met within [`ROUNDING`](crate::ROUNDING).
+/// Special positions of a pair of circles, each up to [`ROUNDING`](crate::ROUNDING).
 ///
-/// A report for people and tests: the answers do not branch on it.
+/// For diagnostics and tests: the computed minima do not depend on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PairKind {
     /// None of the following.
     Generic,
-    /// A common axis, so parallel planes: the distance is constant. Includes circles around one centre in one plane.
+    /// A common axis, hence parallel planes: the distance is constant. Includes circles in one plane with the same centre.
     Coaxial,
     /// One plane, different centres: nested, touching, crossing (two minima, both 0) or apart.
     Coplanar,
-    /// One centre, different planes: the two minima lie opposite each other.
+    /// The same centre, different planes: the two minima are diametrically opposite.
     Concentric,
-    /// A constant distance without a common axis. Either a meridian (one circle goes round a point of the other, in its
-    /// normal plane there, with a radius that is not larger), or a **Villarceau** pair: equal radii `R`, distance `ϱ`,
-    /// centres `ϱ` apart along a line in both planes, which are tilted by `asin(ϱ/R)`.
+    /// A constant distance without a common axis. Either a **meridian** pair: one circle is centred on a point of the other,
+    /// lies in the normal plane there, and is not larger. Or a **Villarceau** pair: equal radii `R`, distance `ϱ`, centres
+    /// `ϱ` apart along the line common to both planes, which are tilted by `asin(ϱ/R)`.
     Equidistant,
 }
 
 /// A local minimum of the distance between circle A and circle B.
 ///
-/// With `g(α, β) = ½ |A(α) − B(β)|²` in the two angles; `gradient` and `hessian` are those of `g`.
+/// `gradient` and `hessian` are those of half the squared distance, `g(α, β) = ½ |A(α) − B(β)|²`, in the angles `α` on A and
+/// `β` on B.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Minimum {
-    /// The distance, right to rounding: about `1e-15` of the largest of the radii and the distance of the centres.
+    /// The distance (length), accurate to about `1e-15` of the largest of the radii and the distance of the centres.
     pub distance: f64,
     /// The point on circle A.
     pub point_a: Vec3,
     /// The point on circle B.
     pub point_b: Vec3,
-    /// Cosine and sine of the angle of `point_b` in the [frame](Circle::frame) of B.
+    /// Cosine and sine of the angle of `point_b` in the [frame](crate::Circle::frame) of B.
     pub direction_b: [f64; 2],
-    /// `(g_α, g_β)`, length². Zero but for the rounding of the angle: the residual of the search.
+    /// `(g_α, g_β)`, length². Zero up to the rounding of the angle: the residual of the search.
     pub gradient: [f64; 2],
-    /// `((g_αα, g_αβ), (g_αβ, g_ββ))`, length². Positive semidefinite; singular where minima merge, for continua, and
-    /// where a point of one circle lies on the axis of the other.
+    /// `((g_αα, g_αβ), (g_αβ, g_ββ))`, length². Positive semidefinite; singular where minima merge, on continua, and where a
+    /// point of one circle lies on the axis of the other.
     pub hessian: [[f64; 2]; 2],
 }
 
 impl Minimum {
-    /// The angle of `point_b` in the [frame](Circle::frame) of B, in `(−π, π]`.
+    /// The angle of `point_b` in the [frame](crate::Circle::frame) of B, in `(−π, π]`.
     pub fn angle_b_rad(&self) -> f64 {
         let [cos, sin] = self.direction_b;
         sin.atan2(cos)
     }
 
-    /// From the points on the base and on the moving circle, `g_αα, g_αθ, g_θθ` with α the angle on the base, and `g_θ`. The base is
-    /// circle A, or B if `swapped`.
+    /// From the points on the base and the moving circle, `slope = g_θ` and `g_αα, g_αθ, g_θθ`, where here `α` is the angle on
+    /// the base and `θ` that on the moving circle. The base is circle A, or B if `swapped`.
     #[inline(always)]
     pub(crate) fn from_base(
         distance: f64,
@@ -75,13 +80,13 @@ impl Minimum {
     }
 }
 
-/// All local minima of the distance between two circles, ascending; at least one, at most [`MAX_MINIMA`].
+/// All local minima of the distance between two circles, in ascending order: at least one, at most [`MAX_MINIMA`].
 #[derive(Clone, Debug)]
 pub struct Minima {
     /// The special position of the pair, if any.
     pub kind: PairKind,
-    /// The distance is constant along a whole circle, to [`ROUNDING`](crate::ROUNDING): the minima are not isolated, and one
-    /// representative is given.
+    /// Whether the distance is constant along a whole circle, up to [`ROUNDING`](crate::ROUNDING). The minima are then not
+    /// isolated, and one representative is returned.
     pub continuum: bool,
     pub(crate) found: ArrayVec<Minimum, MAX_MINIMA>,
 }
@@ -92,12 +97,12 @@ impl Minima {
         &self.found
     }
 
-    /// The minimum of smallest distance, which is the distance of the circles.
+    /// The minimum with the smallest distance, which is the distance of the circles.
     pub fn closest(&self) -> &Minimum {
         &self.found[0]
     }
 
-    /// The distances alone.
+    /// The distances, in ascending order.
     pub(crate) fn into_distances(self) -> impl ExactSizeIterator<Item = f64> {
         self.found.into_iter().map(|minimum| minimum.distance)
     }

@@ -1,4 +1,15 @@
-//! The minima of the distance between two circles.
+//! The local minima of the distance between two circles.
+//!
+//! | module | what it holds |
+//! | --- | --- |
+//! | `minimum`, `approach` | result types: one pair, many pairs |
+//! | `angle` | angles as cosine and sine |
+//! | `pair_frame`, `normalized_pair`, `simd_frame` | the common frame of a pair, its six numbers, and both on SIMD registers |
+//! | `fast` | isolation by root counting, then Halley's iteration: ordinary pairs |
+//! | `exhaustive` | bisection with derivative bounds: degenerate and nearly degenerate pairs |
+//! | `one_pair`, `many_pairs` | the public functions, which choose between the two |
+//! | `lower_bound` | a cheap lower bound of the distance |
+//! | `polynomial` | an independent method, for cross-checks |
 
 pub(crate) mod angle;
 pub(crate) mod approach;

@@ -1,16 +1,16 @@
-//! Complete enumeration of the minima of `h(θ) = ½ d²` along the moving circle.
+//! The exhaustive method: all minima of `h(θ) = ½ d²` along the moving circle by bisection, for any pair.
 //!
-//! The circle is cut into intervals, and each is put to the tests of [`IntervalBounds::verdict`]: it holds no minimum, or it is
-//! convex and holds one if h′ goes from − to + between its ends, or it is halved. Every end has one sign of h′,
-//! computed from the same numbers by both neighbours, so that each change of sign counts once. Halving ends at width
-//! `2π · 2⁻²⁴`, where the signs alone decide.
+//! The circle is divided into intervals. For each, the tests of `interval_bounds.rs` prove that it holds no minimum, or that
+//! `h` is convex, so that it holds one if `h′` goes from − to + between its ends; otherwise it is bisected. The sign of `h′` at an
+//! end is computed from the same numbers for both neighbours, so that each change of sign counts once. Bisection ends at
+//! intervals of width `2π · 2⁻²⁴`, where the signs alone decide.
 //!
-//! **Nearly constant distances.** For pairs close to an equidistant one (not a coaxial one) the bounds are far larger
-//! than h′, and halving would go on everywhere. After [`MAX_SAMPLES`] it starts anew, coarsely: intervals of `2π/256`
-//! are decided by the signs of h′ at their ends and centre, except near the axis of the base, where `h` can vary
-//! within any small angle and halving goes on. There `h` is a constant plus a small smooth function, so the signs show
-//! what there is. Intervals that are level to rounding are no minima but a plateau; it is the answer, a continuum, unless
-//! a minimum below it was found beside it.
+//! **Nearly constant distances.** Near an equidistant pair (but not a coaxial one) the bounds are much larger than `h′`, and
+//! bisection would go on everywhere. After [`MAX_SAMPLES`] samples the search restarts in a coarse mode: intervals of width
+//! `2π/256` are decided by the signs of `h′` at their ends and centre. There `h` is a constant plus a small smooth function, so the
+//! signs show all minima. The exception is the neighbourhood of the axis of the base circle, where `h` can vary within an
+//! arbitrarily small angle and bisection continues. Intervals on which `h` is constant up to rounding form a plateau. It is the
+//! answer, a continuum, unless a lower minimum exists elsewhere.
 
 mod grid;
 mod interval_bounds;
@@ -23,26 +23,31 @@ use crate::circle_circle::pair_frame::{PairFrame, Sample};
 use crate::tolerance::ROUNDING;
 use std::f64::consts::TAU;
 
-/// Samples after which halving is given up. Over 300,000 random, linked and nearly touching pairs half took 18 to 28,
-/// one in a thousand more than 110, none more than 194.
+/// Number of samples after which the search becomes coarse. Of 300,000 random, linked and nearly touching pairs, half took 18
+/// to 28 samples, one in a thousand more than 110, and none more than 194.
 const MAX_SAMPLES: usize = 400;
-/// Halvings after which the signs decide in the coarse search: width 2π/256.
+/// Bisections after which the signs decide in the coarse mode: width `2π/256`.
 const COARSE_LEVEL: usize = 4;
-/// Away from the axis, there: ρ over its change in half an interval.
+/// Coarse mode: an interval is far from the axis if ρ is more than this many times its change over half the interval.
 const FAR_FROM_AXIS: f64 = 16.0;
-/// Minima nearer to each other than this are one: at `2π · 2⁻¹⁸` two differ by the fourth power, rounding.
+/// Minima closer than this are merged: `2π · 2⁻¹⁸ = 2.4e-5`. Their distances differ by its fourth power, which is rounding.
 const MERGE_RAD: f64 = TAU / (1 << 18) as f64;
 
-/// An interval still to be decided.
+/// An interval of θ that is still undecided.
 #[derive(Clone, Copy, Default)]
 struct Interval {
+    /// Centre, in radians.
     center_rad: f64,
+    /// The same as cosine and sine.
     center: Direction,
+    /// Both ends.
     ends: [Direction; 2],
+    /// Number of bisections so far.
     level: usize,
 }
 
 impl Interval {
+    /// Right and left half.
     fn halves(&self, grid: &Grid) -> [Self; 2] {
         let quarter = half_width(self.level) / 2.0;
         let [left, right] = self.center.rotated_both_ways(grid.quarters[self.level]);
@@ -54,26 +59,29 @@ impl Interval {
     }
 }
 
-/// The angles of the minima, unordered.
+/// The angles of the minima on the moving circle, unordered.
 #[derive(Default)]
 pub(crate) struct MinimumAngles {
     angles_rad: [f64; MAX_MINIMA],
     count: usize,
+    /// Whether the distance is constant; then there is one angle.
     pub continuum: bool,
 }
 
 impl MinimumAngles {
+    /// The angles, in radians.
     pub fn as_slice(&self) -> &[f64] {
         &self.angles_rad[..self.count]
     }
 
-    /// A continuum, by its representative.
+    /// A continuum, given by a representative.
     fn continuum(angle_rad: f64) -> Self {
         Self { angles_rad: [angle_rad, 0.0, 0.0, 0.0], count: 1, continuum: true }
     }
 
-    /// Adds a minimum unless it is there already, in which case the smaller of the two stays. More minima than can
-    /// exist are rounding around a constant.
+    /// Adds a minimum. If it is within [`MERGE_RAD`] of a known one, the one of smaller distance is kept.
+    ///
+    /// If there are too many, `h` is constant up to rounding, and the lowest one is kept as a continuum.
     pub fn add(&mut self, pair: &PairFrame<'_>, angle_rad: f64) {
         let distance = |angle_rad: f64| pair.sample_at_angle(angle_rad).distance();
         for known in &mut self.angles_rad[..self.count] {
@@ -96,12 +104,13 @@ impl MinimumAngles {
     }
 }
 
-/// All minima of `h`; one representative if `h` is constant.
+/// The angles of all minima of `h`; one representative if `h` is constant.
 pub(crate) fn minima(pair: &PairFrame<'_>) -> MinimumAngles {
     let constancy = constancy(pair);
     if let Constancy::Everywhere(angle_rad) = constancy {
         return MinimumAngles::continuum(angle_rad);
     }
+    // Bisection with bounds; if it is too long or finds nothing, once more in the coarse mode.
     let mut search = Search { pair, bounds: IntervalBounds::new(pair), samples: 0, coarse: false, plateau: None };
     let mut angles = MinimumAngles::default();
     if constancy == Constancy::No && search.run(&mut angles) {
@@ -110,13 +119,14 @@ pub(crate) fn minima(pair: &PairFrame<'_>) -> MinimumAngles {
     search.coarse = true;
     angles = MinimumAngles::default();
     search.run(&mut angles);
+    // A plateau is the answer unless a minimum is lower.
     let distance = |angle_rad: f64| pair.sample_at_angle(angle_rad).distance();
     let by_distance = |p: &f64, q: &f64| distance(*p).total_cmp(&distance(*q));
     let lowest = angles.as_slice().iter().map(|&angle_rad| distance(angle_rad)).fold(f64::INFINITY, f64::min);
     match search.plateau {
         Some((plateau, angle_rad)) if plateau <= lowest + ROUNDING => MinimumAngles::continuum(angle_rad),
         _ if angles.count > 0 => angles,
-        // Rounding hides every minimum: give the lowest of many samples rather than none.
+        // Rounding hides every minimum: the lowest of many samples is better than none.
         _ => {
             let samples = (0..1024).map(|i| START_RAD + f64::from(i) * TAU / 1024.0);
             angles.add(pair, samples.min_by(by_distance).unwrap_or(START_RAD));
@@ -125,19 +135,21 @@ pub(crate) fn minima(pair: &PairFrame<'_>) -> MinimumAngles {
     }
 }
 
+/// Is `h` constant up to rounding?
 #[derive(PartialEq)]
 enum Constancy {
+    /// No.
     No,
-    /// At all samples, but the circle passes near the axis of the base, where anything can be between them.
+    /// At all samples; but the circle passes near the axis of the base, where `h` can vary between them.
     AwayFromAxis,
-    /// With the angle of the smallest sample.
+    /// Yes. Holds the angle of the lowest sample.
     Everywhere(f64),
 }
 
-/// Is `h` constant?
+/// Is `h` constant up to rounding?
 ///
-/// Sixteen samples suffice: ρ h′ divides a trigonometric polynomial of degree four, which has eight roots at most
-/// unless it is zero; so where ρ is no small divisor, h′ is small between the samples too.
+/// Sixteen samples suffice: `ρ h′` divides a trigonometric polynomial of degree four, which has at most eight roots unless it is
+/// zero. So, unless ρ is small, `h′` is small between the samples too.
 fn constancy(pair: &PairFrame<'_>) -> Constancy {
     let mut best = (f64::INFINITY, 0);
     let mut near_axis = false;
@@ -157,21 +169,23 @@ fn constancy(pair: &PairFrame<'_>) -> Constancy {
     Constancy::Everywhere(START_RAD + (best.1 as f64 + 0.5) * TAU / INTERVALS as f64)
 }
 
-/// One walk around the circle.
+/// One pass over the circle.
 struct Search<'a> {
     pair: &'a PairFrame<'a>,
     bounds: IntervalBounds,
+    /// Number of samples taken.
     samples: usize,
+    /// Whether signs decide intervals of width `2π/256`, see the module documentation.
     coarse: bool,
-    /// Smallest distance of the level intervals, and its angle.
+    /// Smallest distance on intervals where it is constant, and its angle.
     plateau: Option<(f64, f64)>,
 }
 
 impl Search<'_> {
-    /// Adds all minima; false if the samples were used up or nothing was found.
+    /// Adds all minima. False if [`MAX_SAMPLES`] is exceeded or nothing is found.
     fn run(&mut self, angles: &mut MinimumAngles) -> bool {
         let (grid, pair) = (&*GRID, self.pair);
-        // Depth first: at most one undecided right half a level, and the interval at hand.
+        // Depth first: the stack holds at most one undecided half per level, and the current interval.
         let mut stack = [Interval::default(); MAX_LEVEL + 2];
         for index in 0..INTERVALS {
             stack[0] = Interval {
@@ -206,6 +220,7 @@ impl Search<'_> {
         angles.count > 0
     }
 
+    /// Is an interval small enough for the signs to decide?
     fn is_smallest(&self, level: usize, sample: &Sample) -> bool {
         let half_width = half_width(level);
         let rate = sample.ee[0].abs() / sample.rho;
@@ -213,7 +228,7 @@ impl Search<'_> {
         level == MAX_LEVEL || self.coarse && level >= COARSE_LEVEL && away
     }
 
-    /// Adds the minima that the signs of h′ show at the ends and the centre of an interval.
+    /// Adds the minima shown by the signs of `h′` at the ends and the centre of an interval.
     fn add_by_signs(&mut self, interval: &Interval, sample: &Sample, angles: &mut MinimumAngles) {
         let [first, last] = interval.ends.map(|end| self.pair.sample(end.cos, end.sin));
         if self.coarse && sample.is_stationary() && first.is_stationary() && last.is_stationary() {
@@ -223,10 +238,10 @@ impl Search<'_> {
         }
         let half_width = half_width(interval.level);
         let (left, right) = (interval.center_rad - half_width, interval.center_rad + half_width);
-        // One bracket where there is one minimum: the halves share the centre's sign.
+        // Both halves use the same sign at the centre, so that one minimum gives one bracket.
         let mut add = |bracket| {
             let angle_rad = safeguarded_newton(self.pair, bracket, sample, interval.center_rad);
-            // A kink on the axis can look like a minimum, by rounding: not in the second derivatives.
+            // By rounding, a kink on the axis can look like a minimum; the second derivatives show that it is not.
             let Direction { cos, sin } = Direction::at(angle_rad);
             let root = self.pair.sample(cos, sin);
             if root.curvature >= -ROUNDING && self.pair.second_derivative_at_fixed_foot(cos, sin, &root) >= -ROUNDING {
@@ -242,7 +257,7 @@ impl Search<'_> {
     }
 }
 
-/// The root of `h′` in a bracket where it goes from − to +: Newton's method, kept inside by bisection.
+/// The root of `h′` in a bracket where it goes from − to +, by Newton's method safeguarded by bisection (radians).
 fn safeguarded_newton(pair: &PairFrame<'_>, mut bracket: [f64; 2], start: &Sample, start_rad: f64) -> f64 {
     let (mut angle_rad, mut slope, mut curvature) = (start_rad, start.slope, start.curvature);
     let mut last_step = 2.0 * (bracket[1] - bracket[0]);
@@ -250,7 +265,7 @@ fn safeguarded_newton(pair: &PairFrame<'_>, mut bracket: [f64; 2], start: &Sampl
         bracket[usize::from(slope >= 0.0)] = angle_rad;
         let newton = angle_rad - slope / curvature;
         let inside = newton >= bracket[0] && newton <= bracket[1];
-        // Steps that do not halve belong to bisection: quartic minima, and the noise around them.
+        // Newton steps must at least halve each time. At quartic minima and in rounding noise they do not: bisect.
         let next = if inside && (newton - angle_rad).abs() < 0.5 * last_step {
             newton
         } else {
@@ -258,7 +273,7 @@ fn safeguarded_newton(pair: &PairFrame<'_>, mut bracket: [f64; 2], start: &Sampl
         };
         last_step = (next - angle_rad).abs();
         angle_rad = next;
-        // After a quadratic step of this size the next one is below rounding, close to the axis too.
+        // Newton converges quadratically: after a step of this size the next is below rounding, close to the axis too.
         if last_step < 1e-11 && next == newton || last_step < 1e-16 {
             break;
         }

@@ -1,52 +1,58 @@
-//! ArcTables of the circle, and what of the count ([`crate::count`]) does not depend on the pair.
+//! Constants of the arcs into which the circle of θ is divided. They do not depend on the pair.
+//!
+//! On an arc of half width `2 atan T` around its centre, `t = tan((θ − centre)/2)` runs over `[−T, T]`. Multiplied by
+//! `(1 + t²)⁴`, a trigonometric polynomial of degree 4 becomes a polynomial of degree 8 in `t`, with nine Bernstein
+//! coefficients on `[−T, T]`. The tables hold those of the basis functions `cos kθ` and `sin kθ`.
 
 use crate::circle_circle::angle::{Direction, START_RAD};
 use std::f64::consts::TAU;
 use std::sync::LazyLock;
 
-/// ArcTables around the circle.
+/// Number of arcs of equal width.
 pub(crate) const ARCS: usize = 8;
-/// Times an arc can be halved, and one.
+/// Number of arc widths in the tables: a full arc, and arcs bisected one to four times.
 pub(crate) const LEVELS: usize = 5;
 
-/// An arc halved so many times.
+/// Constants of arcs of one width.
 pub(crate) struct ArcLevel {
-    /// tan of a quarter of its width.
+    /// `T`, the tangent of a quarter of the width.
     pub quarter_tan: f64,
-    /// Half of its width.
+    /// Half of the width.
     pub half_width: Direction,
-    /// The turn whose half has the tangent `quarter_tan / 2`.
+    /// The rotation by δ with `tan(δ/2) = T/2`, to the third sample of the initial guess.
     pub seed_turn: Direction,
 }
 
-/// What does not depend on the pair.
+/// All constants of the fast method.
 pub(crate) struct ArcTables {
-    /// Ends of the arcs, the first again at the end.
+    /// Ends of the arcs; the last equals the first.
     pub ends: [Direction; ARCS + 1],
     /// Centres of the arcs.
     pub centers: [Direction; ARCS],
-    /// Of the arcs, of their halves, and so on.
+    /// Widths: of the arcs, of their halves, and so on.
     pub levels: [ArcLevel; LEVELS],
-    /// cos and sin of k times the angle of the first centre, k = 1 … 4.
+    /// `k` times the angle of the first centre, `k = 1 … 4`.
     pub center_turns: [Direction; 4],
-    /// Bernstein coefficients of 1, divided out of those of the basis.
+    /// Bernstein coefficients of the constant 1, i.e. of `(1 + t²)⁴`. Those of the basis are divided by them.
     pub bernstein_weights: [f64; 9],
+    /// Basis on a full arc.
     pub basis: BernsteinBasis,
-    /// The arcs side by side, from the centre of the first.
+    /// The eight arcs, relative to the centre of the first.
     pub all_arcs: ArcFan,
-    /// The parts of an arc side by side, from its centre.
+    /// The eight parts of one arc, relative to its centre.
     pub sub_arcs: ArcFan,
 }
 
-/// Bernstein coefficients around the centre of an arc, divided by those of 1.
+/// Bernstein coefficients of `cos kθ` and `sin kθ` on an arc centred at `θ = 0`, divided by those of 1.
 pub(crate) struct BernsteinBasis {
-    /// Coefficients 0 … 4 of cos kθ, k = 1 … 4 (the others by symmetry).
+    /// Coefficients 0 … 4 of `cos kθ`, `k = 1 … 4`; the others follow by symmetry.
     pub cosines: [[f64; 4]; 5],
-    /// Coefficients 0 … 3 of sin kθ; number 4 is 0, the others by antisymmetry.
+    /// Coefficients 0 … 3 of `sin kθ`; number 4 is 0, the others follow by antisymmetry.
     pub sines: [[f64; 4]; 4],
 }
 
 impl BernsteinBasis {
+    /// For arcs with this tangent of a quarter of the width.
     fn new(quarter_tan: f64) -> Self {
         let bernstein_weights = bernstein_coefficients(&modes(0, quarter_tan)[0]);
         let part = |k: usize, sine: usize, i: usize| {
@@ -59,19 +65,20 @@ impl BernsteinBasis {
     }
 }
 
-/// As many arcs side by side, one in each lane, with the turns from an origin to them.
+/// Eight arcs side by side, to be loaded into lanes, given by rotations from an origin.
 pub(crate) struct ArcFan {
-    /// cos and sin of k times the turn to the centre, k = 1 … 4.
+    /// Cosine and sine of `k` times the rotation to each centre, `k = 1 … 4`.
     pub turns: [[[f64; ARCS]; 2]; 4],
-    /// The turns to the first end, and to the other.
+    /// Cosine and sine of the rotations to the first and to the second end.
     pub ends: [[[f64; ARCS]; 2]; 2],
-    /// What the arcs are halvings of.
+    /// How often a full arc must be bisected to give these arcs; index into [`ArcTables::levels`].
     pub level: usize,
+    /// Basis on one of the arcs.
     pub basis: BernsteinBasis,
 }
 
 impl ArcFan {
-    /// From the centre of arc `origin`, a whole number or not.
+    /// Arcs of a width, relative to the centre of arc number `origin` (which may lie between two arcs).
     fn new(width: f64, origin: f64, level: usize) -> Self {
         let turns = |k: f64, shift: f64| {
             let at = |i: usize| Direction::at(k * (i as f64 - origin + shift) * width);
@@ -86,6 +93,7 @@ impl ArcFan {
     }
 }
 
+/// The tables, computed at the first use.
 pub(crate) static ARC_TABLES: LazyLock<ArcTables> = LazyLock::new(|| {
     let width = TAU / ARCS as f64;
     let at = |i: f64| Direction::at(START_RAD + (i % ARCS as f64) * width);
@@ -111,14 +119,15 @@ pub(crate) static ARC_TABLES: LazyLock<ArcTables> = LazyLock::new(|| {
     }
 });
 
-/// Powers of t/T in `(1 + t²)⁴ cos kθ` and `(1 + t²)⁴ sin kθ`, θ = 2 atan t: real and imaginary part of
-/// `(1 + i t)^2k (1 + t²)^(4 − k)`.
+/// Coefficients of `(1 + t²)⁴ cos kθ` and `(1 + t²)⁴ sin kθ` in powers of `t/T`, `θ = 2 atan t`.
+///
+/// They are the real and the imaginary part of `(1 + i t)^2k (1 + t²)^(4 − k)`.
 fn modes(k: usize, quarter_tan: f64) -> [[f64; 9]; 2] {
     let mut value = [[0.0; 9], [0.0; 9]];
     value[0][0] = 1.0;
     for factor in 0..4 {
         let [re, im] = value;
-        // times (1 + t²), or (1 + i t)² = 1 − t² + 2 i t.
+        // Multiply by (1 + i t)² = 1 − t² + 2 i t, k times, then by (1 + t²).
         let sign = if factor < k { -1.0 } else { 1.0 };
         let double = if factor < k { 2.0 } else { 0.0 };
         for j in 0..9 {
@@ -130,10 +139,10 @@ fn modes(k: usize, quarter_tan: f64) -> [[f64; 9]; 2] {
     value.map(|powers| std::array::from_fn(|j| powers[j] * quarter_tan.powi(j as i32)))
 }
 
-/// Bernstein coefficients on [−1, 1] of a polynomial given by its powers.
+/// Bernstein coefficients on `[−1, 1]` of a polynomial given by its power coefficients.
 fn bernstein_coefficients(powers: &[f64; 9]) -> [f64; 9] {
     let choose = |n: usize, k: usize| (0..k).fold(1.0, |c, i| c * (n - i) as f64 / (i + 1) as f64);
-    // t = u − v and 1 = u + v for u + v = 1: t^j = (u − v)^j (u + v)^(8 − j).
+    // With t = u − v and u + v = 1: t^j = (u − v)^j (u + v)^(8 − j).
     std::array::from_fn(|i| {
         let of = |j: usize| -> f64 {
             let terms = (0..=j.min(i)).filter(|m| i - m <= 8 - j);

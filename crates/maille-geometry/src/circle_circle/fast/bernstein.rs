@@ -1,58 +1,52 @@
-//! How many critical points the distance has on an arc: the proof behind the quick kernel that none is missed.
+//! The trigonometric polynomial `H = p²ρ² − q²` of degree 4 and its Bernstein coefficients on an arc.
 //!
-//! With p = w·w′ and q = R e·e′ ([`crate::relative`]) the slope is h′ = p − q/ρ, so its sign is that of
-//!
-//! `G₋ = pρ − q`; and `H = G₋ G₊ = p²ρ² − q²`, `G₊ = pρ + q` (whose roots are critical points of the distance to the far
-//! side of the base), is a trigonometric polynomial of degree 4, the polynomial of Appendix A before it is squared once
-//! more. On an arc of half width 2 atan T around m, with t = tan((θ − m)/2), `H (1 + t²)⁴` is a polynomial of degree 8.
-//! By Descartes' rule of signs its Bernstein coefficients on `[−T, T]` change sign at least as often as it has roots in
-//! there, counted with multiplicity. On the other hand a change of sign of G₋ between the ends is a root, and so is one
-//! of G₊. Where the two numbers agree, every root is known: G₋ has one where it changes sign, else none. Since no arc
-//! can have fewer changes of its coefficients than of G₋ and G₊, it is enough to compare the sums over all arcs.
-//!
-//! A coefficient so small that rounding could change its sign counts as changing it on both sides, so that a doubt leads
-//! to more changes, and the numbers do not agree.
-//!
-//! G₊ is smooth where ρ > 0 and changes sign at least twice (the distance to the far side has a maximum and a
-//! minimum), H has at most eight roots: so G₋ has at most six, and the distance at most three minima.
+//! `p`, `q` and `ρ` are those of `normalized_pair.rs`; `root_count.rs` shows what the roots of `H` mean. On an arc, `H (1 + t²)⁴`
+//! is a polynomial of degree 8, `t = tan((θ − centre)/2)`; the number of sign changes in its nine Bernstein coefficients
+//! bounds its number of roots there (Descartes' rule of signs). Coefficients are divided by those of `(1 + t²)⁴`, which are
+//! positive, unless stated otherwise.
 
 use crate::circle_circle::fast::arc_tables::{ARCS, ArcTables, BernsteinBasis};
 use crate::circle_circle::normalized_pair::NormalizedPair;
 use crate::simd::SimdReal;
 use std::f64::consts::FRAC_1_SQRT_2;
 
-/// A coefficient is certain from this on, relative to the largest that H's terms could make.
+/// Relative to the largest possible value of H: smaller coefficients have no certain sign.
 const SIGN_TOLERANCE: f64 = 1e-14;
 
-/// A harmonic's cosine and sine part an eighth of a turn further.
+/// The cosine and sine parts of a harmonic about an origin 45° further in its phase.
 #[inline(always)]
 fn rotate_by_eighth<T: SimdReal>(cosine: T, sine: T) -> [T; 2] {
     [(cosine + sine) * FRAC_1_SQRT_2, (sine - cosine) * FRAC_1_SQRT_2]
 }
 
-/// A harmonic's cosine and sine part, turned by an angle.
+/// The cosine and sine parts of a harmonic about an origin further in its phase by the given angle.
 #[inline(always)]
 pub(crate) fn rotate_harmonic<T: SimdReal>([cosine, sine]: [T; 2], [cos, sin]: [T; 2]) -> [T; 2] {
     [cosine.mul_add(cos, sine * sin), cosine.neg_mul_add(sin, sine * cos)]
 }
 
-/// H around the centre of the first arc: `mean + Σ (cosine_k cos kθ + sine_k sin kθ)`, k = 1 … 4.
+/// The Fourier coefficients of H about the centre of the first arc: `H = mean + Σ (cosine_k cos kφ + sine_k sin kφ)`,
+/// `k = 1 … 4`, with φ measured from that centre.
 pub(crate) struct Harmonics<T> {
+    /// Mean value of H.
     pub mean: T,
+    /// Cosine parts.
     pub cosine: [T; 4],
+    /// Sine parts.
     pub sine: [T; 4],
-    /// A bound of what the terms of H could add up to.
+    /// An upper bound of the sum of the absolute values of the terms of H.
     pub size: T,
 }
 
 impl<T: SimdReal> Harmonics<T> {
+    /// Of a pair.
     #[inline(always)]
     pub fn new(pair: &NormalizedPair<T>, tables: &ArcTables) -> Self {
         let (r, s) = (pair.radius, pair.tilt_sin);
         let [pc, ps] = pair.p;
         let [qc, qs, q2] = pair.q;
         let [x0, y0] = [pair.x0, pair.y0];
-        // ρ² = a0 + a1·(cos, sin) + a2 cos 2θ
+        // ρ² = a0 + a1·(cos θ, sin θ) + a2 cos 2θ
         let rise_sq = r * r * s * s;
         let a2 = rise_sq * -0.5;
         let a0 = x0.mul_add(x0, y0.mul_add(y0, r.mul_add(r, a2)));
@@ -63,6 +57,7 @@ impl<T: SimdReal> Harmonics<T> {
         let b2 = [ps.neg_mul_add(ps, pc * pc) * 0.5, pc * ps];
         // q = qc cos θ + qs sin θ + q2 sin 2θ
         let (qc_sq, qs_sq, q2_sq) = (qc * qc, qs * qs, q2 * q2);
+        // Harmonics 0 to 4 of p²ρ² − q², about θ = 0.
         let half = [b2[0] * 0.5, b2[1] * 0.5];
         let mean = b0.mul_add(a0, half[0].mul_add(a2, (qc_sq + qs_sq + q2_sq) * -0.5));
         let modes = [
@@ -77,6 +72,7 @@ impl<T: SimdReal> Harmonics<T> {
             ],
             [half[0].mul_add(a2, q2_sq * 0.5), half[1] * a2],
         ];
+        // Move the origin to the centre of the first arc.
         let (mut cosine, mut sine) = ([mean; 4], [mean; 4]);
         for k in 0..4 {
             let ([c, s], by) = (modes[k], tables.center_turns[k]);
@@ -84,13 +80,14 @@ impl<T: SimdReal> Harmonics<T> {
             cosine[k] = c.mul_add(cos, s * sin);
             sine[k] = c.neg_mul_add(sin, s * cos);
         }
-        let slope = qc.abs() + qs.abs() + q2.abs();
-        let size = (b0 + b0).mul_add(a0 + a1[0].abs() + a1[1].abs() - a2, slope * slope);
+        // Upper bound of |p²ρ²| + |q²|.
+        let q_max = qc.abs() + qs.abs() + q2.abs();
+        let size = (b0 + b0).mul_add(a0 + a1[0].abs() + a1[1].abs() - a2, q_max * q_max);
         Self { mean, cosine, sine, size }
     }
 
-    /// Cosine and sine parts of the four harmonics around the centre of an arc `M < ARCS / 2`: from an arc to the next they
-    /// turn by 45°, 90°, 135° and 180°.
+    /// Cosine and sine parts of the four harmonics about the centre of arc `M < ARCS / 2`. From one arc to the next their
+    /// phases advance by 45°, 90°, 135° and 180°.
     #[inline(always)]
     fn rotated_by_eighths<const M: usize>(&self) -> [[T; 2]; 4] {
         let ([c1, c2, c3, c4], [s1, s2, s3, s4]) = (self.cosine, self.sine);
@@ -108,8 +105,8 @@ impl<T: SimdReal> Harmonics<T> {
         }
     }
 
-    /// The coefficients of an arc `M < ARCS / 2` and of the opposite one, divided by [`ArcTables::bernstein_weights`]. The two differ in
-    /// the sign of the odd harmonics. The first and the last are the values of H at the ends, given by arc.
+    /// The Bernstein coefficients on arc `M < ARCS / 2` and on the opposite one. The two differ in the sign of the odd
+    /// harmonics. The first and the last coefficient are the values of H at the ends of the arc, taken from `ends`.
     #[inline(always)]
     pub fn on_opposite_arcs<const M: usize>(&self, ends: &[T; ARCS], tables: &ArcTables) -> [[T; 9]; 2] {
         let [first, second, third, fourth] = self.rotated_by_eighths::<M>();
@@ -135,7 +132,7 @@ impl<T: SimdReal> Harmonics<T> {
         out
     }
 
-    /// Cosine and sine parts of the four harmonics around the centre of the arc that is turned by an angle from the first.
+    /// Cosine and sine parts of the four harmonics about an origin rotated from the first centre by an angle.
     #[inline(always)]
     pub fn rotated_by(&self, turn: [T; 2]) -> [[T; 2]; 4] {
         let [cos, sin] = turn;
@@ -148,33 +145,33 @@ impl<T: SimdReal> Harmonics<T> {
         modes
     }
 
-    /// The coefficients of that arc, divided by [`ArcTables::bernstein_weights`], with the values of H at its ends.
+    /// The Bernstein coefficients on the arc whose centre is rotated from the first by an angle, given H at its ends.
     #[inline(always)]
     pub fn on_arc(&self, turn: [T; 2], ends: [T; 2], tables: &ArcTables) -> [T; 9] {
         bernstein_on_arc(self.mean, &self.rotated_by(turn), ends, &tables.basis)
     }
 
-    /// A coefficient is certain if it is larger than this.
+    /// Coefficients of smaller absolute value have no certain sign.
     #[inline(always)]
     pub fn coefficient_threshold(&self) -> T {
         self.size * SIGN_TOLERANCE
     }
 
-    /// The products of neighbouring coefficients below which they count as a change of sign.
+    /// If the product of two neighbouring coefficients is smaller, they count as a sign change.
     #[inline(always)]
     pub fn product_threshold(&self) -> T {
         self.size * self.size * SIGN_TOLERANCE
     }
 }
 
-/// Constants. No closure: one would run without the instruction set.
+/// Four constants in every lane. Not a closure, see `simd.rs`.
 #[inline(always)]
 fn splat4<T: SimdReal>(model: T, values: &[f64; 4]) -> [T; 4] {
     [model.splat(values[0]), model.splat(values[1]), model.splat(values[2]), model.splat(values[3])]
 }
 
-/// The coefficients of an arc, divided by those of 1: from H's harmonics around its centre (cosine and sine part)
-/// and the values of H at its ends.
+/// The Bernstein coefficients on an arc from the mean of H, its harmonics about the centre of the arc (cosine and sine
+/// parts) and its values at the ends.
 #[inline(always)]
 pub(crate) fn bernstein_on_arc<T: SimdReal>(
     mean: T,
@@ -202,7 +199,7 @@ pub(crate) fn bernstein_on_arc<T: SimdReal>(
     out
 }
 
-/// Changes of sign in the coefficients of an arc, doubtful ones counted as changes.
+/// The number of sign changes in the coefficients; pairs of coefficients with uncertain signs count as changes.
 #[inline(always)]
 pub(crate) fn sign_changes<T: SimdReal>(coefficients: &[T; 9], doubt: T) -> T {
     let mut sums = [doubt.splat(0.0); 4];
@@ -212,13 +209,15 @@ pub(crate) fn sign_changes<T: SimdReal>(coefficients: &[T; 9], doubt: T) -> T {
     (sums[0] + sums[1]) + (sums[2] + sums[3])
 }
 
-/// The coefficients of the two halves of an arc (de Casteljau), from sums that are halved at the end.
+/// The Bernstein coefficients on the two halves of an arc, by de Casteljau's algorithm. These are undivided coefficients.
+///
+/// Sums are formed first and scaled by powers of ½ at the end, which is exact and saves multiplications.
 #[inline(always)]
 pub(crate) fn split<T: SimdReal>(coefficients: &[T; 9]) -> [[T; 9]; 2] {
     let (mut row, mut left) = (*coefficients, *coefficients);
     let mut share = 1.0;
     for k in 1..9 {
-        // In place, of constant length: what lies behind 8 − k is the right half.
+        // In place, with constant bounds: entries beyond 8 − k already belong to the right half.
         for i in 0..9 - k {
             row[i] = row[i] + row[i + 1];
         }

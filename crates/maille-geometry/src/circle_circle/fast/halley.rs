@@ -1,26 +1,29 @@
-//! The minima of an ordinary pair, quickly: arcs with one minimum each ([`crate::brackets`]), then Halley's iteration in
-//! each of them.
+//! The minimum in a bracket: Halley's iteration, for several brackets or lanes at once, and Newton's method with bisection
+//! where it fails.
 //!
-//! Written once for a number and for a register of numbers ([`SimdReal`]). Positions that it cannot decide (degenerate ones, and
-//! what comes near them) it says so of, and [`crate::search`] takes them.
+//! The unknown is a root of `f = ρ h′`, see `NormalizedPair::halley_step`. Halley's iteration converges cubically; from the
+//! initial guess of the bracket two steps are usually enough. One step takes one square root and one division.
 
 use crate::circle_circle::angle::{Angle, Direction};
 use crate::circle_circle::fast::bracket::Bracket;
 use crate::circle_circle::normalized_pair::NormalizedPair;
 use crate::simd::SimdReal;
 
-/// Steps of Halley's iteration at most, and those that are taken unasked.
+/// Maximum number of Halley steps.
 const MAX_STEPS: usize = 8;
-const UNCHECKED_STEPS: usize = 2;
-/// After a step shorter than this (the tangent of half of it) the cubic rest is below rounding.
+/// Convergence is tested from this step on.
+const FIRST_TESTED_STEP: usize = 2;
+/// Tangent of half a step: after a shorter step the remaining error, which is cubic in it, is below rounding.
 const CONVERGED_STEP_TAN: f64 = 2e-6;
-/// Steps of the bracketed iteration at most, and the step after which the quadratic rest is below rounding.
+/// Maximum number of Newton and bisection steps.
 const MAX_NEWTON_STEPS: usize = 60;
+/// Tangent of half a step: after a shorter Newton step the remaining error, which is quadratic in it, is below rounding.
 const CONVERGED_NEWTON_STEP_TAN: f64 = 1e-9;
-/// A minimum must be this far from the axis of the base, in radii of the moving circle.
+/// Minima nearer to the axis of the base, in radii of the moving circle, are left to the exhaustive method.
 const MIN_AXIS_DISTANCE: f64 = 1e-2;
 
-/// The roots of h′ in brackets of these pairs, found together; and which are good (1, else 0).
+/// The roots of `h′` in the first `used` brackets, one pair each, and whether each is a converged minimum inside its bracket (1,
+/// else 0).
 #[inline(always)]
 pub(crate) fn halley_roots<T: SimdReal, const N: usize>(
     pairs: [&NormalizedPair<T>; N],
@@ -28,77 +31,85 @@ pub(crate) fn halley_roots<T: SimdReal, const N: usize>(
     used: usize,
 ) -> ([Angle<T>; N], [T; N]) {
     let (zero, one) = (pairs[0].radius.splat(0.0), pairs[0].radius.splat(1.0));
+    // Initial guesses, and steps that are always needed.
     let mut at = [brackets[0].middle; N];
     for k in 0..used {
         at[k] = brackets[k].initial_guess(pairs[k]);
     }
-    let mut good = [zero; N];
-    let mut open = [one; N];
-    for _ in 1..UNCHECKED_STEPS {
+    for _ in 1..FIRST_TESTED_STEP {
         for k in 0..used {
             at[k] = checked_step(pairs[k], at[k]).0;
         }
     }
-    for _ in UNCHECKED_STEPS..=MAX_STEPS {
+    // Steps until all have converged (`open` is 0).
+    let mut good = [zero; N];
+    let mut open = [one; N];
+    for _ in FIRST_TESTED_STEP..=MAX_STEPS {
         let mut left = zero;
         for k in 0..used {
-            let (turned, short, sound) = checked_step(pairs[k], at[k]);
-            // A root that is found stays: other lanes of the register do not move it.
-            let moves = zero.lt(open[k]);
-            at[k] = Angle::select(moves, turned, at[k]);
-            good[k] = T::select(moves, T::select(sound, one, zero), good[k]);
-            open[k] = T::select(short, zero, open[k]);
+            let (next, is_short, is_acceptable) = checked_step(pairs[k], at[k]);
+            // A converged root stays, so that a lane does not depend on the others.
+            let is_open = zero.lt(open[k]);
+            at[k] = Angle::select(is_open, next, at[k]);
+            good[k] = T::select(is_open, T::select(is_acceptable, one, zero), good[k]);
+            open[k] = T::select(is_short, zero, open[k]);
             left = left.max(open[k]);
         }
         if !T::any(zero.lt(left)) {
             break;
         }
     }
+    // Roots outside of their brackets do not count.
     for k in 0..used {
         good[k] = T::select(brackets[k].contains(at[k]), good[k] * (one - open[k]), zero);
     }
     (at, good)
 }
 
-/// An angle after a step, whether it was the last one, and whether the minimum is one that the kernel may answer for.
+/// The angle after a Halley step; whether the step was short enough to be the last; and whether the point is acceptable: far
+/// enough from the axis, and a minimum.
 #[inline(always)]
 fn checked_step<T: SimdReal>(pair: &NormalizedPair<T>, angle: Angle<T>) -> (Angle<T>, T::Mask, T::Mask) {
-    let ([numerator, denominator], [rho, rise]) = pair.halley_step(angle.cos, angle.sin);
-    let sound = T::and((pair.radius * MIN_AXIS_DISTANCE).lt(rho), rise.splat(0.0).lt(rise));
+    let ([numerator, denominator], [rho, rho_f1]) = pair.halley_step(angle.cos, angle.sin);
+    let is_acceptable = T::and((pair.radius * MIN_AXIS_DISTANCE).lt(rho), rho_f1.splat(0.0).lt(rho_f1));
     (
         angle.rotated_by_half_tan(numerator, denominator),
         numerator.abs().lt(denominator.abs() * CONVERGED_STEP_TAN),
-        sound,
+        is_acceptable,
     )
 }
 
-/// The root in a bracket by Newton's method, kept inside by bisection.
+/// The root of `h′` in a bracket by Newton's method, safeguarded by bisection. `None` if it does not converge to an acceptable
+/// minimum.
 pub(crate) fn safeguarded_newton(pair: &NormalizedPair<f64>, bracket: &Bracket<f64>) -> Option<Angle<f64>> {
     let Angle { cos, sin } = bracket.middle;
     let middle = Direction { cos, sin };
     let [mut first, mut last] =
         [-bracket.quarter_tan, bracket.quarter_tan].map(|quarter_tan| middle.rotated_by_half_tan(quarter_tan));
-    let mut shorter = f64::INFINITY;
+    // A Newton step must be shorter than half of the one before, or bisection follows.
+    let mut max_half_tan = f64::INFINITY;
     let mut at = first;
     for _ in 0..MAX_NEWTON_STEPS {
         let [h1, h2, rho] = pair.slope_and_curvature(at.cos, at.sin);
-        let half = -0.5 * h1 / h2;
-        let there = at.rotated_by_half_tan(half);
+        let half_tan = -0.5 * h1 / h2;
+        let next = at.rotated_by_half_tan(half_tan);
         let inside =
-            first.cos * there.sin - first.sin * there.cos > 0.0 && there.cos * last.sin - there.sin * last.cos > 0.0;
-        if inside && half.abs() < shorter {
-            if half.abs() < CONVERGED_NEWTON_STEP_TAN {
-                let sound = h2 > 0.0 && rho > MIN_AXIS_DISTANCE * pair.radius;
-                return sound.then_some(Angle { cos: there.cos, sin: there.sin });
+            first.cos * next.sin - first.sin * next.cos > 0.0 && next.cos * last.sin - next.sin * last.cos > 0.0;
+        if inside && half_tan.abs() < max_half_tan {
+            if half_tan.abs() < CONVERGED_NEWTON_STEP_TAN {
+                let is_acceptable = h2 > 0.0 && rho > MIN_AXIS_DISTANCE * pair.radius;
+                return is_acceptable.then_some(Angle { cos: next.cos, sin: next.sin });
             }
-            shorter = 0.5 * half.abs();
-            at = there;
+            max_half_tan = 0.5 * half_tan.abs();
+            at = next;
         } else {
+            // The middle of the bracket.
             let (x, y) = (first.cos + last.cos, first.sin + last.sin);
             let length = (x * x + y * y).sqrt();
             at = Direction { cos: x / length, sin: y / length };
-            shorter = f64::INFINITY;
+            max_half_tan = f64::INFINITY;
         }
+        // The bracket shrinks to the side of the root.
         let rising = pair.slope_and_curvature(at.cos, at.sin)[0] >= 0.0;
         *(if rising { &mut last } else { &mut first }) = at;
     }

@@ -1,4 +1,16 @@
-//! Fast.
+//! The fast method: isolate the minima by counting critical points, then refine them by Halley's iteration.
+//!
+//! | file | step |
+//! | --- | --- |
+//! | `arc_tables.rs` | constants of the eight arcs of θ: ends, centres, Bernstein bases |
+//! | `bernstein.rs` | coefficients of the trigonometric polynomial H on an arc |
+//! | `root_count.rs` | Descartes' rule of signs: which arcs hold how many critical points (with the proof) |
+//! | `subdivision.rs` | bisection of arcs where the count is not exact |
+//! | `bracket.rs` | an arc with exactly one minimum, and the initial guess on it |
+//! | `halley.rs` | the minimum on such an arc |
+//!
+//! Degenerate and nearly degenerate pairs are recognized and left to the exhaustive method. The functions that are generic
+//! over [`SimdReal`](crate::simd::SimdReal) also run on SIMD registers, in `one_pair/simd.rs` and `many_pairs/block.rs`.
 
 pub(crate) mod arc_tables;
 pub(crate) mod bernstein;
@@ -15,14 +27,16 @@ use crate::circle_circle::fast::subdivision::BracketList;
 use crate::circle_circle::minimum::MAX_MINIMA;
 use crate::circle_circle::normalized_pair::NormalizedPair;
 
-/// The angles of all minima, or `None` where this is not the way to find them.
+/// The angles of all minima of a pair and their number, or `None` where the method cannot decide.
 pub(crate) fn minima(pair: &NormalizedPair<f64>) -> Option<([Direction; MAX_MINIMA], usize)> {
+    // Isolate.
     if !is_steep(pair) {
         return None;
     }
     let brackets = BracketList::isolate(pair, &ARC_TABLES)?;
-    let (mut angles, good) = halley_roots([pair; MAX_MINIMA], &brackets.all, brackets.count);
-    for k in (0..brackets.count).filter(|k| good[*k] != 1.0) {
+    // Refine; where Halley's iteration fails, by Newton's method with bisection.
+    let (mut angles, converged) = halley_roots([pair; MAX_MINIMA], &brackets.all, brackets.count);
+    for k in (0..brackets.count).filter(|k| converged[*k] != 1.0) {
         angles[k] = safeguarded_newton(pair, &brackets.all[k])?;
     }
     let directions = angles.map(|Angle { cos, sin }| Direction { cos, sin });

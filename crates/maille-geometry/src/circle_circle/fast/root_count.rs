@@ -1,6 +1,25 @@
-//! ArcTables of the moving circle with one minimum each: what the count ([`crate::count`]) proves of eight arcs.
+//! How many critical points the distance has on an arc: the proof that the fast method misses no minimum.
 //!
-//! Where it proves nothing, [`crate::halving`] goes on.
+//! Symbols as in `normalized_pair.rs`: `h′ = p − q/ρ`, so the sign of `h′` is that of `G₋ = pρ − q`.
+//!
+//! **The polynomial.** Let `G₊ = pρ + q`; its roots are critical points of the distance to the far side of the base circle. The
+//! product `H = G₋ G₊ = p²ρ² − q²` is a trigonometric polynomial of degree 4 (that of Appendix A before it is squared once
+//! more), hence on an arc a polynomial of degree 8 in `t = tan((θ − centre)/2)`.
+//!
+//! **Upper bound.** By Descartes' rule of signs, the Bernstein coefficients of H on the arc change sign at least as often as H
+//! has roots there, counts with multiplicity.
+//!
+//! **Lower bound.** If `G₋` has different signs at the two ends of the arc, it has a root between them; likewise `G₊`.
+//!
+//! **Conclusion.** Where the two bounds agree, all roots are known: `G₋` has exactly one root if its sign changes between
+//! the ends, and none otherwise. On every arc the first bound is at least the second, so it is enough to compare the sums over
+//! all arcs.
+//!
+//! **Rounding.** If rounding could change the sign of a coefficient, both neighbouring pairs count as sign changes. The upper
+//! bound can then only become too large, and the arc counts as undecided.
+//!
+//! **At most three minima.** Where `ρ > 0`, `G₊` is smooth and changes sign at least twice, because the distance to the far side
+//! has a maximum and a minimum. H has at most eight roots, so `G₋` has at most six, and the distance at most three minima.
 
 use crate::circle_circle::angle::Angle;
 use crate::circle_circle::fast::arc_tables::{ARCS, ArcTables};
@@ -9,31 +28,39 @@ use crate::circle_circle::fast::bracket::{Bracket, MAX_SIMD_MINIMA};
 use crate::circle_circle::normalized_pair::NormalizedPair;
 use crate::simd::SimdReal;
 
-/// The slope and its parts must be larger than this, in units of the pair's scale.
+/// Pairs with smaller `|p| + |q|`, relative to the radius of the moving circle, are left to the exhaustive method.
 const MIN_SLOPE: f64 = 1e-10;
 
-/// H = G₋ G₊ at an angle, and numbers with the signs of G₋ and of G₊, without a root: where H > 0 both have the sign of p,
-/// where H < 0 they have those of −q and q. Near H = 0 rounding may choose; there the coefficients count as doubtful.
+/// `H = G₋ G₊` at an angle, and two numbers with the signs of `G₋` and `G₊`.
+///
+/// The signs need no square root: where `H > 0` both are that of `p`; where `H < 0` they are those of `−q` and `q`. Near
+/// `H = 0` rounding may decide, but there the Bernstein coefficients have no certain sign either.
 #[derive(Clone, Copy)]
 pub(crate) struct FactorSigns<T> {
+    /// H.
     pub product: T,
+    /// Has the sign of `G₋`.
     pub minus: T,
+    /// Has the sign of `G₊`.
     pub plus: T,
 }
 
 impl<T: SimdReal> FactorSigns<T> {
+    /// From `p`, `q` and `ρ²`.
     #[inline(always)]
-    pub fn from_terms([p, q, square]: [T; 3]) -> Self {
-        let product = (p * p).mul_add(square, -(q * q));
-        let outer = product.splat(0.0).lt(product);
-        FactorSigns { product, minus: T::select(outer, p, -q), plus: T::select(outer, p, q) }
+    pub fn from_terms([p, q, rho_sq]: [T; 3]) -> Self {
+        let product = (p * p).mul_add(rho_sq, -(q * q));
+        let is_positive = product.splat(0.0).lt(product);
+        FactorSigns { product, minus: T::select(is_positive, p, -q), plus: T::select(is_positive, p, q) }
     }
 
+    /// At the angle with this cosine and sine.
     #[inline(always)]
     pub fn at(pair: &NormalizedPair<T>, cos: T, sin: T) -> Self {
         Self::from_terms(pair.terms(cos, sin))
     }
 
+    /// `yes` where the mask is true, `no` elsewhere.
     #[inline(always)]
     pub fn select(mask: T::Mask, yes: Self, no: Self) -> Self {
         FactorSigns {
@@ -43,14 +70,14 @@ impl<T: SimdReal> FactorSigns<T> {
         }
     }
 
-    /// How many of G₋ and G₊ change sign on the way to another angle.
+    /// How many of `G₋` and `G₊` have another sign at the next angle: 0, 1 or 2.
     #[inline(always)]
     pub fn sign_changes(self, next: Self) -> T {
         let zero = self.product.splat(0.0);
         zero.add_one_if((self.minus * next.minus).lt(zero)).add_one_if((self.plus * next.plus).lt(zero))
     }
 
-    /// G₋ rises through 0 on the way.
+    /// Does `G₋`, and with it `h′`, go from negative to positive? Then there is a minimum in between.
     #[inline(always)]
     pub fn rises(self, next: Self) -> T::Mask {
         let zero = self.product.splat(0.0);
@@ -58,39 +85,40 @@ impl<T: SimdReal> FactorSigns<T> {
     }
 }
 
-/// The count of a pair, or of a register of pairs.
+/// Signs at the ends of the eight arcs, and the difference of the two bounds on each.
 pub(crate) struct RootCounts<T> {
-    /// How many more critical points than known an arc could have.
+    /// Upper minus lower bound of the number of roots of H, by arc: 0 if all roots are known.
     pub excess: [T; ARCS],
-    /// At the first ends of the arcs.
+    /// Signs at the first end of each arc.
     pub signs: [FactorSigns<T>; ARCS],
 }
 
 impl<T: SimdReal> RootCounts<T> {
+    /// Of a pair.
     #[inline(always)]
     pub fn new(pair: &NormalizedPair<T>, harmonics: &Harmonics<T>, tables: &ArcTables) -> Self {
         let signs = signs_at_ends(pair, tables);
-        let doubt = harmonics.product_threshold();
-        let mut counted = Self { excess: [doubt; ARCS], signs };
-        counted.count_arcs::<0>(harmonics, tables, doubt);
-        counted.count_arcs::<1>(harmonics, tables, doubt);
-        counted.count_arcs::<2>(harmonics, tables, doubt);
-        counted.count_arcs::<3>(harmonics, tables, doubt);
-        counted
+        let threshold = harmonics.product_threshold();
+        let mut counts = Self { excess: [threshold; ARCS], signs };
+        counts.count_arcs::<0>(harmonics, tables, threshold);
+        counts.count_arcs::<1>(harmonics, tables, threshold);
+        counts.count_arcs::<2>(harmonics, tables, threshold);
+        counts.count_arcs::<3>(harmonics, tables, threshold);
+        counts
     }
 
-    /// The excess of an arc and of the opposite one.
+    /// Sets the excess of arc `M` and of the opposite one.
     #[inline(always)]
-    fn count_arcs<const M: usize>(&mut self, harmonics: &Harmonics<T>, tables: &ArcTables, doubt: T) {
-        let both = harmonics.on_opposite_arcs::<M>(&self.end_products(), tables);
+    fn count_arcs<const M: usize>(&mut self, harmonics: &Harmonics<T>, tables: &ArcTables, threshold: T) {
+        let coefficients = harmonics.on_opposite_arcs::<M>(&self.end_products(), tables);
         for half in 0..2 {
             let k = M + half * (ARCS / 2);
-            let known = self.signs[k].sign_changes(self.signs[(k + 1) % ARCS]);
-            self.excess[k] = sign_changes(&both[half], doubt) - known;
+            let lower_bound = self.signs[k].sign_changes(self.signs[(k + 1) % ARCS]);
+            self.excess[k] = sign_changes(&coefficients[half], threshold) - lower_bound;
         }
     }
 
-    /// H at the first ends of the arcs.
+    /// H at the first end of each arc.
     #[inline(always)]
     pub fn end_products(&self) -> [T; ARCS] {
         let mut ends = [self.signs[0].product; ARCS];
@@ -100,7 +128,7 @@ impl<T: SimdReal> RootCounts<T> {
         ends
     }
 
-    /// 0 if the count is known.
+    /// Sum of the excesses: 0 if the roots on all arcs are known.
     #[inline(always)]
     pub fn total_excess(&self) -> T {
         let mut sums = [self.excess[0].abs(), self.excess[1].abs()];
@@ -110,7 +138,7 @@ impl<T: SimdReal> RootCounts<T> {
         sums[0] + sums[1]
     }
 
-    /// The first and the last arc on which G₋ rises through 0, and how many there are.
+    /// The first and the last arc on which `G₋` rises through 0, and the number of such arcs.
     #[inline(always)]
     pub fn rising_arcs(&self, tables: &ArcTables) -> ([Bracket<T>; MAX_SIMD_MINIMA], T) {
         let (zero, one) = (self.excess[0].splat(0.0), self.excess[0].splat(1.0));
@@ -127,7 +155,7 @@ impl<T: SimdReal> RootCounts<T> {
     }
 }
 
-/// At the first ends of the arcs; opposite ends share their odd parts.
+/// The signs at the first end of each arc. Opposite ends share their even and odd parts.
 #[inline(always)]
 fn signs_at_ends<T: SimdReal>(pair: &NormalizedPair<T>, tables: &ArcTables) -> [FactorSigns<T>; ARCS] {
     let across = pair.radius * pair.tilt_cos;
@@ -140,14 +168,15 @@ fn signs_at_ends<T: SimdReal>(pair: &NormalizedPair<T>, tables: &ArcTables) -> [
         let even = pair.q[2] * zero.splat(2.0 * tables.ends[k].sin * tables.ends[k].cos);
         let (x, y) = (across.mul_add(cos, pair.x0), pair.radius.mul_add(sin, pair.y0));
         let (x_opposite, y_opposite) = (across.neg_mul_add(cos, pair.x0), pair.radius.neg_mul_add(sin, pair.y0));
+        // The end of arc k, then the opposite one.
         out[k] = FactorSigns::from_terms([p, even + odd, x.mul_add(x, y * y)]);
-        let square = x_opposite.mul_add(x_opposite, y_opposite * y_opposite);
-        out[k + ARCS / 2] = FactorSigns::from_terms([-p, even - odd, square]);
+        let rho_sq_opposite = x_opposite.mul_add(x_opposite, y_opposite * y_opposite);
+        out[k + ARCS / 2] = FactorSigns::from_terms([-p, even - odd, rho_sq_opposite]);
     }
     out
 }
 
-/// The pair is steep enough for the count to mean something.
+/// Does the distance vary enough along the circle for the count to be meaningful?
 #[inline(always)]
 pub(crate) fn is_steep<T: SimdReal>(pair: &NormalizedPair<T>) -> T::Mask {
     pair.radius.splat(MIN_SLOPE).lt(pair.slope_bound())
@@ -164,7 +193,7 @@ mod tests {
     use rand::{RngExt, SeedableRng};
     use std::f64::consts::TAU;
 
-    /// The coefficients of each arc, and of halves of it, are those of H: summed up they give its signs.
+    /// The coefficients on each arc and on its halves are those of H: the Bernstein sums give its values.
     #[test]
     fn coefficients_are_those_of_the_product() {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(5);

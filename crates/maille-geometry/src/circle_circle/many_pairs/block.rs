@@ -1,6 +1,8 @@
-//! A block of pairs on the quick kernel: two registers at a time, and what leaves them for memory.
+//! Solves one block of pairs: the fast method with one pair per lane of a register.
 //!
-//! No closures in what runs on registers: what is not inlined into the function of an instruction set cannot use it.
+//! All registers of a block are worked off first and their results stored in [`LaneBuffers`]; then the results are written pair by
+//! pair. At most two minima per pair fit; pairs with more, and those that the registers cannot decide, go to
+//! `one_pair::approaches`.
 
 use crate::circle::{Circle, Vec3};
 use crate::circle_circle::approach::{Approach, Approaches};
@@ -16,30 +18,36 @@ use crate::circle_circle::one_pair;
 use crate::simd::{Register, SimdReal};
 use pulp::{Simd, WithSimd};
 
-/// What the registers of a block leave in memory.
+/// Values that pass from registers to code for single pairs, and back: one per pair of the block.
 pub(crate) struct LaneBuffers {
+    /// The normalized pairs, see [`NormalizedPair::parameters`].
     numbers: [Lanes; 7],
+    /// The brackets, see [`Bracket::parameters`].
     brackets: [[Lanes; 3]; MAX_SIMD_MINIMA],
+    /// Number of brackets.
     counts: Lanes,
+    /// 1 if all minima of the pair were found in registers, else 0.
     complete: Lanes,
+    /// Distances of the minima.
     distance: [Lanes; MAX_SIMD_MINIMA],
+    /// Directions of the minima on circle B.
     direction: [[Lanes; 3]; MAX_SIMD_MINIMA],
 }
 
 impl LaneBuffers {
     pub fn new() -> Self {
-        let row = [0.0; WIDTH];
+        let lanes = [0.0; WIDTH];
         Self {
-            numbers: [row; 7],
-            brackets: [[row; 3]; MAX_SIMD_MINIMA],
-            counts: row,
-            complete: row,
-            distance: [row; MAX_SIMD_MINIMA],
-            direction: [[row; 3]; MAX_SIMD_MINIMA],
+            numbers: [lanes; 7],
+            brackets: [[lanes; 3]; MAX_SIMD_MINIMA],
+            counts: lanes,
+            complete: lanes,
+            distance: [lanes; MAX_SIMD_MINIMA],
+            direction: [[lanes; 3]; MAX_SIMD_MINIMA],
         }
     }
 
-    /// The brackets of a register, and how many.
+    /// The brackets of the pairs in a register, and their number.
     #[inline(always)]
     fn isolate<S: Simd>(
         &mut self,
@@ -48,11 +56,12 @@ impl LaneBuffers {
         pair: &NormalizedPair<Register<S>>,
     ) -> ([Bracket<Register<S>>; MAX_SIMD_MINIMA], Register<S>) {
         let (tables, zero) = (&*ARC_TABLES, pair.radius.splat(0.0));
+        // Count roots; bisect doubtful arcs; leave what is still in doubt to code for single pairs.
         let harmonics = Harmonics::new(pair, tables);
-        let counted = RootCounts::new(pair, &harmonics, tables);
-        let mut rising = counted.rising_arcs(tables);
-        if <Register<S>>::any(zero.lt(counted.total_excess())) {
-            let left = subdivide_first_doubtful(pair, &harmonics, &counted, &mut rising, tables);
+        let counts = RootCounts::new(pair, &harmonics, tables);
+        let mut rising = counts.rising_arcs(tables);
+        if <Register<S>>::any(zero.lt(counts.total_excess())) {
+            let left = subdivide_first_doubtful(pair, &harmonics, &counts, &mut rising, tables);
             if <Register<S>>::any(zero.lt(left)) {
                 self.isolate_doubtful(simd, from, pair, left, &mut rising);
             }
@@ -60,7 +69,7 @@ impl LaneBuffers {
         rising
     }
 
-    /// The brackets of a register with pairs that are still in doubt: those leave it for a while.
+    /// Isolates the minima of the lanes that are still in doubt (`left > 0`), one pair at a time.
     #[inline(always)]
     fn isolate_doubtful<S: Simd>(
         &mut self,
@@ -70,56 +79,60 @@ impl LaneBuffers {
         left: Register<S>,
         (brackets, count): &mut ([Bracket<Register<S>>; MAX_SIMD_MINIMA], Register<S>),
     ) {
-        for (row, number) in self.numbers.iter_mut().zip(pair.to_array()) {
-            number.store(row, from);
+        // Store the pairs and their brackets.
+        for (lanes, number) in self.numbers.iter_mut().zip(pair.parameters()) {
+            number.store(lanes, from);
         }
         count.store(&mut self.counts, from);
-        for (rows, bracket) in self.brackets.iter_mut().zip(&*brackets) {
-            for (row, part) in rows.iter_mut().zip(bracket.to_array()) {
-                part.store(row, from);
+        for (lanes, bracket) in self.brackets.iter_mut().zip(&*brackets) {
+            for (lanes, part) in lanes.iter_mut().zip(bracket.parameters()) {
+                part.store(lanes, from);
             }
         }
-        let mut doubts = [0.0; WIDTH];
-        left.store(&mut doubts, 0);
+        // Replace the brackets of the doubtful lanes in memory.
+        let mut excess = [0.0; WIDTH];
+        left.store(&mut excess, 0);
         for lane in 0..S::F64_LANES {
-            if doubts[lane] != 0.0 {
+            if excess[lane] != 0.0 {
                 self.isolate_lane(from + lane);
             }
         }
-        for (bracket, rows) in brackets.iter_mut().zip(&self.brackets) {
-            let mut parts = bracket.to_array();
-            for (part, row) in parts.iter_mut().zip(rows) {
-                *part = Register::load(simd, row, from);
+        // Load them.
+        for (bracket, lanes) in brackets.iter_mut().zip(&self.brackets) {
+            let mut parts = bracket.parameters();
+            for (part, lanes) in parts.iter_mut().zip(lanes) {
+                *part = Register::load(simd, lanes, from);
             }
-            // The others keep theirs, to the bit.
-            *bracket = Bracket::select(left.splat(0.0).lt(left), Bracket::from_array(parts), *bracket);
+            // The other lanes keep theirs bit by bit, so that a lane does not depend on the others.
+            *bracket = Bracket::select(left.splat(0.0).lt(left), Bracket::from_parameters(parts), *bracket);
         }
         *count = Register::load(simd, &self.counts, from);
     }
 
-    /// The brackets of one pair, and how many: 0 if that is not to be decided here.
+    /// The brackets of the pair in one lane, and their number; 0 if it cannot be decided.
     fn isolate_lane(&mut self, lane: usize) {
-        let pair = NormalizedPair::from_array(lane_values(&self.numbers, lane));
+        let pair = NormalizedPair::from_parameters(lane_values(&self.numbers, lane));
         self.counts[lane] = 0.0;
         let Some(found) = BracketList::isolate(&pair, &ARC_TABLES) else { return };
         if (1..=MAX_SIMD_MINIMA).contains(&found.count) {
             self.counts[lane] = found.count as f64;
-            for (slot, rows) in self.brackets.iter_mut().enumerate() {
-                let parts = found.all[slot.min(found.count - 1)].to_array();
+            for (slot, lanes) in self.brackets.iter_mut().enumerate() {
+                let parts = found.all[slot.min(found.count - 1)].parameters();
                 for k in 0..parts.len() {
-                    rows[k][lane] = parts[k];
+                    lanes[k][lane] = parts[k];
                 }
             }
         }
     }
 
+    /// One of the minima of a lane.
     #[inline(always)]
     fn approach(&self, slot: usize, lane: usize) -> Approach {
         let [x, y, z] = lane_values(&self.direction[slot], lane);
         Approach { distance: self.distance[slot][lane], direction_b: Vec3::new(x, y, z) }
     }
 
-    /// Puts the minima of a pair in its place. The second of one alone is as far as can be.
+    /// Writes the minima of a lane in ascending order. If there is only one, the distance of the second is infinite.
     #[inline(always)]
     fn write(&self, lane: usize, place: &mut Approaches) {
         place.count = self.counts[lane] as usize;
@@ -130,16 +143,17 @@ impl LaneBuffers {
     }
 }
 
+/// The values of one lane.
 #[inline(always)]
-fn lane_values<const N: usize>(rows: &[Lanes; N], lane: usize) -> [f64; N] {
+fn lane_values<const N: usize>(lanes: &[Lanes; N], lane: usize) -> [f64; N] {
     let mut out = [0.0; N];
     for k in 0..N {
-        out[k] = rows[k][lane];
+        out[k] = lanes[k][lane];
     }
     out
 }
 
-/// The minima of the pairs of a block, put in their places.
+/// Finds the minima of the pairs of a block and writes them to `out`, to be run with an instruction set.
 pub(crate) struct BlockKernel<'a> {
     pub block: &'a PairBlock,
     pub buffers: &'a mut LaneBuffers,
@@ -154,19 +168,22 @@ impl WithSimd for BlockKernel<'_> {
     fn with_simd<S: Simd>(self, simd: S) {
         let BlockKernel { block, buffers, pairs, out } = self;
         for from in (0..block.count).step_by(S::F64_LANES) {
+            // Isolate and refine.
             let frames = block.load(simd, from).frames();
             let (zero, one) = (frames.pair.radius.splat(0.0), frames.pair.radius.splat(1.0));
             let (brackets, count) = buffers.isolate(simd, from, &frames.pair);
             let (angles, good) = halley_roots([&frames.pair; MAX_SIMD_MINIMA], &brackets, MAX_SIMD_MINIMA);
+            // Which results are valid?
             let few = <Register<S>>::and(zero.lt(count), count.lt(zero.splat(MAX_SIMD_MINIMA as f64 + 0.5)));
             let regular = <Register<S>>::and(few, <Register<S>>::and(is_steep(&frames.pair), frames.is_regular()));
             count.store(&mut buffers.counts, from);
             <Register<S>>::select(regular, good[0] * good[1], zero).store(&mut buffers.complete, from);
-            let alone = count.lt(one + zero.splat(0.5));
+            // Store distances and directions.
+            let is_single = count.lt(one + zero.splat(0.5));
             for slot in 0..MAX_SIMD_MINIMA {
                 let (mut distance, direction) = frames.distance_and_direction(angles[slot]);
                 if slot > 0 {
-                    distance = <Register<S>>::select(alone, zero.splat(f64::INFINITY), distance);
+                    distance = <Register<S>>::select(is_single, zero.splat(f64::INFINITY), distance);
                 }
                 distance.store(&mut buffers.distance[slot], from);
                 for axis in 0..3 {
@@ -174,6 +191,7 @@ impl WithSimd for BlockKernel<'_> {
                 }
             }
         }
+        // Write the results, pair by pair.
         for lane in 0..block.count {
             let index = block.index[lane];
             if buffers.complete[lane] == 1.0 {

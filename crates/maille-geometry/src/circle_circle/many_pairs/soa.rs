@@ -1,31 +1,35 @@
-//! Pairs side by side.
+//! A block of pairs of circles as a structure of arrays: one array per coordinate, so that a register loads one coordinate of
+//! several pairs.
 
 use crate::circle::Circle;
 use crate::circle_circle::simd_frame::{PairVectors, Vector, sub};
 use crate::simd::Register;
 use pulp::Simd;
 
-/// Pairs side by side: several registers of the widest kind, for a register that is loaded from numbers just stored waits.
+/// Number of pairs in a block. Several times the widest register: loading values that have just been stored would stall.
 pub(crate) const WIDTH: usize = 32;
-/// One number of each.
+/// One value per pair of a block.
 pub(crate) type Lanes = [f64; WIDTH];
-/// Numbers of a pair: centre, normal and radius of A, then of B.
+/// Values per pair: centre, normal and radius of A, then of B.
 const NUMBERS: usize = 14;
 
-/// Pairs as a structure of arrays.
+/// Up to [`WIDTH`] pairs.
 pub(crate) struct PairBlock {
     numbers: [Lanes; NUMBERS],
+    /// Where each pair came from.
     pub index: [usize; WIDTH],
+    /// Number of pairs in use.
     pub count: usize,
 }
 
 impl PairBlock {
-    /// Full of one harmless pair.
+    /// An empty block. Unused places hold a valid, non-degenerate pair.
     pub fn new() -> Self {
         let one = [0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0];
         Self { numbers: one.map(|x| [x; WIDTH]), index: [0; WIDTH], count: 0 }
     }
 
+    /// Adds a pair; a full block begins again at its first place.
     #[inline(always)]
     pub fn push(&mut self, index: usize, (a, b): &(Circle, Circle)) {
         let lane = self.count % WIDTH;
@@ -47,6 +51,7 @@ impl PairBlock {
         self.count = lane + 1;
     }
 
+    /// The pairs from number `from` on, one per lane.
     #[inline(always)]
     pub fn load<S: Simd>(&self, simd: S, from: usize) -> PairVectors<Register<S>> {
         PairVectors {

@@ -1,4 +1,4 @@
-//! One pair.
+//! All local minima of one pair: the choice between SIMD registers, the fast method in `f64` and the exhaustive method.
 
 mod simd;
 
@@ -10,34 +10,53 @@ use crate::circle_circle::pair_frame::PairFrame;
 use crate::circle_circle::{exhaustive, fast};
 use arrayvec::ArrayVec;
 
-/// Every local minimum of the distance between two circles (section 3.2), by complete enumeration.
+/// Every local minimum of the distance between two circles (section 3.2), without exception.
 ///
-/// The circle of smaller radius (B, if they are equal) is followed by its angle θ, and `h(θ) = ½ d²`, half the squared
-/// distance of its point from the other circle (equation 3.1.2), is examined arc by arc: the critical points on an arc are
-/// counted, and the arc is halved where the count and the signs of `h′` at the ends do not agree (the `count` module). Pairs
-/// that are degenerate or nearly so are examined by bounds of `h‴` (the `search` module). Either way no minimum is lost
-/// between samples.
+/// A point runs along the circle of smaller radius (B, if they are equal) with angle θ. Half its squared distance from the other
+/// circle, `h(θ) = ½ d² = ½ (z² + (ρ − R)²)` (equation 3.1.2; `z` and `ρ` are its height over the plane of the other circle and its
+/// distance from the axis, `R` is the radius), is examined arc by arc: the critical points on an arc are counted by Descartes'
+/// rule of signs, and the arc is bisected until the count agrees with the signs of `h′` at its ends. Degenerate and nearly
+/// degenerate pairs are examined by bounds of `h‴` instead. Either way no minimum is lost between samples.
 ///
-/// **Accuracy.** Distances to about `1e-15` of the pair's largest length, in every position, degenerate or near to
-/// it. Angles to about `1e-15` over the condition of the 2×2 Hessian.
+/// **Accuracy.** Distances to about `1e-15` of the pair's largest length (radii and distance of the centres), in degenerate
+/// positions too. Angles to about `1e-15` divided by the relative curvature of the minimum (the condition of the 2×2 Hessian).
 ///
-/// **Degenerate positions.** A distance that is constant to [`ROUNDING`](crate::ROUNDING) (coaxial, Villarceau and meridian pairs, see
-/// [`PairKind`]) gives one representative with `continuum` set. A point on the other circle's axis, where `h` has a
-/// kink, is a maximum or no extremum and never among the answers, except for equal circles' meridian, a continuum.
-/// Two minima closer than `2.4e-5` rad, which differ by rounding only, are one.
+/// **Degenerate positions.**
+/// - A distance that is constant up to [`ROUNDING`](crate::ROUNDING) (coaxial, Villarceau and meridian pairs, see [`PairKind`])
+///   gives one representative, with [`Minima::continuum`] set.
+/// - At a point on the axis of the other circle `h` has a kink: a maximum or no extremum, hence never among the minima. The
+///   meridian pair of equal circles is the exception; it is a continuum.
+/// - Two minima closer than `2.4e-5` rad differ by rounding only and are merged.
 ///
-/// **Wrong input.** Where a number is not finite, a radius is not positive, a length is beyond `1e±90`, or a normal is no unit
-/// vector, there is one minimum, and all its numbers are NaN.
+/// **Invalid input.** If a number is not finite, a radius is not positive, a length is beyond `1e±90`, or a normal is not a unit
+/// vector, a single minimum is returned in which all numbers are NaN.
 ///
-/// **Cost.** No heap; times are those of `cargo bench -p maille-geometry --bench pair`, some in the repository's
-/// `docs/decisions/0010-batch-kernel.md`; [`circle_distance_approaches`](crate::circle_distance_approaches) takes many pairs
-/// at a quarter of it. Pairs that are close to an equidistant one without a common axis (within
-/// about `1e-3`), where nothing can be proven cheaply, some 100 µs.
+/// **Cost.** About 0.3 µs for most pairs, no heap allocation (`cargo bench -p maille-geometry --bench pair`);
+/// [`circle_distance_approaches`](crate::circle_distance_approaches) takes about a quarter of that per pair. Some 100 µs for
+/// pairs within about `1e-3` of a constant distance without a common axis, where no cheap proof exists.
 ///
-/// **Tested** on 120,000 pairs of six families against dense sampling: no minimum missed, none too many, never more than
-/// two, and no distance more than `7e-16` above the sampled one.
+/// **Tested** on 120,000 pairs of six families against dense sampling: no minimum missed, no false one, never more than two,
+/// and no distance more than `7e-16` above the sampled one.
+///
+/// # Examples
+///
+/// ```
+/// use maille_geometry::{Circle, PairKind, Vec3, circle_distance_minima};
+///
+/// // Two unit circles with the same centre in perpendicular planes meet at two opposite points.
+/// let a = Circle::new(Vec3::zeros(), Vec3::z_axis(), 1.0);
+/// let b = Circle::new(Vec3::zeros(), Vec3::y_axis(), 1.0);
+/// let minima = circle_distance_minima(&a, &b);
+/// assert_eq!((minima.kind, minima.as_slice().len()), (PairKind::Concentric, 2));
+/// assert!(minima.closest().distance < 1e-15);
+///
+/// // On a common axis every point is a nearest one: a continuum, with one representative.
+/// let c = Circle::new(Vec3::new(0.0, 0.0, 0.5), Vec3::z_axis(), 1.0);
+/// let minima = circle_distance_minima(&a, &c);
+/// assert!(minima.continuum && (minima.closest().distance - 0.5).abs() < 1e-15);
+/// ```
 pub fn circle_distance_minima(a: &Circle, b: &Circle) -> Minima {
-    // Written where it is returned: it is too large to be moved about.
+    // Filled in place: copying it would take a noticeable part of the time.
     let mut minima = Minima { kind: PairKind::Generic, continuum: false, found: ArrayVec::new() };
     if !simd::minima(a, b, &mut minima) {
         enumerate(a, b, &mut minima);
@@ -45,7 +64,7 @@ pub fn circle_distance_minima(a: &Circle, b: &Circle) -> Minima {
     minima
 }
 
-/// [`circle_distance_minima`] without registers, for every pair.
+/// [`circle_distance_minima`] in plain `f64`, for any pair.
 #[inline(never)]
 fn enumerate(a: &Circle, b: &Circle, out: &mut Minima) {
     if !are_valid(a, b) {
@@ -60,7 +79,7 @@ fn enumerate(a: &Circle, b: &Circle, out: &mut Minima) {
         });
         return;
     }
-    // Along the smaller circle `h` is the smoother: it comes near the other's axis only far from the other circle.
+    // Along the smaller circle `h` is smoother: where it comes near the axis of the other, it is far from the other circle.
     let swapped = a.radius < b.radius;
     let pair = if swapped { PairFrame::new(b, a) } else { PairFrame::new(a, b) };
     *out = match fast::minima(&pair.normalized()) {
@@ -72,7 +91,7 @@ fn enumerate(a: &Circle, b: &Circle, out: &mut Minima) {
     };
 }
 
-/// By the complete enumeration of one pair.
+/// The minima of one pair in the compact form of a batch, for pairs that the batch code does not handle in registers.
 pub(crate) fn approaches(a: &Circle, b: &Circle) -> Approaches {
     let (mut out, mut continuum) = (Approaches::NONE, false);
     if !are_valid(a, b) {
@@ -112,7 +131,7 @@ mod tests {
     use super::*;
     use rand::{RngExt, SeedableRng};
 
-    /// What a machine without registers finds is the same, to rounding.
+    /// The results in SIMD registers and in plain `f64` agree up to rounding.
     #[test]
     fn registers_change_nothing_but_rounding() {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(17);
@@ -132,7 +151,7 @@ mod tests {
             assert_eq!((found.kind, found.found.len()), (expected.kind, expected.found.len()), "{a:?} {b:?}");
             for (p, q) in found.as_slice().iter().zip(expected.as_slice()) {
                 assert!((p.distance - q.distance).abs() < 1e-13, "{p:?} {q:?}");
-                // Where the minimum is, flat ones excepted: there the distance says little about the place.
+                // The positions, except at flat minima, where they are ill-conditioned.
                 let [[aa, ab], [_, bb]] = q.hessian;
                 if aa * bb - ab * ab > 1e-3 {
                     assert!((p.point_a - q.point_a).norm() < 1e-11, "{p:?} {q:?}");

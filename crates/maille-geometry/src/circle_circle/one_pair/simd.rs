@@ -1,7 +1,7 @@
-//! The minima of one pair with the pair's arcs, then its minima, side by side in registers.
+//! The fast method for one pair in SIMD registers (AVX2): its arcs, then its minima, lie side by side in the lanes.
 //!
-//! The count of [`crate::brackets`] for all eight arcs at once; an arc in doubt is cut into eight parts, counted in the same way.
-//! What is still in doubt is left to [`crate::quick`].
+//! The roots on all eight arcs are counted at once, four per register. An arc in doubt is divided into eight parts, which are
+//! counted in the same way. Pairs that are still in doubt are left to the plain `f64` code.
 
 use crate::circle::{Circle, Vec3};
 use crate::circle_circle::angle::{Angle, Direction};
@@ -18,45 +18,48 @@ use crate::tolerance::ROUNDING;
 use arrayvec::ArrayVec;
 use pulp::{Simd, WithSimd};
 
-/// A number of each arc.
+/// One value per arc.
 type ArcLanes = [f64; ARCS];
 
-/// Finds the minima of a pair, if it is an ordinary one.
+/// Writes all minima of a pair to `out`. False, with `out` unchanged, if the pair cannot be decided here or the machine has no
+/// AVX2.
 pub(crate) fn minima(a: &Circle, b: &Circle, out: &mut Minima) -> bool {
     #[cfg(target_arch = "x86_64")]
     if let Some(simd) = pulp::x86::V3::try_new() {
-        // Wider registers take longer over a root, and nearly all here is one chain of them.
+        // AVX-512 is slower here: square roots take longer in wider registers, and nearly all is one chain of them.
         return Simd::vectorize(simd, SinglePairKernel { a, b, out });
     }
     let _ = (a, b, out);
     false
 }
 
+/// The arguments of [`minima`], to be run with an instruction set.
 struct SinglePairKernel<'a> {
     a: &'a Circle,
     b: &'a Circle,
     out: &'a mut Minima,
 }
 
-/// ArcTables on which G₋ rises through 0.
+/// The arcs on which `G₋` rises through 0: one minimum each.
 struct RisingArcs {
     middles: [Direction; ARCS],
-    /// tan of a quarter of their widths.
+    /// Tangents of a quarter of their widths.
     quarter_tans: ArcLanes,
+    /// Whether parts of arcs are among them, so that widths differ.
     has_parts: bool,
     count: usize,
 }
 
 impl RisingArcs {
-    /// Adds an arc if `rises` is 1. Written in any case, so that nothing branches.
+    /// Adds an arc if `rises` is 1, and nothing if it is 0. Without a branch: it is written in any case and then counted or not.
     #[inline(always)]
     fn add(&mut self, middle: Direction, rises: f64) {
         self.middles[self.count % ARCS] = middle;
-        // 1.0 has this bit, 0.0 has not.
+        // This bit is set in 1.0 and clear in 0.0.
         self.count += (rises.to_bits() >> 52) as usize & 1;
     }
 
-    /// MinimumLanes with the arcs, the first one again in those that are left.
+    /// One bracket per lane; unused lanes repeat the first.
     #[inline(always)]
     fn bracket<S: Simd>(&self, simd: S) -> Bracket<Register<S>> {
         let (mut cos, mut sin, mut quarter_tans) = ([0.0; MAX_MINIMA], [0.0; MAX_MINIMA], [0.0; MAX_MINIMA]);
@@ -80,6 +83,7 @@ impl WithSimd for SinglePairKernel<'_> {
     fn with_simd<S: Simd>(self, simd: S) -> bool {
         let SinglePairKernel { a, b, out } = self;
         assert!(S::F64_LANES == MAX_MINIMA, "a lane for each minimum");
+        // The common frame, the same in every lane.
         let swapped = a.radius < b.radius;
         let (base, moving) = if swapped { (b, a) } else { (a, b) };
         let frames = PairVectors::broadcast(simd, base, moving).frames();
@@ -87,10 +91,12 @@ impl WithSimd for SinglePairKernel<'_> {
         if !<Register<S>>::any(<Register<S>>::and(is_steep(pair), frames.is_regular())) {
             return false;
         }
+        // Isolate.
         let Some(rising) = rising_arcs(simd, pair) else { return false };
         if rising.count == 0 || rising.count > MAX_MINIMA {
             return false;
         }
+        // Refine, all minima at once.
         let ([at], [good]) = halley_roots([pair], &[rising.bracket(simd)], 1);
         if <Register<S>>::any(good.lt(good.splat(1.0))) {
             return false;
@@ -101,13 +107,14 @@ impl WithSimd for SinglePairKernel<'_> {
     }
 }
 
+/// Do the centres coincide up to [`ROUNDING`]?
 #[inline(always)]
 fn is_concentric<S: Simd>(pair: &NormalizedPair<Register<S>>) -> bool {
     let off = pair.x0.abs().max(pair.y0.abs()).max(pair.z0.abs());
     !<Register<S>>::any(off.splat(ROUNDING).lt(off))
 }
 
-/// The arcs on which G₋ rises, or `None` where the count does not decide.
+/// The arcs on which `G₋` rises through 0, or `None` if the root count does not decide.
 #[inline(always)]
 fn rising_arcs<S: Simd>(simd: S, pair: &NormalizedPair<Register<S>>) -> Option<RisingArcs> {
     let tables = &*ARC_TABLES;
@@ -119,6 +126,7 @@ fn rising_arcs<S: Simd>(simd: S, pair: &NormalizedPair<Register<S>>) -> Option<R
         has_parts: false,
         count: 0,
     };
+    // All eight arcs.
     let mut modes = [[harmonics.mean; 2]; 4];
     for k in 0..4 {
         modes[k] = [harmonics.cosine[k], harmonics.sine[k]];
@@ -131,6 +139,7 @@ fn rising_arcs<S: Simd>(simd: S, pair: &NormalizedPair<Register<S>>) -> Option<R
     if certain {
         return Some(found);
     }
+    // Arcs in doubt, in eight parts each.
     found.has_parts = true;
     for k in (0..ARCS).filter(|k| excess[*k] != 0.0) {
         let center = Angle::splat(origin, tables.centers[k]);
@@ -149,8 +158,10 @@ fn rising_arcs<S: Simd>(simd: S, pair: &NormalizedPair<Register<S>>) -> Option<R
     Some(found)
 }
 
-/// How many more critical points than known each arc could have, and whether it has none and G₋ rises there (1, else 0);
-/// and whether none has more.
+/// Compares the two bounds of the number of roots (`fast/root_count.rs`) on eight arcs, four per register.
+///
+/// Returned are the excess of each arc; whether its roots are known and `G₋` rises there (1, else 0); and whether the roots on
+/// all arcs are known. `modes` are the harmonics of H about `origin`.
 #[inline(always)]
 fn count_roots<S: Simd>(
     simd: S,
@@ -161,35 +172,38 @@ fn count_roots<S: Simd>(
     fan: &ArcFan,
 ) -> ([ArcLanes; 2], bool) {
     let mut out = [[0.0; ARCS]; 2];
-    let doubt = harmonics.product_threshold();
-    let mut doubts = doubt.splat(0.0);
-    let (zero, one) = (doubt.splat(0.0), doubt.splat(1.0));
+    let threshold = harmonics.product_threshold();
+    let mut total_excess = threshold.splat(0.0);
+    let (zero, one) = (threshold.splat(0.0), threshold.splat(1.0));
     for from in (0..ARCS).step_by(S::F64_LANES) {
+        // Lower bound: signs at the ends.
         let mut ends = [FactorSigns { product: zero, minus: zero, plus: zero }; 2];
         for side in 0..2 {
             let [cos, sin] = &fan.ends[side];
             let at = origin.rotated(Register::load(simd, cos, from), Register::load(simd, sin, from));
             ends[side] = FactorSigns::at(pair, at.cos, at.sin);
         }
-        let mut around = *modes;
+        // Upper bound: Bernstein coefficients on the arcs.
+        let mut rotated = *modes;
         for k in 0..4 {
             let [cos, sin] = &fan.turns[k];
-            around[k] = rotate_harmonic(modes[k], [Register::load(simd, cos, from), Register::load(simd, sin, from)]);
+            rotated[k] = rotate_harmonic(modes[k], [Register::load(simd, cos, from), Register::load(simd, sin, from)]);
         }
         let [first, last] = ends;
-        let coefficients = bernstein_on_arc(harmonics.mean, &around, [first.product, last.product], &fan.basis);
-        let excess = (sign_changes(&coefficients, doubt) - first.sign_changes(last)).abs();
+        let coefficients = bernstein_on_arc(harmonics.mean, &rotated, [first.product, last.product], &fan.basis);
+        let excess = (sign_changes(&coefficients, threshold) - first.sign_changes(last)).abs();
         let rises = <Register<S>>::and(first.rises(last), excess.lt(one));
-        doubts = doubts + excess;
+        total_excess = total_excess + excess;
         excess.store(&mut out[0], from);
         <Register<S>>::select(rises, one, zero).store(&mut out[1], from);
     }
-    (out, !<Register<S>>::any(zero.lt(doubts)))
+    (out, !<Register<S>>::any(zero.lt(total_excess)))
 }
 
-/// A number of each minimum.
+/// One value per minimum.
 type MinimumLanes = [f64; MAX_MINIMA];
 
+/// The lanes of a register, stored in memory.
 #[inline(always)]
 fn to_lanes<S: Simd>(number: Register<S>) -> MinimumLanes {
     let mut out = [0.0; MAX_MINIMA];
@@ -197,20 +211,22 @@ fn to_lanes<S: Simd>(number: Register<S>) -> MinimumLanes {
     out
 }
 
-/// What [`Minimum`] says, for the minima in the lanes.
+/// The fields of [`Minimum`], for the minima in the lanes.
 struct MinimaLanes {
     distance: MinimumLanes,
+    /// Points on the base circle.
     base: [MinimumLanes; 3],
+    /// Points on the moving circle.
     moving: [MinimumLanes; 3],
-    /// `g_αα`, `g_αθ`, `g_θθ`, with α the angle on the base.
+    /// `g_αα`, `g_αθ`, `g_θθ`, with `α` the angle on the base.
     hessian: [MinimumLanes; 3],
     slope: MinimumLanes,
-    /// Along the axes of B's frame.
+    /// Cosine and sine of the angle in B's own frame.
     direction_b: [MinimumLanes; 2],
     swapped: bool,
 }
 
-/// The points of a circle in some directions.
+/// The points of a circle in given directions from its centre.
 #[inline(always)]
 fn points_on_circle<S: Simd>(simd: S, circle: &Circle, direction: Vector<Register<S>>) -> [MinimumLanes; 3] {
     let (center, radius) = (broadcast_vector(simd, &circle.center), Register::broadcast(simd, circle.radius));
@@ -222,7 +238,7 @@ fn points_on_circle<S: Simd>(simd: S, circle: &Circle, direction: Vector<Registe
 }
 
 impl MinimaLanes {
-    /// As [`crate::relative::PairFrame::minimum`].
+    /// Same formulas as `PairFrame::minimum`.
     #[inline(always)]
     fn new<S: Simd>(
         simd: S,
@@ -231,6 +247,7 @@ impl MinimaLanes {
         [base, moving]: [&Circle; 2],
         swapped: bool,
     ) -> Self {
+        // The foot on the base circle, and the directions from the centres to the points.
         let pair = &frames.pair;
         let [ex, ey, rho] = pair.position_and_rho(cos, sin);
         let inverse = rho.splat(1.0) / rho;
@@ -239,6 +256,7 @@ impl MinimaLanes {
         let (base_direction, moving_direction) =
             (linear_combination(x, foot_x, y, foot_y), linear_combination(frames.steepest, cos, y, sin));
         let [base_second, mixed, moving_second, slope] = pair.distance_derivatives(cos, sin, [foot_x, foot_y, rho]);
+        // Direction in B's own frame.
         let (circle_b, direction) = if swapped { (base, base_direction) } else { (moving, moving_direction) };
         let (u, v) = circle_b.frame();
         MinimaLanes {
@@ -255,6 +273,7 @@ impl MinimaLanes {
         }
     }
 
+    /// The minimum in one lane.
     #[inline(always)]
     fn minimum(&self, lane: usize) -> Minimum {
         let (base, moving, [second, mixed, moving_second]) = (&self.base, &self.moving, &self.hessian);
@@ -271,10 +290,10 @@ impl MinimaLanes {
         )
     }
 
-    /// The minima in ascending order. More than two have never been seen.
+    /// Appends the minima in ascending order. More than two have never been observed.
     #[inline(always)]
     fn write(&self, count: usize, out: &mut ArrayVec<Minimum, MAX_MINIMA>) {
-        // Two in any case: whether there is a second is anyone's guess. The lanes of one alone are the same.
+        // Two are written in any case, since a branch on their number would be mispredicted. A single one fills all lanes.
         let first = usize::from(self.distance[1] < self.distance[0]);
         out.push(self.minimum(first));
         out.push(self.minimum(1 - first));
