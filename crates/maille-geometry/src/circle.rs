@@ -1,6 +1,7 @@
 //! A circle in space, and its distance from a point.
 //!
-//! Symbols: centre `c`, unit normal `N`, radius `R` (lengths in the caller's unit), angle `θ` on the circle in radians.
+//! Symbols: centre `c`, unit normal `N`, radius `R` (lengths in the caller's unit), angle `θ` on the circle in
+//! radians.
 
 use crate::tolerance::{MAX_LENGTH, MIN_LENGTH};
 use nalgebra::UnitVector3;
@@ -50,11 +51,12 @@ impl Circle {
         Self { center, normal, radius }
     }
 
-    /// Unit vectors `(U, V)` in the circle's plane with `U × V = N`. Angles on the circle are measured from `U` towards `V`.
+    /// Unit vectors `(U, V)` in the circle's plane with `U × V = N`. Angles on the circle are measured from `U`
+    /// towards `V`.
     ///
     /// They depend on `N` alone and are orthonormal to rounding (Duff et al. 2017, "Building an Orthonormal Basis,
-    /// Revisited"); `N = e_z` gives `(e_x, e_y)`. No choice is continuous on the whole sphere: this one jumps where `N_z`
-    /// changes sign.
+    /// Revisited"); `N = e_z` gives `(e_x, e_y)`. No choice is continuous on the whole sphere: this one jumps where
+    /// `N_z` changes sign.
     pub fn frame(&self) -> (Vec3, Vec3) {
         let n = &self.normal;
         let sign = 1.0_f64.copysign(n.z);
@@ -93,15 +95,15 @@ pub struct PointOnCircle {
     pub point: Vec3,
     /// Its angle in the circle's [frame](Circle::frame), in `(−π, π]`.
     pub angle_rad: f64,
-    /// Whether the given point lies exactly on the axis. All points of the circle are then equally near; the one at angle 0
-    /// is returned.
+    /// Whether the given point lies exactly on the axis. All points of the circle are then equally near; the one at
+    /// angle 0 is returned.
     pub on_axis: bool,
 }
 
 /// The distance of a point `P` from a circle, and the nearest point of the circle (equation 3.1.2).
 ///
-/// `d² = z² + (ρ − R)²` with `Δ = P − c`, height over the plane `z = N·Δ` and distance from the axis `ρ = |Δ − zN|`. The
-/// nearest point is `K = c + R (Δ − zN)/ρ`.
+/// `d² = z² + (ρ − R)²` with `Δ = P − c`, height over the plane `z = N·Δ` and distance from the axis
+/// `ρ = |Δ − zN|`. The nearest point is `K = c + R (Δ − zN)/ρ`.
 ///
 /// Evaluated as `hypot(z, ρ − R)`: the expanded form `|Δ|² + R² − 2Rρ` loses half of the digits near the circle.
 ///

@@ -1,8 +1,8 @@
 //! Exact distances, gaps and linking numbers of circles and tori in three-dimensional space.
 //!
 //! A ring of round wire is a [`Torus`]: a core [`Circle`] of radius `R` and a wire of radius `r`. Whether two rings
-//! touch, overlap or are linked follows from their core circles alone, so this crate is about two circles. All functions
-//! work on `f64`, start no threads and allocate nothing on the heap.
+//! touch, overlap or are linked follows from their core circles alone, so this crate is about two circles. All
+//! functions work on `f64`, start no threads and allocate nothing on the heap.
 //!
 //! # Example
 //!
@@ -33,51 +33,59 @@
 //! | question | function | source |
 //! | --- | --- | --- |
 //! | How far is a point from a circle? | [`point_circle_distance`] | `circle.rs` |
-//! | Where does the distance of two circles have a local minimum? | [`circle_distance_minima`] | `circle_circle/one_pair` |
+//! | Where are the local minima of the distance of two circles? | [`circle_distance_minima`] | `circle_circle/one_pair` |
 //! | The same for many pairs at once | [`circle_distance_approaches`] | `circle_circle/many_pairs` |
 //! | A cheap lower bound of the distance | [`circle_distance_lower_bound`] | `circle_circle/lower_bound.rs` |
-//! | The minima from the roots of a polynomial, as a cross-check | [`circle_distance_minima_polynomial`] | `circle_circle/polynomial.rs` |
+//! | A cross-check of the minima by polynomial roots | [`circle_distance_minima_polynomial`] | `circle_circle/polynomial.rs` |
 //! | How wide is the gap between two tori? | [`torus_gap`], [`torus_gaps`] | `torus.rs` |
 //! | Are two circles linked, and with which sign? | [`linking_number`], [`interlocks`] | `linking.rs` |
 //!
 //! # Method
 //!
-//! The distance of two circles can have two local minima, and rings often touch at both. A local search from one start
-//! finds one of them, so the minima are *isolated* first, by a proof that none is missed, and only then computed:
+//! The distance of two circles can have two local minima, and rings often touch at both. A local search from one
+//! start finds one of them, so the minima are *isolated* first, by a proof that none is missed, and only then
+//! computed:
 //!
 //! 1. The pair is reduced to six numbers in a common frame; the smaller circle is described by its angle θ
 //!    (`circle_circle/pair_frame.rs`, `normalized_pair.rs`).
-//! 2. *Fast method* (`circle_circle/fast`), for nearly all pairs: Descartes' rule of signs on Bernstein coefficients
-//!    counts the critical points on eight arcs of θ, arcs in doubt are subdivided, and Halley's iteration finds the minimum
-//!    on each isolating arc. It is written once, over a trait that stands for one `f64` or a SIMD register (`simd.rs`).
-//! 3. *Exhaustive method* (`circle_circle/exhaustive`), for degenerate and nearly degenerate pairs: bounds on the third
-//!    derivative decide each interval of θ, or it is bisected.
+//! 2. *Fast method* (`circle_circle/fast`), for nearly all pairs: Descartes' rule of signs on Bernstein
+//!    coefficients counts the critical points on eight arcs of θ, undecided arcs are bisected, and Halley's
+//!    iteration finds the minimum on each isolating arc. It is written once, over a trait that stands for one `f64`
+//!    or a SIMD register (`simd.rs`).
+//! 3. *Exhaustive method* (`circle_circle/exhaustive`), for degenerate and nearly degenerate pairs: bounds on the
+//!    third derivative decide each interval of θ, or it is bisected.
 //!
-//! A file imports only files above it in this list: `tolerance`, `circle`, `simd`, then within `circle_circle` the result
-//! types (`minimum`, `approach`), the frames (`angle`, `normalized_pair`, `pair_frame`, `simd_frame`), `fast` and
-//! `exhaustive`, `one_pair`, `many_pairs`; `lower_bound`, `polynomial`, `linking` and `torus` stand beside or above them.
+//! A file imports only files above it in this list: `tolerance`, `circle`, `simd`, then within `circle_circle` the
+//! result types (`minimum`, `approach`), the frames (`angle`, `normalized_pair`, `pair_frame`, `simd_frame`),
+//! `fast` and `exhaustive`, `one_pair`, `many_pairs`; `lower_bound`, `polynomial`, `linking` and `torus` stand
+//! beside or above them.
 //!
 //! # Accuracy
 //!
-//! Distances are accurate to about `1e-15` of the pair's largest length (radii and distance of the centres), in degenerate
-//! positions too. Tested on 120,000 random pairs of six families against dense sampling: no minimum missed, no false one,
-//! and no distance more than `7e-16` above the sampled one (`tests/completeness.rs`). Random pairs have met at most two
-//! minima; at most three isolated ones are possible.
+//! Distances are accurate to about `1e-15` of the pair's largest length (radii and distance of the centres), in
+//! degenerate positions too. Tested on 120,000 random pairs of six families against dense sampling: no minimum
+//! missed, no false one, and no distance more than `7e-16` above the sampled one (`tests/completeness.rs`). Random
+//! pairs have met at most two minima; at most three isolated ones are possible.
 //!
 //! # Degenerate positions
 //!
-//! - **Constant distance** (coaxial circles, and two other families, see [`PairKind`]): the minima form a continuum; one
-//!   representative is returned, and [`Minima::continuum`] is set.
-//! - **A point on the axis of the other circle** has no nearest point there: the distance has a kink, which is never a minimum
-//!   except on a continuum; [`PointOnCircle::on_axis`] reports it for a single point.
+//! - **Constant distance** (coaxial circles, and two other families, see [`PairKind`]): the minima form a
+//!   continuum; one representative is returned, and [`Minima::continuum`] is set.
+//! - **A point on the axis of the other circle** has no nearest point there: the distance has a kink, which is
+//!   never a minimum except on a continuum; [`PointOnCircle::on_axis`] reports it for a single point.
 //! - **Circles that intersect** have distance 0 at each intersection; their linking number is undefined.
-//! - **Invalid input** (non-finite numbers, non-positive radii, normals that are not unit vectors, lengths beyond `1e±90`):
-//!   the minima are NaN. [`Circle::new`] asserts valid radii in debug builds.
+//! - **Invalid input** (non-finite numbers, non-positive radii, normals that are not unit vectors, lengths beyond
+//!   `1e±90`): the minima are NaN. [`Circle::new`] asserts valid radii in debug builds.
 //!
 //! # Units
 //!
-//! Lengths are in the caller's unit, angles in radians. [`ROUNDING`], relative to the largest length of a pair, is the only
-//! tolerance that decides between answers.
+//! Lengths are in the caller's unit, angles in radians. [`ROUNDING`], relative to the largest length of a pair, is
+//! the only tolerance that decides between answers.
+//!
+//! # Source
+//!
+//! Numbers of sections, equations, definitions and theorems, and Appendix A, are those of the thesis *Mechanical
+//! Characterization of Rigid Discrete Interlocking Materials*.
 
 mod circle;
 mod circle_circle;

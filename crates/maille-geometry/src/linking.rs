@@ -1,18 +1,20 @@
 //! Linking of two circles: how often one crosses the disc of the other.
 //!
-//! Circle B crosses the plane of circle A at two points or none. The circles are linked if exactly one of the two lies inside
-//! A. Symbols: `N_A`, `c_A`, `R_A` are normal, centre and radius of A, likewise for B; `t` is the angle on B in radians.
+//! Circle B crosses the plane of circle A at two points or none. The circles are linked if exactly one of the two
+//! lies inside A. Symbols: `N_A`, `c_A`, `R_A` are normal, centre and radius of A, likewise for B; `t` is the angle
+//! on B in radians.
 
 use crate::circle::{Circle, Vec3};
 use crate::tolerance::ROUNDING;
 
-/// Distances from the centre of A to the two points where circle B crosses the plane of A, if it does: first the point where
-/// B crosses downwards (against `N_A`), then the one where it crosses upwards.
+/// Distances from the centre of A to the two points where circle B crosses the plane of A, if it does: first the
+/// point where B crosses downwards (against `N_A`), then the one where it crosses upwards.
 ///
-/// The height of B over the plane is `z(t) = N_A·(P_B(t) − c_A) = k + a cos t + b sin t` with amplitude `A = hypot(a, b)`. Its
-/// roots `t = atan2(b, a) ± acos(−k/A)` exist if and only if `|k| < A`. With the unit vectors `m` (steepest ascent of B over
-/// the plane of A) and `h = N_B × m`, and with `κ = −k/A`, the points are `c_B + R_B (κ m ± √(1 − κ²) h)`, which takes no
-/// trigonometric function; `+` is the downward crossing, `z′ = −A √(1 − κ²)`.
+/// The height of B over the plane is `z(t) = N_A·(P_B(t) − c_A) = k + a cos t + b sin t` with amplitude
+/// `A = hypot(a, b)`. Its roots `t = atan2(b, a) ± acos(−k/A)` exist if and only if `|k| < A`. With the unit
+/// vectors `m` (steepest ascent of B over the plane of A) and `h = N_B × m`, and with `κ = −k/A`, the points are
+/// `c_B + R_B (κ m ± √(1 − κ²) h)`, which takes no trigonometric function; `+` is the downward crossing,
+/// `z′ = −A √(1 − κ²)`.
 ///
 /// `None` if the planes are parallel to [`ROUNDING`], or if B lies on one side of the plane or touches it.
 fn plane_crossings(a: &Circle, b: &Circle) -> Option<[f64; 2]> {
@@ -43,8 +45,8 @@ fn plane_crossings(a: &Circle, b: &Circle) -> Option<[f64; 2]> {
 /// direction, and equals the Gauss integral `1/4π ∮∮ (A − B)·(dA × dB)/|A − B|³`. It is symmetric,
 /// `lk(A, B) = lk(B, A)`, and reversing one normal changes its sign.
 ///
-/// **Degenerate cases.** Parallel planes give 0. Circles that intersect have no linking number; the result is 0 if the
-/// intersection is exact in `f64`.
+/// **Degenerate cases.** Parallel planes give 0. Circles that intersect have no linking number; the result is 0 if
+/// the intersection is exact in `f64`.
 ///
 /// # Examples
 ///
@@ -67,9 +69,11 @@ pub fn linking_number(a: &Circle, b: &Circle) -> i32 {
     }
 }
 
-/// Whether two circles interlock: B crosses the plane of A at two points, one inside A and one outside (Definition 3.4.2).
+/// Whether two circles interlock: B crosses the plane of A at two points, one inside A and one outside (Definition
+/// 3.4.2).
 ///
-/// The relation is symmetric and equivalent to a linking number of ±1, with the degenerate cases of [`linking_number`].
+/// The relation is symmetric and equivalent to a linking number of ±1, with the degenerate cases of
+/// [`linking_number`].
 pub fn interlocks(a: &Circle, b: &Circle) -> bool {
     plane_crossings(a, b).is_some_and(|[p, q]| p.min(q) < a.radius && a.radius < p.max(q))
 }

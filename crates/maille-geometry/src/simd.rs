@@ -1,19 +1,20 @@
 //! The numbers that the fast method is written in: one `f64`, or a SIMD register with one value per lane.
 //!
-//! Kernels are generic over [`SimdReal`] and compiled once for `f64` and once per instruction set, through `pulp`. All operations
-//! are correctly rounded (IEEE 754), so every lane gives the same bits whatever the other lanes hold. The one
-//! difference between instruction sets is [`SimdReal::mul_add`], fused where the hardware can: they differ by rounding.
+//! Kernels are generic over [`SimdReal`] and compiled once for `f64` and once per instruction set, through `pulp`.
+//! All operations are correctly rounded (IEEE 754), so every lane gives the same bits whatever the other lanes
+//! hold. The one difference between instruction sets is [`SimdReal::mul_add`], fused where the hardware can: they
+//! differ by rounding.
 //!
-//! Kernels contain no closures: a closure is not always inlined into the function that enables the instruction set, and
-//! then runs without it.
+//! Kernels contain no closures: a closure is not always inlined into the function that enables the instruction set,
+//! and then runs without it.
 
 use pulp::Simd;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A real number, or a register of real numbers. Operations act lane by lane.
 ///
-/// Call the methods through a type parameter only: on a plain `f64`, `x.mul_add(…)` means the always fused method of the
-/// standard library.
+/// Call the methods through a type parameter only: on a plain `f64`, `x.mul_add(…)` means the always fused method
+/// of the standard library.
 pub(crate) trait SimdReal:
     Copy
     + Add<Output = Self>

@@ -17,10 +17,10 @@ pub struct Torus {
 
 /// The gap between two tori: `d_c − r₁ − r₂`, with `d_c` the distance of their core circles (Theorem 3.3.1).
 ///
-/// The tori overlap if and only if the gap is negative: by the triangle inequality, a point within `r₁` of one circle and
-/// `r₂` of the other exists if and only if `d_c < r₁ + r₂`. For separate tori the gap is the distance of their surfaces;
-/// for overlapping tori it is minus the overlap along the segment between the nearest points of the circles. NaN for
-/// invalid circles, see [`circle_distance_minima`].
+/// The tori overlap if and only if the gap is negative: by the triangle inequality, a point within `r₁` of one
+/// circle and `r₂` of the other exists if and only if `d_c < r₁ + r₂`. For separate tori the gap is the distance of
+/// their surfaces; for overlapping tori it is minus the overlap along the segment between the nearest points of the
+/// circles. NaN for invalid circles, see [`circle_distance_minima`].
 ///
 /// # Examples
 ///
@@ -38,11 +38,11 @@ pub fn torus_gap(a: &Torus, b: &Torus) -> f64 {
     circle_distance_minima(&a.circle, &b.circle).closest().distance - (a.minor_radius + b.minor_radius)
 }
 
-/// The minima of the distance of the core circles, and the local gap `d − r₁ − r₂` at each of them, both in ascending order
-/// (Proposition 3.3.2).
+/// The minima of the distance of the core circles, and the local gap `d − r₁ − r₂` at each of them, both in
+/// ascending order (Proposition 3.3.2).
 ///
-/// A negative gap is a local overlap; the first gap equals [`torus_gap`]. Maxima of the distance are left out: tori do not
-/// touch there.
+/// A negative gap is a local overlap; the first gap equals [`torus_gap`]. Maxima of the distance are left out: tori
+/// do not touch there.
 pub fn torus_gaps(a: &Torus, b: &Torus) -> (Minima, impl ExactSizeIterator<Item = f64> + use<>) {
     let minima = circle_distance_minima(&a.circle, &b.circle);
     let reach = a.minor_radius + b.minor_radius;

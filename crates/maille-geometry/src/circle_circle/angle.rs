@@ -1,13 +1,13 @@
 //! Angles θ on the moving circle, stored as cosine and sine so that no trigonometric function is evaluated in a loop.
 //!
-//! [`Direction`] is for plain `f64` and for tables, [`Angle`] for code that also runs on SIMD registers. Both rotate by twice
-//! an angle whose tangent is known: with `t = tan(δ/2)`, `cos δ = (1 − t²)/(1 + t²)` and `sin δ = 2t/(1 + t²)`. Their
-//! roundings differ, so one cannot replace the other.
+//! [`Direction`] is for plain `f64` and for tables, [`Angle`] for code that also runs on SIMD registers. Both
+//! rotate by twice an angle whose tangent is known: with `t = tan(δ/2)`, `cos δ = (1 − t²)/(1 + t²)` and
+//! `sin δ = 2t/(1 + t²)`. Their roundings differ, so one cannot replace the other.
 
 use crate::simd::SimdReal;
 
-/// Start of all subdivisions of the circle: an arbitrary angle, so that the extrema of symmetric pairs do not fall on ends of
-/// arcs.
+/// Start of all subdivisions of the circle: an arbitrary angle, so that the extrema of symmetric pairs do not fall
+/// on ends of arcs.
 pub(crate) const START_RAD: f64 = 0.123_456_789_101_112;
 
 /// An angle in `f64`.

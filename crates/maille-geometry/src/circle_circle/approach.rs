@@ -13,8 +13,8 @@ pub struct Approach {
     pub direction_b: Vec3,
 }
 
-/// The minima of one pair of a batch, in ascending order of distance; empty if the circles are certainly farther apart than
-/// the requested reach.
+/// The minima of one pair of a batch, in ascending order of distance; empty if the circles are certainly farther
+/// apart than the requested reach.
 #[derive(Clone, Copy, Debug)]
 pub struct Approaches {
     pub(crate) found: [Approach; MAX_MINIMA],
@@ -35,14 +35,14 @@ impl Approaches {
         &self.found[..self.count]
     }
 
-    /// Whether the distance is constant along a whole circle, as in [`Minima`](crate::Minima::continuum). One representative
-    /// is then returned.
+    /// Whether the distance is constant along a whole circle, as in [`Minima`](crate::Minima::continuum). One
+    /// representative is then returned.
     pub fn continuum(&self) -> bool {
         self.continuum
     }
 
-    /// The special position of the pair, as [`circle_distance_minima`](crate::circle_distance_minima) reports it. `a` and `b`
-    /// must be the circles that these minima belong to.
+    /// The special position of the pair, as [`circle_distance_minima`](crate::circle_distance_minima) reports it.
+    /// `a` and `b` must be the circles that these minima belong to.
     pub fn kind(&self, a: &Circle, b: &Circle) -> PairKind {
         // Tilted planes and distinct centres: nearly every pair is generic and needs no frame.
         let offset_sq = (b.center - a.center).norm_squared();

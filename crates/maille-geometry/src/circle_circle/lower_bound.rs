@@ -8,14 +8,15 @@ use crate::circle::Circle;
 ///
 /// The largest of three bounds, with `(x)₊ = max(x, 0)`, radii `R` of A and `r` of B and `w = c_B − c_A`:
 ///
-/// - **Spheres**: the points of B are at distances from `|w| − r` to `|w| + r` from the centre of A, those of A at `R`, so
-///   `d ≥ |w| − R − r` and `d ≥ |R − r| − |w|`.
-/// - **Slab of A**: B lies at heights `z₀ ± r s` over the plane of A and at `|e₀| ± r` from its axis, where `z₀` and `|e₀|`
-///   are those of the centre of B and `s` is the sine of the tilt: `d² ≥ (|z₀| − r s)₊² + (||e₀| − R| − r)₊²`.
+/// - **Spheres**: the points of B are at distances from `|w| − r` to `|w| + r` from the centre of A, those of A at
+///   `R`, so `d ≥ |w| − R − r` and `d ≥ |R − r| − |w|`.
+/// - **Slab of A**: B lies at heights `z₀ ± r s` over the plane of A and at `|e₀| ± r` from its axis, where `z₀`
+///   and `|e₀|` are those of the centre of B and `s` is the sine of the tilt:
+///   `d² ≥ (|z₀| − r s)₊² + (||e₀| − R| − r)₊²`.
 /// - **Slab of B**: the same with the circles exchanged.
 ///
-/// A margin for rounding is subtracted, so that the result never exceeds the true distance. For linked circles it is 0 or
-/// close to 0.
+/// A margin for rounding is subtracted, so that the result never exceeds the true distance. For linked circles it
+/// is 0 or close to 0.
 ///
 /// # Examples
 ///

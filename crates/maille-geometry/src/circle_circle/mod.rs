@@ -4,7 +4,8 @@
 //! | --- | --- |
 //! | `minimum`, `approach` | result types: one pair, many pairs |
 //! | `angle` | angles as cosine and sine |
-//! | `pair_frame`, `normalized_pair`, `simd_frame` | the common frame of a pair, its six numbers, and both on SIMD registers |
+//! | `pair_frame`, `normalized_pair` | the common frame of a pair, and its six numbers |
+//! | `simd_frame` | the common frame on SIMD registers |
 //! | `fast` | isolation by root counting, then Halley's iteration: ordinary pairs |
 //! | `exhaustive` | bisection with derivative bounds: degenerate and nearly degenerate pairs |
 //! | `one_pair`, `many_pairs` | the public functions, which choose between the two |

@@ -4,9 +4,9 @@
 //!
 //! `P(θ) = (x₀ + r c cos θ, y₀ + r sin θ, z₀ + r s cos θ)`
 //!
-//! and the base circle has radius `R`, centre 0 and axis z. Let `e = (x, y)` be the part of `P` in the base plane, `ρ = |e|`
-//! the distance from the axis, `w = P` the vector from the base centre, and a prime the derivative in θ. Half the squared
-//! distance from the base, `h = ½ (z² + (ρ − R)²)`, has the derivative
+//! and the base circle has radius `R`, centre 0 and axis z. Let `e = (x, y)` be the part of `P` in the base plane,
+//! `ρ = |e|` the distance from the axis, `w = P` the vector from the base centre, and a prime the derivative in θ.
+//! Half the squared distance from the base, `h = ½ (z² + (ρ − R)²)`, has the derivative
 //!
 //! `h′ = w·w′ − R ρ′ = p − q/ρ`, `p = w·w′ = p₀ cos θ + p₁ sin θ`, `q = R e·e′ = q₀ cos θ + q₁ sin θ + q₂ sin 2θ`.
 //!
@@ -107,10 +107,12 @@ impl<T: SimdReal> NormalizedPair<T> {
         [z * z1 + radial * rho1, z1 * z1 + z * z2 + rho1 * rho1 + radial * rho2, rho]
     }
 
-    /// One step δ of Halley's iteration for `f = ρ h′`; returns `tan(δ/2)` as numerator and denominator, then `ρ` and `ρ f′`.
+    /// One step δ of Halley's iteration for `f = ρ h′`; returns `tan(δ/2)` as numerator and denominator, then `ρ`
+    /// and `ρ f′`.
     ///
-    /// Halley's step is `δ = −2 f f′ / (2 f′² − f f″)`. Half of it is used as `tan(δ/2)`, which differs by `O(δ³)` and so keeps the
-    /// cubic convergence. Both terms of the fraction are multiplied by `ρ³`, so that no division is needed.
+    /// Halley's step is `δ = −2 f f′ / (2 f′² − f f″)`. Half of it is used as `tan(δ/2)`, which differs by `O(δ³)`
+    /// and so keeps the cubic convergence. Both terms of the fraction are multiplied by `ρ³`, so that no division
+    /// is needed.
     ///
     /// `f = ρ z z′ + (ρ − R) e·e′` is evaluated by products that keep it accurate, see `PairFrame::sample`; its
     /// derivatives are those of `pρ − q`, with `e·e′ = q/R`.
@@ -141,8 +143,8 @@ impl<T: SimdReal> NormalizedPair<T> {
         ([f * rho_f1 * rho_sq, denominator], [rho, rho_f1])
     }
 
-    /// `g_αα = R ρ`, `g_αθ`, `g_θθ` and `h′`, where `g(α, θ) = ½ |A(α) − P(θ)|²` and `α` is the angle of the foot, the point of
-    /// the base nearest to `P`.
+    /// `g_αα = R ρ`, `g_αθ`, `g_θθ` and `h′`, where `g(α, θ) = ½ |A(α) − P(θ)|²` and `α` is the angle of the foot,
+    /// the point of the base nearest to `P`.
     ///
     /// `x, y` is the unit vector to the foot. Same formulas as `PairFrame::minimum`.
     #[inline(always)]

@@ -1,7 +1,7 @@
 //! The common frame of two circles, and the distance from one circle along the other.
 //!
-//! [`PairFrame`] reduces a pair to six numbers in `f64` and evaluates half the squared distance `h(θ)` with its derivatives. The
-//! exhaustive method and the polynomial work on it; the fast method takes its numbers as a
+//! [`PairFrame`] reduces a pair to six numbers in `f64` and evaluates half the squared distance `h(θ)` with its
+//! derivatives. The exhaustive method and the polynomial work on it; the fast method takes its numbers as a
 //! [`NormalizedPair`].
 
 use crate::circle::{Circle, Vec3};
@@ -16,15 +16,16 @@ const NEGLIGIBLE: f64 = 1e-100;
 
 /// A pair of circles: the **base** circle, and the **moving** circle, along which a point `P(θ)` runs.
 ///
-/// Let `Y` be the unit vector along `N_moving × N_base`, which lies in both planes, `X = Y × N_base`, and `U = Y × N_moving`,
-/// the direction in which the moving circle ascends most steeply over the base plane. In the axes `(X, Y, N_base)` around
-/// the base centre the moving circle is
+/// Let `Y` be the unit vector along `N_moving × N_base`, which lies in both planes, `X = Y × N_base`, and
+/// `U = Y × N_moving`, the direction in which the moving circle ascends most steeply over the base plane. In the
+/// axes `(X, Y, N_base)` around the base centre the moving circle is
 ///
 /// `P(θ) = (x₀ + r c cos θ, y₀ + r sin θ, z₀ + r s cos θ)`, `c = N_base·N_moving`, `s = |N_base × N_moving|`.
 ///
 /// Lengths are divided by `scale`, the largest of the radii and the distance of the centres.
 ///
-/// **Degenerate case.** For parallel planes any `Y` in them will do; the second axis of the base's own frame is taken.
+/// **Degenerate case.** For parallel planes any `Y` in them will do; the second axis of the base's own frame is
+/// taken.
 pub(crate) struct PairFrame<'a> {
     pub base: &'a Circle,
     pub moving: &'a Circle,
@@ -48,7 +49,8 @@ pub(crate) struct PairFrame<'a> {
     direct_product_below: f64,
 }
 
-/// Half the squared distance `h(θ) = ½ d²`, `d² = z² + (ρ − R)²`, and its derivatives at one angle of the moving circle.
+/// Half the squared distance `h(θ) = ½ d²`, `d² = z² + (ρ − R)²`, and its derivatives at one angle of the moving
+/// circle.
 ///
 /// Lengths in units of the pair's scale, derivatives in θ.
 #[derive(Clone, Copy)]
@@ -97,9 +99,9 @@ impl<'a> PairFrame<'a> {
         let scale = offset.norm().max(base.radius).max(moving.radius);
         let (n, m) = (&*base.normal, &*moving.normal);
         let cross = m.cross(n);
-        // Axes. At small tilts the rounding error of the cross product is relatively large. After a second projection onto
-        // the base plane, its remaining part along `m` is that error times the tilt, which is negligible. Below 1e-150 the
-        // squared norm would underflow.
+        // Axes. At small tilts the rounding error of the cross product is relatively large. After a second
+        // projection onto the base plane, its remaining part along `m` is that error times the tilt, which is
+        // negligible. Below 1e-150 the squared norm would underflow.
         let y = (cross - n * n.dot(&cross)).try_normalize(1e-150).unwrap_or_else(|| base.frame().1);
         let x = y.cross(n);
         let tilt_cos = n.dot(m);
@@ -128,9 +130,9 @@ impl<'a> PairFrame<'a> {
     ///
     /// `h′ = z z′ + (ρ − R) ρ′`, `h″ = z′² + z z″ + ρ′² + (ρ − R) ρ″`, `ρ′ = e·e′/ρ`, `ρ″ = ((e·e′)′ − ρ′²)/ρ`.
     ///
-    /// For nearly coaxial pairs all factors of these products are small, so that `h′` is accurate *relative to its own size*.
-    /// To keep it so, `e·e′ = r (y₀ cos θ − c x₀ sin θ) + r² s² sin θ cos θ` is evaluated from its harmonics, except near the
-    /// axis of the base, where the scalar product of the two vectors is more accurate.
+    /// For nearly coaxial pairs all factors of these products are small, so that `h′` is accurate *relative to its
+    /// own size*. To keep it so, `e·e′ = r (y₀ cos θ − c x₀ sin θ) + r² s² sin θ cos θ` is evaluated from its
+    /// harmonics, except near the axis of the base, where the scalar product of the two vectors is more accurate.
     ///
     /// **Degenerate case.** On the axis (`ρ = 0`) `h` has an upward kink, possibly a maximum but never a minimum;
     /// `ρ′ = ρ″ = 0` are used.
@@ -184,13 +186,15 @@ impl<'a> PairFrame<'a> {
         self.moving.direction_angle_rad(&self.steepest)
     }
 
-    /// The amplitude `r |(c x₀ + s z₀, y₀)|` of `w·w′ = ½ (|w|²)′`, `w = P − c_base`, which is a harmonic of degree one.
+    /// The amplitude `r |(c x₀ + s z₀, y₀)|` of `w·w′ = ½ (|w|²)′`, `w = P − c_base`, which is a harmonic of degree
+    /// one.
     pub fn half_distance_sq_amplitude(&self) -> f64 {
         let [x0, y0, z0] = self.offset;
         self.radius * (self.tilt_cos * x0 + self.tilt_sin * z0).hypot(y0)
     }
 
-    /// The special position of the pair, up to [`ROUNDING`]. Never [`PairKind::Equidistant`]: that shows only along the circle.
+    /// The special position of the pair, up to [`ROUNDING`]. Never [`PairKind::Equidistant`]: that shows only along
+    /// the circle.
     pub fn kind(&self) -> PairKind {
         let [x0, y0, z0] = self.offset.map(f64::abs);
         let parallel = self.tilt_sin <= ROUNDING;
@@ -214,8 +218,8 @@ impl<'a> PairFrame<'a> {
         r * (r - radial - at.z * self.tilt_sin * cos)
     }
 
-    /// The distance at an angle, in the caller's unit, and the unit vectors from the centres to the two nearest points: base
-    /// first, then moving circle.
+    /// The distance at an angle, in the caller's unit, and the unit vectors from the centres to the two nearest
+    /// points: base first, then moving circle.
     pub fn distance_and_directions(&self, cos: f64, sin: f64) -> (f64, [Vec3; 2]) {
         let sample = self.sample(cos, sin);
         let (foot, [x, y]) = (sample.foot(), self.axes);
@@ -250,8 +254,8 @@ impl<'a> PairFrame<'a> {
         Minimum::from_base(distance, [base_point, moving_point], direction_b, slope, [base, mixed, moving], swapped)
     }
 
-    /// The minima at these angles of the moving circle (at least one, at most `MAX_MINIMA`), sorted by distance. The base is
-    /// circle A, or B if `swapped`.
+    /// The minima at these angles of the moving circle (at least one, at most `MAX_MINIMA`), sorted by distance.
+    /// The base is circle A, or B if `swapped`.
     pub fn minima_at_angles(&self, angles_rad: &[f64], continuum: bool, swapped: bool) -> Minima {
         self.minima_at(angles_rad.iter().map(|&angle_rad| Direction::at(angle_rad)), continuum, swapped)
     }

@@ -1,8 +1,10 @@
 //! The minima from the roots of a polynomial of degree 8 in the cosine of the angle (Appendix A): a cross-check.
 //!
-//! It finds candidates independently of the fast and the exhaustive method; refinement and evaluation use the same `h`.
+//! It finds candidates independently of the fast and the exhaustive method; refinement and evaluation use the same
+//! `h`.
 //!
-//! Symbols: `γ = cos θ` and `σ = sin θ` with the angle `θ` on circle B in its own frame `(U, V)`; `N` is the normal of A.
+//! Symbols: `γ = cos θ` and `σ = sin θ` with the angle `θ` on circle B in its own frame `(U, V)`; `N` is the normal
+//! of A.
 
 use crate::circle::{Circle, Vec3};
 use crate::circle_circle::exhaustive::MinimumAngles;
@@ -17,25 +19,26 @@ type Polynomial = [f64; DEGREE + 1];
 /// Degree of the polynomial.
 const DEGREE: usize = 8;
 
-/// Tolerance on the imaginary part of a real root and on `[−1, 1]`. Rounding splits double roots by `√ε`, quadruple ones by
-/// `ε^¼`, and every symmetric pair has multiple roots.
+/// Tolerance on the imaginary part of a real root and on `[−1, 1]`. Rounding splits double roots by `√ε`, quadruple
+/// ones by `ε^¼`, and every symmetric pair has multiple roots.
 const SPLIT: f64 = 1e-3;
 /// Candidates that Newton's method would move farther than this are not critical points.
 const REACH_RAD: f64 = 0.1;
 
-/// Local minima of the distance between two circles, from the roots of a polynomial `φ(γ)` of degree 8, `γ = cos θ` with the
-/// angle `θ` on B (section 3.2 and Appendix A). A cross-check only: use [`circle_distance_minima`](crate::circle_distance_minima).
+/// Local minima of the distance between two circles, from the roots of a polynomial `φ(γ)` of degree 8, `γ = cos θ`
+/// with the angle `θ` on B (section 3.2 and Appendix A). A cross-check only: use
+/// [`circle_distance_minima`](crate::circle_distance_minima).
 ///
-/// With `Δ = P_B(θ) − c_A`, a critical point satisfies `Δ·Δ′ = R_A (N×Δ)·(N×Δ′)/|N×Δ|`. Squaring once removes the root, and
-/// squaring again removes `sin θ`: `φ(γ) = p₆² − (1 − γ²) p₇² = 0`. Its roots are only candidates. For each, both signs of
-/// `sin θ` are refined by Newton's method on the original equation, and the minima are kept.
+/// With `Δ = P_B(θ) − c_A`, a critical point satisfies `Δ·Δ′ = R_A (N×Δ)·(N×Δ′)/|N×Δ|`. Squaring once removes the
+/// root, and squaring again removes `sin θ`: `φ(γ) = p₆² − (1 − γ²) p₇² = 0`. Its roots are only candidates. For
+/// each, both signs of `sin θ` are refined by Newton's method on the original equation, and the minima are kept.
 ///
-/// **Accuracy.** Fragile in `f64`: `φ` contains the fourth power of small quantities, so that well separated angles can become a
-/// multiple root up to rounding. At least one minimum is always returned, but not always all of them.
+/// **Accuracy.** Fragile in `f64`: `φ` contains the fourth power of small quantities, so that well separated angles
+/// can become a multiple root up to rounding. At least one minimum is always returned, but not always all of them.
 ///
-/// **Degenerate cases.** `φ` vanishes for coaxial, Villarceau and meridian pairs. If all its coefficients are zero up to
-/// [`ROUNDING`]², the lowest of 64 points is returned as the representative of a continuum. If no candidate is a minimum, the
-/// lowest of the 64 points is refined and returned.
+/// **Degenerate cases.** `φ` vanishes for coaxial, Villarceau and meridian pairs. If all its coefficients are zero
+/// up to [`ROUNDING`]², the lowest of 64 points is returned as the representative of a continuum. If no candidate
+/// is a minimum, the lowest of the 64 points is refined and returned.
 ///
 /// # Examples
 ///
@@ -44,8 +47,8 @@ const REACH_RAD: f64 = 0.1;
 ///
 /// let a = Circle::new(Vec3::zeros(), Vec3::z_axis(), 1.0);
 /// let b = Circle::new(Vec3::new(0.9, 0.2, 0.3), Vec3::y_axis(), 0.7);
-/// let [p, q] = [circle_distance_minima(&a, &b), circle_distance_minima_polynomial(&a, &b)].map(|m| m.closest().distance);
-/// assert!((p - q).abs() < 1e-14);
+/// let [p, q] = [circle_distance_minima(&a, &b), circle_distance_minima_polynomial(&a, &b)];
+/// assert!((p.closest().distance - q.closest().distance).abs() < 1e-14);
 /// ```
 pub fn circle_distance_minima_polynomial(a: &Circle, b: &Circle) -> Minima {
     let pair = PairFrame::new(a, b);
@@ -139,8 +142,8 @@ fn product(p: &Polynomial, q: &Polynomial) -> Polynomial {
 
 /// All complex roots, by the Ehrlich–Aberth iteration: simultaneous Newton steps in which the roots repel each other.
 ///
-/// Simple roots converge cubically, multiple ones linearly and only to their limited accuracy. Leading coefficients that are
-/// mere rounding are dropped; their roots lie far outside of `[−1, 1]` and are returned as infinite.
+/// Simple roots converge cubically, multiple ones linearly and only to their limited accuracy. Leading coefficients
+/// that are mere rounding are dropped; their roots lie far outside of `[−1, 1]` and are returned as infinite.
 fn roots(coefficients: &Polynomial) -> [Complex<f64>; DEGREE] {
     let largest = coefficients.iter().fold(0.0_f64, |size, c| size.max(c.abs()));
     let leading = (0..=DEGREE).rev().find(|&i| coefficients[i].abs() > 1e-16 * largest).unwrap_or(0);

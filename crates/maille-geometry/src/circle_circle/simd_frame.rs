@@ -83,28 +83,28 @@ const REPROJECT_SIN_SQ: f64 = 1e-2;
 impl<T: SimdReal> PairVectors<T> {
     /// Are the circles certainly more than `reach` apart?
     ///
-    /// The bounds of `lower_bound.rs`, compared as squares to avoid roots: the bounding spheres are too far apart, or one circle
-    /// lies too high above the plane of the other, or too far inside the cylinder through it.
+    /// The bounds of `lower_bound.rs`, compared as squares to avoid roots: the bounding spheres are too far apart,
+    /// or one circle lies too high above the plane of the other, or too far inside the cylinder through it.
     #[inline(always)]
     pub fn is_beyond(&self, reach: T) -> T::Mask {
         let (zero, [a, b]) = (reach.splat(0.0), self.radii);
-        let apart_sq = dot(self.between, self.between);
+        let distance_sq = dot(self.between, self.between);
         let cos = dot(self.normals[0], self.normals[1]);
         let sin_sq = cos.neg_mul_add(cos, zero.splat(1.0)).max(zero);
         // What rounding could add to the squares.
-        let spare = (apart_sq + a * a + b * b) * ROUNDING_MARGIN;
+        let margin = (distance_sq + a * a + b * b) * ROUNDING_MARGIN;
         // Bounding spheres.
         let outer = a + b + reach;
-        let mut beyond = (outer * outer + spare).lt(apart_sq);
+        let mut beyond = (outer * outer + margin).lt(distance_sq);
         for (base, moving) in [(0, 1), (1, 0)] {
             let (base_radius, radius) = (self.radii[base], self.radii[moving]);
             let height = dot(self.normals[base], self.between);
             // Height over the plane of the base.
-            let over = (height.abs() - reach).max(zero);
-            beyond = T::or(beyond, (radius * radius).mul_add(sin_sq, spare).lt(over * over));
+            let above = (height.abs() - reach).max(zero);
+            beyond = T::or(beyond, (radius * radius).mul_add(sin_sq, margin).lt(above * above));
             // Distance from the axis of the base, for a small circle inside.
             let inner = (base_radius - radius - reach).max(zero);
-            beyond = T::or(beyond, (height.neg_mul_add(height, apart_sq) + spare).lt(inner * inner));
+            beyond = T::or(beyond, (height.neg_mul_add(height, distance_sq) + margin).lt(inner * inner));
         }
         beyond
     }
@@ -170,8 +170,8 @@ pub(crate) struct PairFrames<T: SimdReal> {
 }
 
 impl<T: SimdReal> PairFrames<T> {
-    /// Can the pair be treated in registers? False if the planes are so nearly parallel that rounding would turn the axes, if a
-    /// square could overflow or underflow, and for invalid radii and non-finite numbers.
+    /// Can the pair be treated in registers? False if the planes are so nearly parallel that rounding would turn
+    /// the axes, if a square could overflow or underflow, and for invalid radii and non-finite numbers.
     #[inline(always)]
     pub fn is_regular(&self) -> T::Mask {
         let splat = |x| self.tilt_sin.splat(x);

@@ -1,18 +1,19 @@
 //! What one sample proves about `h(θ) = ½ d²` on an interval around it.
 //!
-//! Let `m` be the centre of the interval, `σ` its half width (radians), and `M` an upper bound of `|h‴|` on it. By Taylor's
-//! theorem:
+//! Let `m` be the centre of the interval, `σ` its half width (radians), and `M` an upper bound of `|h‴|` on it. By
+//! Taylor's theorem:
 //!
 //! 1. `|h′(m)| > σ |h″(m)| + ½ σ² M`: no critical point.
 //! 2. `h″(m) + σ M < 0`: h is concave, no minimum.
 //! 3. `h″(m) − σ M > 0`: h is convex, at most one minimum.
 //!
-//! Near the axis of the base circle, where no `M` exists, a fourth test applies. At a critical point `w·w′ = R ρ′` (`w` from the
-//! base centre), so that
+//! Near the axis of the base circle, where no `M` exists, a fourth test applies. At a critical point `w·w′ = R ρ′`
+//! (`w` from the base centre), so that
 //!
 //! `h″ = (w·w′)′ − R ρ″ = (w·w′)′ − R ((|e′|² − (w·w′)²/R²)/ρ + e·e″/ρ)`.
 //!
-//! 4. `(w·w′)² < R² (|e′|² − ρ K)` with `K = (max |(w·w′)′| + R max |e″|)/R`: `h″ < 0` at every critical point, no minimum.
+//! 4. `(w·w′)² < R² (|e′|² − ρ K)` with `K = (max |(w·w′)′| + R max |e″|)/R`: `h″ < 0` at every critical point, no
+//!    minimum.
 
 use crate::circle_circle::pair_frame::{PairFrame, Sample};
 
@@ -81,9 +82,9 @@ impl IntervalBounds {
 
     /// An upper bound of `|h‴|` on the interval: the smaller of two.
     ///
-    /// The first is from `h‴ = 3 z′z″ + z z‴ + 3 ρ′ρ″ + (ρ − R) ρ‴`, factor by factor, which stays small for nearly coaxial
-    /// pairs; the second from `h‴ = (w·w′)″ − R ρ‴`. Both use
-    /// `ρ′ = e·e′/ρ`, `ρ″ = ((e·e′)′ − ρ′²)/ρ`, `ρ‴ = ((e·e′)″ − 3 ρ′ρ″)/ρ`, and `|ρ′| ≤ |e′|`.
+    /// The first is from `h‴ = 3 z′z″ + z z‴ + 3 ρ′ρ″ + (ρ − R) ρ‴`, factor by factor, which stays small for nearly
+    /// coaxial pairs; the second from `h‴ = (w·w′)″ − R ρ‴`. Both use `ρ′ = e·e′/ρ`, `ρ″ = ((e·e′)′ − ρ′²)/ρ`,
+    /// `ρ‴ = ((e·e′)″ − 3 ρ′ρ″)/ρ`, and `|ρ′| ≤ |e′|`.
     fn third_derivative(
         &self,
         pair: &PairFrame<'_>,

@@ -1,16 +1,17 @@
 //! The exhaustive method: all minima of `h(θ) = ½ d²` along the moving circle by bisection, for any pair.
 //!
-//! The circle is divided into intervals. For each, the tests of `interval_bounds.rs` prove that it holds no minimum, or that
-//! `h` is convex, so that it holds one if `h′` goes from − to + between its ends; otherwise it is bisected. The sign of `h′` at an
-//! end is computed from the same numbers for both neighbours, so that each change of sign counts once. Bisection ends at
-//! intervals of width `2π · 2⁻²⁴`, where the signs alone decide.
+//! The circle is divided into intervals. For each, the tests of `interval_bounds.rs` prove that it holds no
+//! minimum, or that `h` is convex, so that it holds one if `h′` goes from − to + between its ends; otherwise it is
+//! bisected. The sign of `h′` at an end is computed from the same numbers for both neighbours, so that each change
+//! of sign counts once. Bisection ends at intervals of width `2π · 2⁻²⁴`, where the signs alone decide.
 //!
-//! **Nearly constant distances.** Near an equidistant pair (but not a coaxial one) the bounds are much larger than `h′`, and
-//! bisection would go on everywhere. After [`MAX_SAMPLES`] samples the search restarts in a coarse mode: intervals of width
-//! `2π/256` are decided by the signs of `h′` at their ends and centre. There `h` is a constant plus a small smooth function, so the
-//! signs show all minima. The exception is the neighbourhood of the axis of the base circle, where `h` can vary within an
-//! arbitrarily small angle and bisection continues. Intervals on which `h` is constant up to rounding form a plateau. It is the
-//! answer, a continuum, unless a lower minimum exists elsewhere.
+//! **Nearly constant distances.** Near an equidistant pair (but not a coaxial one) the bounds are much larger than
+//! `h′`, and bisection would go on everywhere. After [`MAX_SAMPLES`] samples the search restarts in a coarse mode:
+//! intervals of width `2π/256` are decided by the signs of `h′` at their ends and centre. There `h` is a constant
+//! plus a small smooth function, so the signs show all minima. The exception is the neighbourhood of the axis of
+//! the base circle, where `h` can vary within an arbitrarily small angle and bisection continues. Intervals on
+//! which `h` is constant up to rounding form a plateau. It is the answer, a continuum, unless a lower minimum
+//! exists elsewhere.
 
 mod grid;
 mod interval_bounds;
@@ -23,14 +24,15 @@ use crate::circle_circle::pair_frame::{PairFrame, Sample};
 use crate::tolerance::ROUNDING;
 use std::f64::consts::TAU;
 
-/// Number of samples after which the search becomes coarse. Of 300,000 random, linked and nearly touching pairs, half took 18
-/// to 28 samples, one in a thousand more than 110, and none more than 194.
+/// Number of samples after which the search becomes coarse. Of 300,000 random, linked and nearly touching pairs,
+/// half took 18 to 28 samples, one in a thousand more than 110, and none more than 194.
 const MAX_SAMPLES: usize = 400;
 /// Bisections after which the signs decide in the coarse mode: width `2π/256`.
 const COARSE_LEVEL: usize = 4;
 /// Coarse mode: an interval is far from the axis if ρ is more than this many times its change over half the interval.
 const FAR_FROM_AXIS: f64 = 16.0;
-/// Minima closer than this are merged: `2π · 2⁻¹⁸ = 2.4e-5`. Their distances differ by its fourth power, which is rounding.
+/// Minima closer than this are merged: `2π · 2⁻¹⁸ = 2.4e-5`. Their distances differ by its fourth power, which is
+/// rounding.
 const MERGE_RAD: f64 = TAU / (1 << 18) as f64;
 
 /// An interval of θ that is still undecided.
@@ -85,8 +87,8 @@ impl MinimumAngles {
     pub fn add(&mut self, pair: &PairFrame<'_>, angle_rad: f64) {
         let distance = |angle_rad: f64| pair.sample_at_angle(angle_rad).distance();
         for known in &mut self.angles_rad[..self.count] {
-            let apart = (angle_rad - *known).rem_euclid(TAU);
-            if apart.min(TAU - apart) < MERGE_RAD {
+            let difference = (angle_rad - *known).rem_euclid(TAU);
+            if difference.min(TAU - difference) < MERGE_RAD {
                 if distance(angle_rad) < distance(*known) {
                     *known = angle_rad;
                 }
@@ -148,8 +150,8 @@ enum Constancy {
 
 /// Is `h` constant up to rounding?
 ///
-/// Sixteen samples suffice: `ρ h′` divides a trigonometric polynomial of degree four, which has at most eight roots unless it is
-/// zero. So, unless ρ is small, `h′` is small between the samples too.
+/// Sixteen samples suffice: `ρ h′` divides a trigonometric polynomial of degree four, which has at most eight roots
+/// unless it is zero. So, unless ρ is small, `h′` is small between the samples too.
 fn constancy(pair: &PairFrame<'_>) -> Constancy {
     let mut best = (f64::INFINITY, 0);
     let mut near_axis = false;
@@ -273,7 +275,8 @@ fn safeguarded_newton(pair: &PairFrame<'_>, mut bracket: [f64; 2], start: &Sampl
         };
         last_step = (next - angle_rad).abs();
         angle_rad = next;
-        // Newton converges quadratically: after a step of this size the next is below rounding, close to the axis too.
+        // Newton converges quadratically: after a step of this size the next is below rounding, close to the axis
+        // too.
         if last_step < 1e-11 && next == newton || last_step < 1e-16 {
             break;
         }

@@ -1,9 +1,9 @@
 //! The trigonometric polynomial `H = p²ρ² − q²` of degree 4 and its Bernstein coefficients on an arc.
 //!
-//! `p`, `q` and `ρ` are those of `normalized_pair.rs`; `root_count.rs` shows what the roots of `H` mean. On an arc, `H (1 + t²)⁴`
-//! is a polynomial of degree 8, `t = tan((θ − centre)/2)`; the number of sign changes in its nine Bernstein coefficients
-//! bounds its number of roots there (Descartes' rule of signs). Coefficients are divided by those of `(1 + t²)⁴`, which are
-//! positive, unless stated otherwise.
+//! `p`, `q` and `ρ` are those of `normalized_pair.rs`; `root_count.rs` shows what the roots of `H` mean. On an arc,
+//! `H (1 + t²)⁴` is a polynomial of degree 8, `t = tan((θ − centre)/2)`; the number of sign changes in its nine
+//! Bernstein coefficients bounds its number of roots there (Descartes' rule of signs). Coefficients are divided by
+//! those of `(1 + t²)⁴`, which are positive, unless stated otherwise.
 
 use crate::circle_circle::fast::arc_tables::{ARCS, ArcTables, BernsteinBasis};
 use crate::circle_circle::normalized_pair::NormalizedPair;
@@ -86,8 +86,8 @@ impl<T: SimdReal> Harmonics<T> {
         Self { mean, cosine, sine, size }
     }
 
-    /// Cosine and sine parts of the four harmonics about the centre of arc `M < ARCS / 2`. From one arc to the next their
-    /// phases advance by 45°, 90°, 135° and 180°.
+    /// Cosine and sine parts of the four harmonics about the centre of arc `M < ARCS / 2`. From one arc to the next
+    /// their phases advance by 45°, 90°, 135° and 180°.
     #[inline(always)]
     fn rotated_by_eighths<const M: usize>(&self) -> [[T; 2]; 4] {
         let ([c1, c2, c3, c4], [s1, s2, s3, s4]) = (self.cosine, self.sine);
@@ -105,8 +105,9 @@ impl<T: SimdReal> Harmonics<T> {
         }
     }
 
-    /// The Bernstein coefficients on arc `M < ARCS / 2` and on the opposite one. The two differ in the sign of the odd
-    /// harmonics. The first and the last coefficient are the values of H at the ends of the arc, taken from `ends`.
+    /// The Bernstein coefficients on arc `M < ARCS / 2` and on the opposite one. The two differ in the sign of the
+    /// odd harmonics. The first and the last coefficient are the values of H at the ends of the arc, taken from
+    /// `ends`.
     #[inline(always)]
     pub fn on_opposite_arcs<const M: usize>(&self, ends: &[T; ARCS], tables: &ArcTables) -> [[T; 9]; 2] {
         let [first, second, third, fourth] = self.rotated_by_eighths::<M>();
@@ -170,8 +171,8 @@ fn splat4<T: SimdReal>(model: T, values: &[f64; 4]) -> [T; 4] {
     [model.splat(values[0]), model.splat(values[1]), model.splat(values[2]), model.splat(values[3])]
 }
 
-/// The Bernstein coefficients on an arc from the mean of H, its harmonics about the centre of the arc (cosine and sine
-/// parts) and its values at the ends.
+/// The Bernstein coefficients on an arc from the mean of H, its harmonics about the centre of the arc (cosine and
+/// sine parts) and its values at the ends.
 #[inline(always)]
 pub(crate) fn bernstein_on_arc<T: SimdReal>(
     mean: T,
@@ -201,15 +202,16 @@ pub(crate) fn bernstein_on_arc<T: SimdReal>(
 
 /// The number of sign changes in the coefficients; pairs of coefficients with uncertain signs count as changes.
 #[inline(always)]
-pub(crate) fn sign_changes<T: SimdReal>(coefficients: &[T; 9], doubt: T) -> T {
-    let mut sums = [doubt.splat(0.0); 4];
+pub(crate) fn sign_changes<T: SimdReal>(coefficients: &[T; 9], threshold: T) -> T {
+    let mut sums = [threshold.splat(0.0); 4];
     for i in 0..8 {
-        sums[i % 4] = sums[i % 4].add_one_if((coefficients[i] * coefficients[i + 1]).lt(doubt));
+        sums[i % 4] = sums[i % 4].add_one_if((coefficients[i] * coefficients[i + 1]).lt(threshold));
     }
     (sums[0] + sums[1]) + (sums[2] + sums[3])
 }
 
-/// The Bernstein coefficients on the two halves of an arc, by de Casteljau's algorithm. These are undivided coefficients.
+/// The Bernstein coefficients on the two halves of an arc, by de Casteljau's algorithm. These are undivided
+/// coefficients.
 ///
 /// Sums are formed first and scaled by powers of ½ at the end, which is exact and saves multiplications.
 #[inline(always)]

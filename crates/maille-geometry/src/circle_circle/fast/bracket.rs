@@ -65,8 +65,8 @@ impl<T: SimdReal> Bracket<T> {
         }
     }
 
-    /// The root of the parabola in `t` through three values of `G₋`: in the middle, at the end on the side of the root, and
-    /// between the two.
+    /// The root of the parabola in `t` through three values of `G₋`: in the middle, at the end on the side of the
+    /// root, and between the two.
     #[inline(always)]
     pub fn initial_guess(&self, pair: &NormalizedPair<T>) -> Angle<T> {
         // Values of G₋, with the sign that makes G₋ rise from the middle towards the root.

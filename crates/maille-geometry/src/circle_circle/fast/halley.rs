@@ -1,8 +1,9 @@
-//! The minimum in a bracket: Halley's iteration, for several brackets or lanes at once, and Newton's method with bisection
-//! where it fails.
+//! The minimum in a bracket: Halley's iteration, for several brackets or lanes at once, and Newton's method with
+//! bisection where it fails.
 //!
-//! The unknown is a root of `f = ρ h′`, see `NormalizedPair::halley_step`. Halley's iteration converges cubically; from the
-//! initial guess of the bracket two steps are usually enough. One step takes one square root and one division.
+//! The unknown is a root of `f = ρ h′`, see `NormalizedPair::halley_step`. Halley's iteration converges cubically;
+//! from the initial guess of the bracket two steps are usually enough. One step takes one square root and one
+//! division.
 
 use crate::circle_circle::angle::{Angle, Direction};
 use crate::circle_circle::fast::bracket::Bracket;
@@ -17,13 +18,14 @@ const FIRST_TESTED_STEP: usize = 2;
 const CONVERGED_STEP_TAN: f64 = 2e-6;
 /// Maximum number of Newton and bisection steps.
 const MAX_NEWTON_STEPS: usize = 60;
-/// Tangent of half a step: after a shorter Newton step the remaining error, which is quadratic in it, is below rounding.
+/// Tangent of half a step: after a shorter Newton step the remaining error, which is quadratic in it, is below
+/// rounding.
 const CONVERGED_NEWTON_STEP_TAN: f64 = 1e-9;
 /// Minima nearer to the axis of the base, in radii of the moving circle, are left to the exhaustive method.
 const MIN_AXIS_DISTANCE: f64 = 1e-2;
 
-/// The roots of `h′` in the first `used` brackets, one pair each, and whether each is a converged minimum inside its bracket (1,
-/// else 0).
+/// The roots of `h′` in the first `used` brackets, one pair each, and whether each is a converged minimum inside
+/// its bracket (1, else 0).
 #[inline(always)]
 pub(crate) fn halley_roots<T: SimdReal, const N: usize>(
     pairs: [&NormalizedPair<T>; N],
@@ -66,8 +68,8 @@ pub(crate) fn halley_roots<T: SimdReal, const N: usize>(
     (at, good)
 }
 
-/// The angle after a Halley step; whether the step was short enough to be the last; and whether the point is acceptable: far
-/// enough from the axis, and a minimum.
+/// The angle after a Halley step; whether the step was short enough to be the last; and whether the point is
+/// acceptable: far enough from the axis, and a minimum.
 #[inline(always)]
 fn checked_step<T: SimdReal>(pair: &NormalizedPair<T>, angle: Angle<T>) -> (Angle<T>, T::Mask, T::Mask) {
     let ([numerator, denominator], [rho, rho_f1]) = pair.halley_step(angle.cos, angle.sin);
@@ -79,8 +81,8 @@ fn checked_step<T: SimdReal>(pair: &NormalizedPair<T>, angle: Angle<T>) -> (Angl
     )
 }
 
-/// The root of `h′` in a bracket by Newton's method, safeguarded by bisection. `None` if it does not converge to an acceptable
-/// minimum.
+/// The root of `h′` in a bracket by Newton's method, safeguarded by bisection. `None` if it does not converge to an
+/// acceptable minimum.
 pub(crate) fn safeguarded_newton(pair: &NormalizedPair<f64>, bracket: &Bracket<f64>) -> Option<Angle<f64>> {
     let Angle { cos, sin } = bracket.middle;
     let middle = Direction { cos, sin };

@@ -9,8 +9,9 @@
 //! | `bracket.rs` | an arc with exactly one minimum, and the initial guess on it |
 //! | `halley.rs` | the minimum on such an arc |
 //!
-//! Degenerate and nearly degenerate pairs are recognized and left to the exhaustive method. The functions that are generic
-//! over [`SimdReal`](crate::simd::SimdReal) also run on SIMD registers, in `one_pair/simd.rs` and `many_pairs/block.rs`.
+//! Degenerate and nearly degenerate pairs are recognized and left to the exhaustive method. The functions that are
+//! generic over [`SimdReal`](crate::simd::SimdReal) also run on SIMD registers, in `one_pair/simd.rs` and
+//! `many_pairs/block.rs`.
 
 pub(crate) mod arc_tables;
 pub(crate) mod bernstein;

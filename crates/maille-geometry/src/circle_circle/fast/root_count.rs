@@ -2,24 +2,26 @@
 //!
 //! Symbols as in `normalized_pair.rs`: `h′ = p − q/ρ`, so the sign of `h′` is that of `G₋ = pρ − q`.
 //!
-//! **The polynomial.** Let `G₊ = pρ + q`; its roots are critical points of the distance to the far side of the base circle. The
-//! product `H = G₋ G₊ = p²ρ² − q²` is a trigonometric polynomial of degree 4 (that of Appendix A before it is squared once
-//! more), hence on an arc a polynomial of degree 8 in `t = tan((θ − centre)/2)`.
+//! **The polynomial.** Let `G₊ = pρ + q`; its roots are critical points of the distance to the far side of the base
+//! circle. The product `H = G₋ G₊ = p²ρ² − q²` is a trigonometric polynomial of degree 4 (that of Appendix A before
+//! it is squared once more), hence on an arc a polynomial of degree 8 in `t = tan((θ − centre)/2)`.
 //!
-//! **Upper bound.** By Descartes' rule of signs, the Bernstein coefficients of H on the arc change sign at least as often as H
-//! has roots there, counts with multiplicity.
+//! **Upper bound.** By Descartes' rule of signs, the Bernstein coefficients of H on the arc change sign at least as
+//! often as H has roots there, counted with multiplicity.
 //!
-//! **Lower bound.** If `G₋` has different signs at the two ends of the arc, it has a root between them; likewise `G₊`.
+//! **Lower bound.** If `G₋` has different signs at the two ends of the arc, it has a root between them; likewise
+//! `G₊`.
 //!
-//! **Conclusion.** Where the two bounds agree, all roots are known: `G₋` has exactly one root if its sign changes between
-//! the ends, and none otherwise. On every arc the first bound is at least the second, so it is enough to compare the sums over
-//! all arcs.
+//! **Conclusion.** Where the two bounds agree, all roots are known: `G₋` has exactly one root if its sign changes
+//! between the ends, and none otherwise. On every arc the first bound is at least the second, so it is enough to
+//! compare the sums over all arcs.
 //!
-//! **Rounding.** If rounding could change the sign of a coefficient, both neighbouring pairs count as sign changes. The upper
-//! bound can then only become too large, and the arc counts as undecided.
+//! **Rounding.** If rounding could change the sign of a coefficient, both neighbouring pairs count as sign changes.
+//! The upper bound can then only become too large, and the arc counts as undecided.
 //!
-//! **At most three minima.** Where `ρ > 0`, `G₊` is smooth and changes sign at least twice, because the distance to the far side
-//! has a maximum and a minimum. H has at most eight roots, so `G₋` has at most six, and the distance at most three minima.
+//! **At most three minima.** Where `ρ > 0`, `G₊` is smooth and changes sign at least twice, because the distance to
+//! the far side has a maximum and a minimum. H has at most eight roots, so `G₋` has at most six, and the distance
+//! at most three minima.
 
 use crate::circle_circle::angle::Angle;
 use crate::circle_circle::fast::arc_tables::{ARCS, ArcTables};
@@ -33,8 +35,8 @@ const MIN_SLOPE: f64 = 1e-10;
 
 /// `H = G₋ G₊` at an angle, and two numbers with the signs of `G₋` and `G₊`.
 ///
-/// The signs need no square root: where `H > 0` both are that of `p`; where `H < 0` they are those of `−q` and `q`. Near
-/// `H = 0` rounding may decide, but there the Bernstein coefficients have no certain sign either.
+/// The signs need no square root: where `H > 0` both are that of `p`; where `H < 0` they are those of `−q` and `q`.
+/// Near `H = 0` rounding may decide, but there the Bernstein coefficients have no certain sign either.
 #[derive(Clone, Copy)]
 pub(crate) struct FactorSigns<T> {
     /// H.

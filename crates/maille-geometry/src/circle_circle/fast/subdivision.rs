@@ -1,8 +1,8 @@
 //! Bisection of the arcs on which the root count is not exact.
 //!
-//! Bernstein coefficients on a smaller arc change sign less often, so that the two bounds of `root_count.rs` agree sooner or
-//! later, unless roots nearly coincide. [`subdivide_first_doubtful`] bisects the first doubtful arc of every lane, which
-//! settles most pairs; [`BracketList::isolate`] bisects all doubtful arcs of one pair.
+//! Bernstein coefficients on a smaller arc change sign less often, so that the two bounds of `root_count.rs` agree
+//! sooner or later, unless roots nearly coincide. [`subdivide_first_doubtful`] bisects the first doubtful arc of
+//! every lane, which settles most pairs; [`BracketList::isolate`] bisects all doubtful arcs of one pair.
 
 use crate::circle_circle::angle::{Angle, Direction};
 use crate::circle_circle::fast::arc_tables::{ARCS, ArcTables, LEVELS};
@@ -32,8 +32,8 @@ fn first_doubtful<T: SimdReal>(counts: &RootCounts<T>, tables: &ArcTables) -> (A
 
 /// Bisects the first doubtful arc of each lane, then its doubtful half, and so on, `LEVELS - 1` times at most.
 ///
-/// Where that settles the pair, the brackets and their number are corrected. Returns the total excess of the lanes that are not
-/// settled, 0 for the others. Flags are numbers, 1 for true and 0 for false.
+/// Where that settles the pair, the brackets and their number are corrected. Returns the total excess of the lanes
+/// that are not settled, 0 for the others. Flags are numbers, 1 for true and 0 for false.
 #[inline(always)]
 pub(crate) fn subdivide_first_doubtful<T: SimdReal>(
     pair: &NormalizedPair<T>,

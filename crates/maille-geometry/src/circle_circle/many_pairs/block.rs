@@ -1,8 +1,8 @@
 //! Solves one block of pairs: the fast method with one pair per lane of a register.
 //!
-//! All registers of a block are worked off first and their results stored in [`LaneBuffers`]; then the results are written pair by
-//! pair. At most two minima per pair fit; pairs with more, and those that the registers cannot decide, go to
-//! `one_pair::approaches`.
+//! All registers of a block are processed first and their results stored in [`LaneBuffers`]; then the results are
+//! written pair by pair. At most two minima per pair fit; pairs with more, and those that the registers cannot
+//! decide, go to `one_pair::approaches`.
 
 use crate::circle::{Circle, Vec3};
 use crate::circle_circle::approach::{Approach, Approaches};
@@ -21,7 +21,7 @@ use pulp::{Simd, WithSimd};
 /// Values that pass from registers to code for single pairs, and back: one per pair of the block.
 pub(crate) struct LaneBuffers {
     /// The normalized pairs, see [`NormalizedPair::parameters`].
-    numbers: [Lanes; 7],
+    pairs: [Lanes; 7],
     /// The brackets, see [`Bracket::parameters`].
     brackets: [[Lanes; 3]; MAX_SIMD_MINIMA],
     /// Number of brackets.
@@ -35,10 +35,11 @@ pub(crate) struct LaneBuffers {
 }
 
 impl LaneBuffers {
+    /// Zeros.
     pub fn new() -> Self {
         let lanes = [0.0; WIDTH];
         Self {
-            numbers: [lanes; 7],
+            pairs: [lanes; 7],
             brackets: [[lanes; 3]; MAX_SIMD_MINIMA],
             counts: lanes,
             complete: lanes,
@@ -80,12 +81,12 @@ impl LaneBuffers {
         (brackets, count): &mut ([Bracket<Register<S>>; MAX_SIMD_MINIMA], Register<S>),
     ) {
         // Store the pairs and their brackets.
-        for (lanes, number) in self.numbers.iter_mut().zip(pair.parameters()) {
+        for (lanes, number) in self.pairs.iter_mut().zip(pair.parameters()) {
             number.store(lanes, from);
         }
         count.store(&mut self.counts, from);
-        for (lanes, bracket) in self.brackets.iter_mut().zip(&*brackets) {
-            for (lanes, part) in lanes.iter_mut().zip(bracket.parameters()) {
+        for (arrays, bracket) in self.brackets.iter_mut().zip(&*brackets) {
+            for (lanes, part) in arrays.iter_mut().zip(bracket.parameters()) {
                 part.store(lanes, from);
             }
         }
@@ -98,9 +99,9 @@ impl LaneBuffers {
             }
         }
         // Load them.
-        for (bracket, lanes) in brackets.iter_mut().zip(&self.brackets) {
+        for (bracket, arrays) in brackets.iter_mut().zip(&self.brackets) {
             let mut parts = bracket.parameters();
-            for (part, lanes) in parts.iter_mut().zip(lanes) {
+            for (part, lanes) in parts.iter_mut().zip(arrays) {
                 *part = Register::load(simd, lanes, from);
             }
             // The other lanes keep theirs bit by bit, so that a lane does not depend on the others.
@@ -111,15 +112,15 @@ impl LaneBuffers {
 
     /// The brackets of the pair in one lane, and their number; 0 if it cannot be decided.
     fn isolate_lane(&mut self, lane: usize) {
-        let pair = NormalizedPair::from_parameters(lane_values(&self.numbers, lane));
+        let pair = NormalizedPair::from_parameters(lane_values(&self.pairs, lane));
         self.counts[lane] = 0.0;
         let Some(found) = BracketList::isolate(&pair, &ARC_TABLES) else { return };
         if (1..=MAX_SIMD_MINIMA).contains(&found.count) {
             self.counts[lane] = found.count as f64;
-            for (slot, lanes) in self.brackets.iter_mut().enumerate() {
+            for (slot, arrays) in self.brackets.iter_mut().enumerate() {
                 let parts = found.all[slot.min(found.count - 1)].parameters();
                 for k in 0..parts.len() {
-                    lanes[k][lane] = parts[k];
+                    arrays[k][lane] = parts[k];
                 }
             }
         }
@@ -134,21 +135,21 @@ impl LaneBuffers {
 
     /// Writes the minima of a lane in ascending order. If there is only one, the distance of the second is infinite.
     #[inline(always)]
-    fn write(&self, lane: usize, place: &mut Approaches) {
-        place.count = self.counts[lane] as usize;
-        place.continuum = false;
+    fn write(&self, lane: usize, out: &mut Approaches) {
+        out.count = self.counts[lane] as usize;
+        out.continuum = false;
         let swapped = usize::from(self.distance[1][lane] < self.distance[0][lane]);
-        place.found[swapped] = self.approach(0, lane);
-        place.found[1 - swapped] = self.approach(1, lane);
+        out.found[swapped] = self.approach(0, lane);
+        out.found[1 - swapped] = self.approach(1, lane);
     }
 }
 
 /// The values of one lane.
 #[inline(always)]
-fn lane_values<const N: usize>(lanes: &[Lanes; N], lane: usize) -> [f64; N] {
+fn lane_values<const N: usize>(arrays: &[Lanes; N], lane: usize) -> [f64; N] {
     let mut out = [0.0; N];
     for k in 0..N {
-        out[k] = lanes[k][lane];
+        out[k] = arrays[k][lane];
     }
     out
 }

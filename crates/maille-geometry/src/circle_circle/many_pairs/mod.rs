@@ -1,8 +1,9 @@
 //! The minima of many pairs at once, by the fast method in SIMD registers with one pair per lane.
 //!
-//! Pairs that are certainly too far apart are discarded first; the remaining ones are collected into blocks (`soa.rs`) and solved
-//! (`block.rs`); pairs that the registers cannot decide go to the code for one pair. The instruction set is chosen at run
-//! time. Results of different sets differ by rounding, because some fuse multiplications with additions.
+//! Pairs that are certainly too far apart are discarded first; the remaining ones are collected into blocks
+//! (`soa.rs`) and solved (`block.rs`); pairs that the registers cannot decide go to the code for one pair. The
+//! instruction set is chosen at run time. Results of different sets differ by rounding, because some fuse
+//! multiplications with additions.
 
 mod block;
 mod soa;
@@ -49,9 +50,9 @@ impl Instructions {
 /// All local minima of the distance for many pairs of circles, with the widest instruction set of this machine.
 ///
 /// For each pair `k`, `out[k]` receives the minima of `pairs[k]`, complete and as accurate as those of
-/// [`circle_distance_minima`](crate::circle_distance_minima), with the same degenerate cases and the same treatment of invalid
-/// input. If the circles are certainly more than `reach[k]` apart (a length; infinity to disable the test), `out[k]` is
-/// [`Approaches::NONE`]; otherwise all minima are returned, including those beyond the reach.
+/// [`circle_distance_minima`](crate::circle_distance_minima), with the same degenerate cases and the same treatment
+/// of invalid input. If the circles are certainly more than `reach[k]` apart (a length; infinity to disable the
+/// test), `out[k]` is [`Approaches::NONE`]; otherwise all minima are returned, including those beyond the reach.
 ///
 /// The result for a pair does not depend on the other pairs. On machines with other instruction sets it may differ by
 /// rounding.
@@ -89,7 +90,7 @@ pub fn circle_distance_approaches_with(
     reach: &[f64],
     out: &mut [Approaches],
 ) {
-    assert!(pairs.len() == reach.len() && pairs.len() == out.len(), "a reach and a place for each pair");
+    assert!(pairs.len() == reach.len() && pairs.len() == out.len(), "pairs, reach and out must be of the same length");
     let kernel = BatchKernel { pairs, reach, out };
     #[cfg(target_arch = "x86_64")]
     match set {

@@ -1,12 +1,13 @@
-//! A block of pairs of circles as a structure of arrays: one array per coordinate, so that a register loads one coordinate of
-//! several pairs.
+//! A block of pairs of circles as a structure of arrays: one array per coordinate, so that a register loads one
+//! coordinate of several pairs.
 
 use crate::circle::Circle;
 use crate::circle_circle::simd_frame::{PairVectors, Vector, sub};
 use crate::simd::Register;
 use pulp::Simd;
 
-/// Number of pairs in a block. Several times the widest register: loading values that have just been stored would stall.
+/// Number of pairs in a block. Several times the widest register: loading values that have just been stored would
+/// stall.
 pub(crate) const WIDTH: usize = 32;
 /// One value per pair of a block.
 pub(crate) type Lanes = [f64; WIDTH];

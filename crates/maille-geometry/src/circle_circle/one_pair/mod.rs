@@ -1,4 +1,5 @@
-//! All local minima of one pair: the choice between SIMD registers, the fast method in `f64` and the exhaustive method.
+//! All local minima of one pair: the choice between SIMD registers, the fast method in `f64` and the exhaustive
+//! method.
 
 mod simd;
 
@@ -12,31 +13,32 @@ use arrayvec::ArrayVec;
 
 /// Every local minimum of the distance between two circles (section 3.2), without exception.
 ///
-/// A point runs along the circle of smaller radius (B, if they are equal) with angle θ. Half its squared distance from the other
-/// circle, `h(θ) = ½ d² = ½ (z² + (ρ − R)²)` (equation 3.1.2; `z` and `ρ` are its height over the plane of the other circle and its
-/// distance from the axis, `R` is the radius), is examined arc by arc: the critical points on an arc are counted by Descartes'
-/// rule of signs, and the arc is bisected until the count agrees with the signs of `h′` at its ends. Degenerate and nearly
-/// degenerate pairs are examined by bounds of `h‴` instead. Either way no minimum is lost between samples.
+/// A point runs along the circle of smaller radius (B, if they are equal) with angle θ. Half its squared distance
+/// from the other circle, `h(θ) = ½ d² = ½ (z² + (ρ − R)²)` (equation 3.1.2; `z` and `ρ` are its height over the
+/// plane of the other circle and its distance from the axis, `R` is the radius), is examined arc by arc: the
+/// critical points on an arc are counted by Descartes' rule of signs, and the arc is bisected until the count
+/// agrees with the signs of `h′` at its ends. Degenerate and nearly degenerate pairs are examined by bounds of `h‴`
+/// instead. Either way no minimum is lost between samples.
 ///
-/// **Accuracy.** Distances to about `1e-15` of the pair's largest length (radii and distance of the centres), in degenerate
-/// positions too. Angles to about `1e-15` divided by the relative curvature of the minimum (the condition of the 2×2 Hessian).
+/// **Accuracy.** Distances to about `1e-15` of the pair's largest length (radii and distance of the centres), in
+/// degenerate positions too. Angles to about `1e-15` times the condition number of the 2×2 Hessian.
 ///
 /// **Degenerate positions.**
-/// - A distance that is constant up to [`ROUNDING`](crate::ROUNDING) (coaxial, Villarceau and meridian pairs, see [`PairKind`])
-///   gives one representative, with [`Minima::continuum`] set.
-/// - At a point on the axis of the other circle `h` has a kink: a maximum or no extremum, hence never among the minima. The
-///   meridian pair of equal circles is the exception; it is a continuum.
+/// - A distance that is constant up to [`ROUNDING`](crate::ROUNDING) (coaxial, Villarceau and meridian pairs, see
+///   [`PairKind`]) gives one representative, with [`Minima::continuum`] set.
+/// - At a point on the axis of the other circle `h` has a kink: a maximum or no extremum, hence never among the
+///   minima. The meridian pair of equal circles is the exception; it is a continuum.
 /// - Two minima closer than `2.4e-5` rad differ by rounding only and are merged.
 ///
-/// **Invalid input.** If a number is not finite, a radius is not positive, a length is beyond `1e±90`, or a normal is not a unit
-/// vector, a single minimum is returned in which all numbers are NaN.
+/// **Invalid input.** If a number is not finite, a radius is not positive, a length is beyond `1e±90`, or a normal
+/// is not a unit vector, a single minimum is returned in which all numbers are NaN.
 ///
 /// **Cost.** About 0.3 µs for most pairs, no heap allocation (`cargo bench -p maille-geometry --bench pair`);
-/// [`circle_distance_approaches`](crate::circle_distance_approaches) takes about a quarter of that per pair. Some 100 µs for
-/// pairs within about `1e-3` of a constant distance without a common axis, where no cheap proof exists.
+/// [`circle_distance_approaches`](crate::circle_distance_approaches) takes about a quarter of that per pair. Some
+/// 100 µs for pairs within about `1e-3` of a constant distance without a common axis, where no cheap proof exists.
 ///
-/// **Tested** on 120,000 pairs of six families against dense sampling: no minimum missed, no false one, never more than two,
-/// and no distance more than `7e-16` above the sampled one.
+/// **Tested** on 120,000 pairs of six families against dense sampling: no minimum missed, no false one, never more
+/// than two, and no distance more than `7e-16` above the sampled one.
 ///
 /// # Examples
 ///
@@ -79,7 +81,8 @@ fn enumerate(a: &Circle, b: &Circle, out: &mut Minima) {
         });
         return;
     }
-    // Along the smaller circle `h` is smoother: where it comes near the axis of the other, it is far from the other circle.
+    // Along the smaller circle `h` is smoother: where it comes near the axis of the other, it is far from the other
+    // circle.
     let swapped = a.radius < b.radius;
     let pair = if swapped { PairFrame::new(b, a) } else { PairFrame::new(a, b) };
     *out = match fast::minima(&pair.normalized()) {

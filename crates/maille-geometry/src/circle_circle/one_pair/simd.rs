@@ -1,7 +1,7 @@
 //! The fast method for one pair in SIMD registers (AVX2): its arcs, then its minima, lie side by side in the lanes.
 //!
-//! The roots on all eight arcs are counted at once, four per register. An arc in doubt is divided into eight parts, which are
-//! counted in the same way. Pairs that are still in doubt are left to the plain `f64` code.
+//! The roots on all eight arcs are counted at once, four per register. An arc in doubt is divided into eight parts,
+//! which are counted in the same way. Pairs that are still in doubt are left to the plain `f64` code.
 
 use crate::circle::{Circle, Vec3};
 use crate::circle_circle::angle::{Angle, Direction};
@@ -21,8 +21,8 @@ use pulp::{Simd, WithSimd};
 /// One value per arc.
 type ArcLanes = [f64; ARCS];
 
-/// Writes all minima of a pair to `out`. False, with `out` unchanged, if the pair cannot be decided here or the machine has no
-/// AVX2.
+/// Writes all minima of a pair to `out`. False, with `out` unchanged, if the pair cannot be decided here or the
+/// machine has no AVX2.
 pub(crate) fn minima(a: &Circle, b: &Circle, out: &mut Minima) -> bool {
     #[cfg(target_arch = "x86_64")]
     if let Some(simd) = pulp::x86::V3::try_new() {
@@ -51,7 +51,8 @@ struct RisingArcs {
 }
 
 impl RisingArcs {
-    /// Adds an arc if `rises` is 1, and nothing if it is 0. Without a branch: it is written in any case and then counted or not.
+    /// Adds an arc if `rises` is 1, and nothing if it is 0. Without a branch: it is written in any case and then
+    /// counted or not.
     #[inline(always)]
     fn add(&mut self, middle: Direction, rises: f64) {
         self.middles[self.count % ARCS] = middle;
@@ -160,8 +161,8 @@ fn rising_arcs<S: Simd>(simd: S, pair: &NormalizedPair<Register<S>>) -> Option<R
 
 /// Compares the two bounds of the number of roots (`fast/root_count.rs`) on eight arcs, four per register.
 ///
-/// Returned are the excess of each arc; whether its roots are known and `G₋` rises there (1, else 0); and whether the roots on
-/// all arcs are known. `modes` are the harmonics of H about `origin`.
+/// Returned are the excess of each arc; whether its roots are known and `G₋` rises there (1, else 0); and whether
+/// the roots on all arcs are known. `modes` are the harmonics of H about `origin`.
 #[inline(always)]
 fn count_roots<S: Simd>(
     simd: S,
@@ -293,7 +294,8 @@ impl MinimaLanes {
     /// Appends the minima in ascending order. More than two have never been observed.
     #[inline(always)]
     fn write(&self, count: usize, out: &mut ArrayVec<Minimum, MAX_MINIMA>) {
-        // Two are written in any case, since a branch on their number would be mispredicted. A single one fills all lanes.
+        // Two are written in any case, since a branch on their number would be mispredicted. A single one fills all
+        // lanes.
         let first = usize::from(self.distance[1] < self.distance[0]);
         out.push(self.minimum(first));
         out.push(self.minimum(1 - first));
