@@ -1,8 +1,8 @@
 //! Pairs of circles of any 14 floats.
 
 use maille_geometry::{
-    Approaches, Circle, MAX_MINIMA, Vec3, circle_distance_approaches, circle_distance_floor, circle_distance_minima,
-    linking_number, point_circle_distance,
+    Approaches, Circle, MAX_MINIMA, Vec3, circle_distance_approaches, circle_distance_lower_bound,
+    circle_distance_minima, linking_number, point_circle_distance,
 };
 use nalgebra::UnitVector3;
 
@@ -28,7 +28,7 @@ pub fn circles(bytes: &[u8]) {
     let minima = circle_distance_minima(&a, &b);
     let mut batch = [Approaches::NONE];
     circle_distance_approaches(&[(a, b)], &[f64::INFINITY], &mut batch);
-    let (linking, floor) = (linking_number(&a, &b), circle_distance_floor(&a, &b));
+    let (linking, floor) = (linking_number(&a, &b), circle_distance_lower_bound(&a, &b));
     assert!((1..=MAX_MINIMA).contains(&minima.as_slice().len()), "{minima:?}");
     let distance = minima.closest().distance;
     let between = b.center - a.center;

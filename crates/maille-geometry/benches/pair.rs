@@ -1,6 +1,7 @@
-//! Time of one pair: the enumeration beside the polynomial, on the same pairs; and what else is asked about a pair.
+//! Times per pair of all functions of the crate, on the same families of pairs.
 //!
-//! `cargo bench -p maille-geometry`. A sample is 1,000 pairs: the figures are microseconds a pair if read as milliseconds.
+//! `cargo bench -p maille-geometry`. A sample is 1,000 pairs: read milliseconds as microseconds per pair, and
+//! microseconds as nanoseconds per pair.
 
 #[path = "../tests/common/mod.rs"]
 mod common;
@@ -8,7 +9,7 @@ mod common;
 use common::{Family, Pair, circle, degenerate, direction, linked, near_degenerate, rng, symmetric, thin_gap, uniform};
 use divan::{Bencher, black_box, counter::ItemsCount};
 use maille_geometry::{
-    Approaches, Instructions, circle_distance_approaches_with, circle_distance_floor, circle_distance_minima,
+    Approaches, Instructions, circle_distance_approaches_with, circle_distance_lower_bound, circle_distance_minima,
     circle_distance_minima_polynomial, linking_number, point_circle_distance,
 };
 use rand::RngExt;
@@ -36,7 +37,7 @@ fn pairs(name: &str) -> Vec<Pair> {
     (0..PAIRS).map(|_| family(&mut rng)).collect()
 }
 
-/// Doubled rings in contact: coaxial up to 1e-9 … 1e-3.
+/// Stacked rings, coaxial up to 1e-9 … 1e-3.
 fn stacked(rng: &mut common::Rng) -> Pair {
     let by = 10f64.powf(rng.random_range(-9.0..-3.0));
     let mut other = circle([0.0, 0.0, 0.2], [0.0, 0.0, 1.0], 1.0);
@@ -59,7 +60,7 @@ fn enumeration(bencher: Bencher<'_, '_>, family: &str) {
     let pairs = pairs(family);
     bencher.counter(ItemsCount::new(PAIRS)).bench(|| {
         for (a, b) in &pairs {
-            // Looked at where they lie: a copy of all minima costs a tenth of finding them.
+            // By reference: copying the minima would take a tenth of the time of finding them.
             let minima = circle_distance_minima(black_box(a), b);
             black_box(&minima);
         }
@@ -71,7 +72,7 @@ fn polynomial(bencher: Bencher<'_, '_>, family: &str) {
     time(bencher, family, |(a, b)| circle_distance_minima_polynomial(a, b));
 }
 
-/// Many pairs at once: nanoseconds a pair if microseconds are read as such.
+/// Many pairs at once.
 #[divan::bench(args = ["near", "linked", "thin gap", "uniform"], consts = [0, 1, 2])]
 fn batch<const SET: usize>(bencher: Bencher<'_, '_>, family: &str) {
     let Some(set) = Instructions::available().nth(SET) else { return };
@@ -84,10 +85,10 @@ fn batch<const SET: usize>(bencher: Bencher<'_, '_>, family: &str) {
     });
 }
 
-/// The lower bound that sorts pairs out.
+/// The lower bound by which distant pairs are discarded.
 #[divan::bench(args = ["near", "uniform"])]
 fn floor(bencher: Bencher<'_, '_>, family: &str) {
-    time(bencher, family, |(a, b)| circle_distance_floor(a, b));
+    time(bencher, family, |(a, b)| circle_distance_lower_bound(a, b));
 }
 
 #[divan::bench(args = ["linked", "uniform"])]
@@ -100,7 +101,7 @@ fn point(bencher: Bencher<'_, '_>, family: &str) {
     time(bencher, family, |(a, b)| point_circle_distance(&b.center, a));
 }
 
-/// Rings of a weave as they lie: the core circles are within 0.4 R, most of them linked.
+/// Neighbouring rings of a weave: linked, with a distance of the core circles between 0.02 R and 0.4 R.
 fn near(rng: &mut common::Rng) -> Pair {
     loop {
         let (a, mut b) = linked(rng);

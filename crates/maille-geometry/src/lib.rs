@@ -1,61 +1,111 @@
-//! Distances, contacts and linking of circles and tori in space.
+//! Exact distances, gaps and linking numbers of circles and tori in three-dimensional space.
 //!
-//! Pure kernels on `f64`: no files, no threads, no heap. A ring of chainmail is a [`Torus`], the set of points at
-//! distance `r` from a [`Circle`]; everything that the mechanics asks about two rings follows from their circles:
+//! A ring of round wire is a [`Torus`]: a core [`Circle`] of radius `R` and a wire of radius `r`. Whether two rings
+//! touch, overlap or are linked follows from their core circles alone, so this crate is about two circles. All
+//! functions work on `f64`, start no threads and allocate nothing on the heap.
 //!
-//! | question | answer |
-//! | --- | --- |
-//! | how far is a point from a circle? | [`point_circle_distance`] |
-//! | where is the distance of two circles locally smallest? | [`circle_distance_minima`]: all such places |
-//! | the same for many pairs | [`circle_distance_approaches`]: several at once, by the machine's widest registers |
-//! | the same by the polynomial of degree 8 | [`circle_distance_minima_polynomial`]: a cross-check, fragile in doubles |
-//! | how wide are the gaps between two rings? | [`torus_score`], [`torus_scores`] |
-//! | are two rings linked, and in which sense? | [`linking_number`], [`interlocks`] |
+//! # Example
 //!
-//! The order of the modules is `circle ← lane, grid ← reduced ← relative ← arcs ← count ← brackets ← halving, quick, bounds ←
-//! search ← placed ← single, minima ← solve, batch, polynomial, torus`, with `linking` and `floor` beside them: `relative`
-//! reduces a pair to six numbers and evaluates the distance along one circle, `count`, `brackets` and `quick` find the minima of
-//! ordinary pairs, `single` those of one pair in registers, `halving`, `placed`, `solve` and `batch` those of many, `bounds`
-//! proves what it can on an interval, `search` (on the angles of `grid`) and `polynomial` find the minima in two other ways.
+//! Two unit rings in perpendicular planes, linked like two links of a chain:
 //!
-//! Lengths carry the caller's unit, angles are radians. Radii must be positive and finite and normals of unit length;
-//! debug builds assert it in [`Circle::new`].
+//! ```
+//! use maille_geometry::{Circle, Torus, Vec3, circle_distance_minima, linking_number, torus_gap};
+//!
+//! let a = Circle::new(Vec3::zeros(), Vec3::z_axis(), 1.0);
+//! let b = Circle::new(Vec3::new(0.8, 0.0, 0.0), Vec3::y_axis(), 1.0);
+//!
+//! // Every local minimum of the distance, smallest first: the circles are 0.8 apart at two places.
+//! let minima = circle_distance_minima(&a, &b);
+//! assert_eq!(minima.as_slice().len(), 2);
+//! assert!((minima.closest().distance - 0.8).abs() < 1e-15);
+//!
+//! // With wire of radius 0.1, a gap of 0.6 is left between the surfaces.
+//! let wire = 0.1;
+//! let gap = torus_gap(&Torus { circle: a, minor_radius: wire }, &Torus { circle: b, minor_radius: wire });
+//! assert!((gap - 0.6).abs() < 1e-15);
+//!
+//! // They are linked once; the sign depends on the orientation of the normals.
+//! assert_eq!(linking_number(&a, &b), 1);
+//! ```
+//!
+//! # What is computed, and where
+//!
+//! | question | function | source |
+//! | --- | --- | --- |
+//! | How far is a point from a circle? | [`point_circle_distance`] | `circle.rs` |
+//! | Where are the local minima of the distance of two circles? | [`circle_distance_minima`] | `circle_circle/one_pair` |
+//! | The same for many pairs at once | [`circle_distance_approaches`] | `circle_circle/many_pairs` |
+//! | A cheap lower bound of the distance | [`circle_distance_lower_bound`] | `circle_circle/lower_bound.rs` |
+//! | A cross-check of the minima by polynomial roots | [`circle_distance_minima_polynomial`] | `circle_circle/polynomial.rs` |
+//! | How wide is the gap between two tori? | [`torus_gap`], [`torus_gaps`] | `torus.rs` |
+//! | Are two circles linked, and with which sign? | [`linking_number`], [`interlocks`] | `linking.rs` |
+//!
+//! # Method
+//!
+//! The distance of two circles can have two local minima, and rings often touch at both. A local search from one
+//! start finds one of them, so the minima are *isolated* first, by a proof that none is missed, and only then
+//! computed:
+//!
+//! 1. The pair is reduced to six numbers in a common frame; the smaller circle is described by its angle θ
+//!    (`circle_circle/pair_frame.rs`, `normalized_pair.rs`).
+//! 2. *Fast method* (`circle_circle/fast`), for nearly all pairs: Descartes' rule of signs on Bernstein
+//!    coefficients counts the critical points on eight arcs of θ, undecided arcs are bisected, and Halley's
+//!    iteration finds the minimum on each isolating arc. It is written once, over a trait that stands for one `f64`
+//!    or a SIMD register (`simd.rs`).
+//! 3. *Exhaustive method* (`circle_circle/exhaustive`), for degenerate and nearly degenerate pairs: bounds on the
+//!    third derivative decide each interval of θ, or it is bisected.
+//!
+//! A file imports only files above it in this list: `tolerance`, `circle`, `simd`, then within `circle_circle` the
+//! result types (`minimum`, `approach`), the frames (`angle`, `normalized_pair`, `pair_frame`, `simd_frame`),
+//! `fast` and `exhaustive`, `one_pair`, `many_pairs`; `lower_bound`, `polynomial`, `linking` and `torus` stand
+//! beside or above them.
+//!
+//! # Accuracy
+//!
+//! Distances are accurate to about `1e-15` of the pair's largest length (radii and distance of the centres), in
+//! degenerate positions too. Tested on 120,000 random pairs of six families against dense sampling: no minimum
+//! missed, no false one, and no distance more than `7e-16` above the sampled one (`tests/completeness.rs`). Random
+//! pairs have met at most two minima; at most three isolated ones are possible.
+//!
+//! # Degenerate positions
+//!
+//! - **Constant distance** (coaxial circles, and two other families, see [`PairKind`]): the minima form a
+//!   continuum; one representative is returned, and [`Minima::continuum`] is set.
+//! - **A point on the axis of the other circle** has no nearest point there: the distance has a kink, which is
+//!   never a minimum except on a continuum; [`PointOnCircle::on_axis`] reports it for a single point.
+//! - **Circles that intersect** have distance 0 at each intersection; their linking number is undefined.
+//! - **Invalid input** (non-finite numbers, non-positive radii, normals that are not unit vectors, lengths beyond
+//!   `1e±90`): the minima are NaN. [`Circle::new`] asserts valid radii in debug builds.
+//!
+//! # Units
+//!
+//! Lengths are in the caller's unit, angles in radians. [`ROUNDING`], relative to the largest length of a pair, is
+//! the only tolerance that decides between answers.
+//!
+//! # Source
+//!
+//! Numbers of sections, equations, definitions and theorems, and Appendix A, are those of the thesis *Mechanical
+//! Characterization of Rigid Discrete Interlocking Materials*.
 
-mod arcs;
-mod batch;
-mod bounds;
-mod brackets;
 mod circle;
-mod count;
-mod floor;
-mod grid;
-mod halving;
-mod lane;
+mod circle_circle;
 mod linking;
-mod minima;
-mod placed;
-mod polynomial;
-mod quick;
-mod reduced;
-mod relative;
-mod search;
-mod single;
-mod solve;
+mod simd;
+mod tolerance;
 mod torus;
 
-/// A vector or point in space.
-pub type Vec3 = nalgebra::Vector3<f64>;
-
-/// What counts as rounding, relative to the largest length of a pair: `1e-14`, about fifty units in the last place.
-///
-/// Two circles whose distance varies by less along the whole circle are a continuum of minima, planes tilted by less
-/// are parallel. It is the only tolerance of this crate that decides between answers.
-pub const ROUNDING: f64 = 1e-14;
-
-pub use batch::{Approach, Approaches, Instructions, circle_distance_approaches, circle_distance_approaches_with};
-pub use circle::{Circle, PointOnCircle, point_circle_distance};
-pub use floor::circle_distance_floor;
+pub use circle::{Circle, PointOnCircle, Vec3, point_circle_distance};
+pub use circle_circle::approach::{Approach, Approaches};
+pub use circle_circle::lower_bound::circle_distance_lower_bound;
+pub use circle_circle::many_pairs::{Instructions, circle_distance_approaches, circle_distance_approaches_with};
+pub use circle_circle::minimum::{MAX_MINIMA, Minima, Minimum, PairKind};
+pub use circle_circle::one_pair::circle_distance_minima;
+pub use circle_circle::polynomial::circle_distance_minima_polynomial;
 pub use linking::{interlocks, linking_number};
-pub use minima::{MAX_MINIMA, Minima, Minimum, PairKind, circle_distance_minima};
-pub use polynomial::circle_distance_minima_polynomial;
-pub use torus::{Torus, torus_score, torus_scores};
+pub use tolerance::ROUNDING;
+pub use torus::{Torus, torus_gap, torus_gaps};
+
+/// Runs the example of the README as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,17 +1,22 @@
-//! Are two circles linked, and in which sense?
+//! Linking of two circles: how often one crosses the disc of the other.
+//!
+//! Circle B crosses the plane of circle A at two points or none. The circles are linked if exactly one of the two
+//! lies inside A. Symbols: `N_A`, `c_A`, `R_A` are normal, centre and radius of A, likewise for B; `t` is the angle
+//! on B in radians.
 
-use crate::{Circle, ROUNDING, Vec3};
+use crate::circle::{Circle, Vec3};
+use crate::tolerance::ROUNDING;
 
-/// Where circle B crosses the plane of circle A, if it does: at `t = atan2(b, a) ± acos(−k/A)`, the roots of
+/// Distances from the centre of A to the two points where circle B crosses the plane of A, if it does: first the
+/// point where B crosses downwards (against `N_A`), then the one where it crosses upwards.
 ///
-/// `z(t) = N_A·(P_B(t) − c_A) = k + a cos t + b sin t`, `A = hypot(a, b)`, which exist if and only if `|k| < A`.
+/// The height of B over the plane is `z(t) = N_A·(P_B(t) − c_A) = k + a cos t + b sin t` with amplitude
+/// `A = hypot(a, b)`. Its roots `t = atan2(b, a) ± acos(−k/A)` exist if and only if `|k| < A`. With the unit
+/// vectors `m` (steepest ascent of B over the plane of A) and `h = N_B × m`, and with `κ = −k/A`, the points are
+/// `c_B + R_B (κ m ± √(1 − κ²) h)`, which takes no trigonometric function; `+` is the downward crossing,
+/// `z′ = −A √(1 − κ²)`.
 ///
-/// With the unit vectors `m` (steepest rise of B over the plane of A) and `h = N_B × m` the two points are
-/// `c_B + R_B (κ m ± √(1 − κ²) h)`, `κ = −k/A`, without a trigonometric function. Returned are their distances from
-/// the centre of A, first that of `+`, where B goes down through the plane (`z′ = −A √(1 − κ²)`), then that of `−`,
-/// where it comes up.
-///
-/// None for planes that are parallel to [`ROUNDING`], for circles apart from the plane and for those that touch it.
+/// `None` if the planes are parallel to [`ROUNDING`], or if B lies on one side of the plane or touches it.
 fn plane_crossings(a: &Circle, b: &Circle) -> Option<[f64; 2]> {
     let offset = b.center - a.center;
     let k = a.normal.dot(&offset);
@@ -21,7 +26,7 @@ fn plane_crossings(a: &Circle, b: &Circle) -> Option<[f64; 2]> {
     if tilt_sin <= ROUNDING || k.abs() >= amplitude {
         return None;
     }
-    // At small tilts the rounding of `rise` is a large part of it: project once more, to stay in the plane of B.
+    // At small tilts the rounding error of `rise` is relatively large: project once more, to stay in the plane of B.
     let m = rise / tilt_sin;
     let m = (m - *b.normal * b.normal.dot(&m)).normalize();
     let h = b.normal.cross(&m);
@@ -36,11 +41,23 @@ fn plane_crossings(a: &Circle, b: &Circle) -> Option<[f64; 2]> {
 
 /// The linking number of two circles, each oriented counter-clockwise about its normal: −1, 0 or 1.
 ///
-/// It is the number of times B crosses the disc of A in the direction of `N_A`, less the number of times it crosses
-/// against it, and equals the Gauss integral `1/4π ∮∮ (A − B)·(dA × dB)/|A − B|³`. Symmetric, `lk(A, B) = lk(B, A)`;
-/// turning one normal round changes the sign.
+/// It counts how often B crosses the disc of A in the direction of `N_A`, minus how often it crosses in the opposite
+/// direction, and equals the Gauss integral `1/4π ∮∮ (A − B)·(dA × dB)/|A − B|³`. It is symmetric,
+/// `lk(A, B) = lk(B, A)`, and reversing one normal changes its sign.
 ///
-/// Circles that meet have no linking number; they give 0 when the meeting is exact in doubles. Parallel planes give 0.
+/// **Degenerate cases.** Parallel planes give 0. Circles that intersect have no linking number; the result is 0 if
+/// the intersection is exact in `f64`.
+///
+/// # Examples
+///
+/// ```
+/// use maille_geometry::{Circle, Vec3, linking_number};
+///
+/// let a = Circle::new(Vec3::zeros(), Vec3::z_axis(), 1.0);
+/// let b = Circle::new(Vec3::new(1.0, 0.0, 0.0), Vec3::y_axis(), 0.5);
+/// let reversed = Circle::new(b.center, -b.normal, b.radius);
+/// assert_eq!((linking_number(&a, &b), linking_number(&a, &reversed)), (1, -1));
+/// ```
 pub fn linking_number(a: &Circle, b: &Circle) -> i32 {
     let Some([down, up]) = plane_crossings(a, b) else { return 0 };
     if up < a.radius && a.radius < down {
@@ -52,8 +69,11 @@ pub fn linking_number(a: &Circle, b: &Circle) -> i32 {
     }
 }
 
-/// Do the circles interlock? B has two points in the plane of A, one nearer to the centre of A than `R_A`, the other
-/// farther (Definition 3.4.2). The relation is symmetric, and equivalent to a linking number of ±1.
+/// Whether two circles interlock: B crosses the plane of A at two points, one inside A and one outside (Definition
+/// 3.4.2).
+///
+/// The relation is symmetric and equivalent to a linking number of ±1, with the degenerate cases of
+/// [`linking_number`].
 pub fn interlocks(a: &Circle, b: &Circle) -> bool {
     plane_crossings(a, b).is_some_and(|[p, q]| p.min(q) < a.radius && a.radius < p.max(q))
 }

@@ -1,7 +1,8 @@
-//! Pairs made to break the enumeration, against the sampling oracle: no wrong minimum, no significant one missed.
+//! Adversarial pairs against the sampling oracle: no wrong minimum, and no significant one missed.
 //!
-//! `MAILLE_PAIRS` is the number of pairs (70,000 unless told), `MAILLE_HARDEST` a file for the 5,000 that are nearest to
-//! a merger of minima, which `validation/pairs.py` solves with 50 digits. The figures are in `docs/reliability.md`.
+//! The environment variable `MAILLE_PAIRS` sets the number of pairs (default 70,000). `MAILLE_HARDEST` names a file
+//! for the 5,000 pairs whose minima are closest to merging, which `validation/pairs.py` solves with 50 digits.
+//! Results are in `docs/reliability.md`.
 
 mod common;
 
@@ -22,9 +23,9 @@ const FAMILIES: [(&str, Family); 7] = [
     ("tiny", tiny),
     ("touching", touching),
 ];
-/// A minimum is significant if a barrier of this part of the pair's size is around it.
+/// A minimum is significant if it is surrounded by a barrier of this height, relative to the pair's size.
 const SIGNIFICANT: f64 = 1e-9;
-/// Pairs that are written for `validation/pairs.py`.
+/// Number of pairs written for `validation/pairs.py`.
 const HARDEST: usize = 5_000;
 
 fn power(rng: &mut Rng, from: f64, to: f64) -> f64 {
@@ -36,7 +37,7 @@ fn shifted(pair: Pair, factor: f64, by: Vec3) -> Pair {
     (move_one(pair.0), move_one(pair.1))
 }
 
-/// Between a pair with two minima and one with one: where a minimum is about to vanish, to 1e-1 … 1e-14 of the way.
+/// On the path from a pair with two minima to one with one minimum, 1e-1 … 1e-14 before the point where one vanishes.
 fn merging(rng: &mut Rng) -> Pair {
     loop {
         let (a, from) = uniform(rng);
@@ -78,13 +79,13 @@ fn nearly_coaxial(rng: &mut Rng) -> Pair {
     (a, Circle::new(center, UnitVector3::new_normalize(Vec3::z() + *direction(rng) * tilt), radius))
 }
 
-/// Radii as 1 to 1e-4 … 1e4, the smaller one often near the wire of the larger.
+/// Radius ratios 1e-4 … 1e4, the smaller circle often close to the larger one.
 fn unlike_radii(rng: &mut Rng) -> Pair {
     let a = Circle::new(Vec3::zeros(), direction(rng), 1.0);
     let radius = power(rng, -4.0, 4.0);
     let near = if rng.random_bool(0.7) { a.point(rng.random_range(-3.1..3.1)) } else { Vec3::zeros() };
     let b = Circle::new(near + *direction(rng) * power(rng, -6.0, 0.5) * radius.min(1.0), direction(rng), radius);
-    // A large circle passes by the small one with its wire, not with its centre.
+    // A large circle must come near the small one with a point, not with its centre.
     let rim = b.point(rng.random_range(-3.1..3.1)) - b.center;
     (a, if radius > 1.0 { Circle::new(b.center - rim, b.normal, radius) } else { b })
 }
@@ -99,7 +100,7 @@ fn tiny(rng: &mut Rng) -> Pair {
     shifted(pair, power(rng, -12.0, -6.0), Vec3::zeros())
 }
 
-/// Distances of 1e-16 … 1e-2 at one place.
+/// Distances of 1e-16 … 1e-2 at one point.
 fn touching(rng: &mut Rng) -> Pair {
     let (a, b) = uniform(rng);
     let (p, q) = (a.point(rng.random_range(-3.1..3.1)), b.point(rng.random_range(-3.1..3.1)));
@@ -107,18 +108,18 @@ fn touching(rng: &mut Rng) -> Pair {
     (a, Circle::new(b.center + p - q + gap, b.normal, b.radius))
 }
 
-/// The rounding of the pair's own numbers, which no method can undo.
+/// The rounding error of the input numbers themselves, which no method can avoid.
 fn rounding((a, b): &Pair) -> f64 {
     let size = a.center.norm().max(b.center.norm()) + a.radius.max(b.radius);
     8.0 * f64::EPSILON * size
 }
 
-/// Least barrier on either way from `expected` to the nearest lower place, and to the ends of the circle.
+/// The smaller of the barriers in both directions from `expected` to the nearest lower point, or around the circle.
 fn is_significant(along: &Along, expected: &Oracle, unit: f64) -> bool {
     let at = along.angle(&expected.point_b);
     let level = expected.distance + SIGNIFICANT * unit;
     let leaves = |side: f64| {
-        // Steps grow: barriers are near where minima are about to merge.
+        // Growing steps: where minima are about to merge, the barriers are near.
         let mut step = 1e-6;
         while step < std::f64::consts::TAU {
             let d = along.distance(at + side * step);
@@ -135,7 +136,7 @@ fn is_significant(along: &Along, expected: &Oracle, unit: f64) -> bool {
     leaves(1.0) && leaves(-1.0)
 }
 
-/// How near minima are to merging: the least determinant of the Hessian by its squared trace.
+/// How close minima are to merging: the smallest ratio of the determinant of the Hessian to its squared trace.
 fn hardness(minima: &Minima) -> f64 {
     minima.as_slice().iter().map(flatness).fold(f64::INFINITY, f64::min)
 }
@@ -184,18 +185,19 @@ fn no_adversarial_pair_has_a_wrong_or_missed_minimum() {
                 }
             }
             for m in minima.as_slice() {
-                // The distance is that of its points, and g = d²/2 is level there and does not curve down.
+                // The distance is that of the points; the gradient of g = d²/2 vanishes there, and its Hessian is
+                // not negative.
                 let at = along.angle(&m.point_b);
                 let off = (along.distance(at) - m.distance).abs();
                 let step = 1e-5 * (unit.min(a.radius) / b.radius).min(1.0);
                 let half_sq = |angle: f64| 0.5 * along.distance(angle).powi(2);
                 let [behind, here, ahead] = [-step, 0.0, step].map(|by| half_sq(at + by));
                 let noise = rounding(&pair) * (m.distance + b.radius * step) / step;
-                // Near the axis of A slopes bend sharply.
+                // Near the axis of A the derivatives change quickly.
                 let slope = (half_sq(at + 0.1 * step) - half_sq(at - 0.1 * step)).abs() / (0.2 * step);
                 let curve = (2.0 * here - ahead - behind) / (step * step);
                 let area = unit * b.radius.min(unit);
-                // On the axis of A it may be a minimum on the scale of rounding alone.
+                // On the axis of A it may be a minimum only on the scale of rounding.
                 let curves = curve > 1e-5 * area + 4.0 * noise / step && flatness(m) > 1e-9;
                 if off > allowed || slope > 1e-8 * area + 10.0 * noise || curves {
                     wrong += 1;
@@ -209,7 +211,7 @@ fn no_adversarial_pair_has_a_wrong_or_missed_minimum() {
                 worst = worst.max((above - rounding(&pair)) / unit);
                 wrong += usize::from(above > allowed);
             }
-            // Minima of a continuum have merged already: any of its points is right.
+            // On a continuum any point is correct.
             if !minima.continuum {
                 hardest.push((hardness(&minima), pair, minima));
             }

@@ -1,4 +1,5 @@
-//! The batch against the single kernel and against sampling, on every instruction set that the machine has.
+//! Batches against the function for one pair and against sampling, on every instruction set that the machine
+//! supports.
 
 mod common;
 
@@ -12,7 +13,7 @@ use nalgebra::UnitVector3;
 fn pairs() -> Vec<(&'static str, Vec<Pair>)> {
     let mut families = FAMILIES.to_vec();
     families.push(("degenerate", degenerate));
-    // A number that no register divides: the last block is not full.
+    // Not a multiple of any register width: the last block is not full.
     families
         .iter()
         .enumerate()
@@ -29,7 +30,7 @@ fn batch(set: Instructions, pairs: &[Pair]) -> Vec<Approaches> {
     out
 }
 
-/// Bit for bit on one set, whatever the neighbours are; between sets to rounding.
+/// On one instruction set bit by bit, whatever the neighbouring pairs are; between sets up to rounding.
 #[test]
 fn every_instruction_set_gives_the_same_minima() {
     for (name, pairs) in pairs() {
@@ -60,7 +61,7 @@ fn the_batch_has_the_minima_of_each_pair() {
             let unit = scale(a, b);
             let single = circle_distance_minima(a, b);
             if name == "near degenerate" || name == "degenerate" {
-                // How many minima rounding makes of a nearly constant distance is not defined; the distance is.
+                // For a nearly constant distance the number of minima depends on rounding; the distance does not.
                 assert!((found.as_slice()[0].distance - single.closest().distance).abs() < 1e-10 * unit, "{name} {k}");
                 continue;
             }
@@ -68,7 +69,7 @@ fn the_batch_has_the_minima_of_each_pair() {
             for (p, q) in found.as_slice().iter().zip(single.as_slice()) {
                 assert!((p.distance - q.distance).abs() < 1e-10 * unit, "{name} {k}: {p:?} {q:?}");
                 let there = b.center + p.direction_b * b.radius;
-                // Minima of equal distance may come in either order.
+                // Minima of equal distance may be in either order.
                 let near = |q: &maille_geometry::Minimum| (q.point_b - there).norm() < 1e-6 * unit;
                 assert!(single.as_slice().iter().any(near), "{name} {k}: {p:?} {single:?}");
             }
@@ -80,7 +81,8 @@ fn the_batch_has_the_minima_of_each_pair() {
     }
 }
 
-/// The special position is that of the single kernel, on every set: exact ones, random ones, and those that are nearly special.
+/// The special position agrees with that of the function for one pair, on every set: for exact, random and nearly
+/// special pairs.
 #[test]
 fn the_batch_tells_the_kind_of_each_pair() {
     let mut seen = Vec::new();
@@ -117,7 +119,8 @@ fn what_is_out_of_reach_has_no_minima_and_nothing_else_is_lost() {
     assert!(left_out > 2_000, "{left_out}");
 }
 
-/// Neither of two slots was good, and the product of their marks said that both were: off by 5e-9.
+/// Regression: neither of two roots was valid, but the product of their flags said that both were; the distance was
+/// off by 5e-9.
 #[test]
 fn a_pair_near_an_axis_is_left_to_the_single_kernel() {
     let normal = |x, y, z| UnitVector3::new_normalize(Vec3::new(x, y, z));
@@ -128,7 +131,7 @@ fn a_pair_near_an_axis_is_left_to_the_single_kernel() {
         normal(7.728488108867381e-10, 7.556001431123296e-10, -3.2451625575085826),
         7.556001503874342,
     );
-    // With 50 digits.
+    // Computed with 50 digits.
     let exact = 7.527047960694394;
     for set in Instructions::available() {
         let found = batch(set, &[(a, b)]);

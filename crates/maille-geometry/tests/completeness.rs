@@ -1,4 +1,4 @@
-//! No minimum is missed: the enumeration against dense sampling, on 120,000 pairs.
+//! No minimum is missed: `circle_distance_minima` against dense sampling, on 120,000 pairs.
 
 mod common;
 
@@ -20,7 +20,7 @@ fn every_sampled_minimum_is_enumerated() {
             let unit = scale(&a, &b);
             counts[minima.as_slice().len()] += 1;
             continua += usize::from(minima.continuum);
-            // Alternate the circle that is sampled: the minima are those of the pair.
+            // Alternate which circle is sampled: the minima must be the same.
             let swapped = index % 2 == 1;
             let along = if swapped { Along::new(&b, &a) } else { Along::new(&a, &b) };
             let sampled = if swapped { oracle(&b, &a, &angles) } else { oracle(&a, &b, &angles) };
@@ -30,7 +30,7 @@ fn every_sampled_minimum_is_enumerated() {
                 lowest = lowest.min(expected.distance);
                 let hit = minima.as_slice().iter().any(|m| {
                     let point = if swapped { m.point_a } else { m.point_b };
-                    // The sampled minimum, or a deeper one between the samples beside it.
+                    // The sampled minimum, or a deeper one between the neighbouring samples.
                     let beside = (point - expected.point_b).norm() < 0.02 * unit && m.distance < expected.distance;
                     (m.distance - expected.distance).abs() < 1e-9 * unit
                         && along.is_level_between(&point, &expected.point_b, 1e-10 * unit)
@@ -47,9 +47,9 @@ fn every_sampled_minimum_is_enumerated() {
             }
             for m in minima.as_slice() {
                 assert_on_circles(m, &a, &b);
-                // What was found is a minimum: no smaller distance beside it.
+                // What is returned is a minimum: no smaller distance next to it.
                 let angle = along.angle(if swapped { &m.point_a } else { &m.point_b });
-                // On the axis of the other circle it can be one on the smallest scale only.
+                // On the axis of the other circle it may be a minimum only on a very small scale.
                 let scales = m.hessian[0][0].min(m.hessian[1][1]) / m.hessian[0][0].max(m.hessian[1][1]);
                 let step = if scales < 1e-3 { 1e-7 } else { 1e-4 };
                 let beside = [-step, -0.1 * step, 0.1 * step, step].map(|step| along.distance(angle + step));
@@ -72,7 +72,7 @@ fn every_sampled_minimum_is_enumerated() {
     }
 }
 
-/// The parts of a minimum agree with one another, and it is one.
+/// The fields of a minimum are consistent, and it is a minimum.
 fn assert_on_circles(m: &Minimum, a: &Circle, b: &Circle) {
     let unit = scale(a, b);
     let close = 4e-15 * (unit + a.center.norm() + b.center.norm());
@@ -83,7 +83,8 @@ fn assert_on_circles(m: &Minimum, a: &Circle, b: &Circle) {
     assert!((point_circle_distance(&m.point_b, a).distance - m.distance).abs() < close, "{m:?}");
     let area = unit * unit;
     let [[aa, ab], [ba, bb]] = m.hessian;
-    // Near the other circle's axis (small aa or bb) the slope changes by the rounding of the angle over that.
+    // Near the axis of the other circle (small aa or bb) the rounding of the angle changes the gradient by that
+    // over aa or bb.
     let steepness = area / aa.abs().min(bb.abs());
     assert!(m.gradient.iter().all(|g| g.abs() < (1e-14 + 1e-15 * steepness) * area), "{m:?}");
     assert!(ab == ba && aa > -1e-12 * area && bb > -1e-12 * area && aa * bb - ab * ab > -1e-12 * area * area, "{m:?}");

@@ -1,4 +1,4 @@
-//! Degenerate positions: closed forms, in random poses, exactly and disturbed by 1e-6 … 1e-12.
+//! Degenerate positions: closed forms in random poses, exact and perturbed by 1e-6 … 1e-12.
 
 mod common;
 
@@ -13,7 +13,7 @@ fn parallel_distance(height: f64, offset: f64, p: f64, q: f64) -> f64 {
     height.hypot((offset - p - q).max((p - q).abs() - offset).max(0.0))
 }
 
-/// Name, circles, distance, class, and whether it is a continuum.
+/// Name, circles, distance, kind, and whether the minima are a continuum.
 fn specimens() -> Vec<(&'static str, Circle, Circle, f64, PairKind, bool)> {
     use PairKind::{Coaxial, Concentric, Coplanar, Equidistant, Generic};
     let base = circle([0.0; 3], [0.0, 0.0, 1.0], 1.0);
@@ -44,8 +44,8 @@ fn specimens() -> Vec<(&'static str, Circle, Circle, f64, PairKind, bool)> {
         let other = circle([0.0; 3], [angle.sin(), 0.0, angle.cos()], radius);
         list.push((name, base, other, (1.0 - radius).abs(), Concentric, false));
     }
-    // B stands and passes through the centre of A: nearest in their common plane of symmetry, or at the centre.
-    // There A's angle is free: if B is the larger, A is a meridian around a point of it.
+    // B is perpendicular to A and passes through its centre: nearest in the common plane of symmetry, or at the
+    // centre. There the angle on A is free: if B is larger, A is a meridian around a point of it.
     for (name, radius) in [("standing through the centre", 0.3), ("the same, touching", 0.5), ("the same, larger", 1.7)]
     {
         let other = circle([radius, 0.0, 0.0], [0.0, 1.0, 0.0], radius);
@@ -98,8 +98,8 @@ fn crossing_and_concentric_pairs_have_two_minima() {
     }
 }
 
-/// A disturbance moves no point by more than its size times a length, and so the distance; and the answer agrees with
-/// sampling where the samples see it.
+/// A perturbation changes the distance by no more than its size times a length, and the result agrees with sampling
+/// where the samples resolve it.
 #[test]
 fn nearly_degenerate_pairs_are_near_their_closed_forms() {
     let angles = sample_angles(720);
@@ -127,7 +127,7 @@ fn nearly_degenerate_pairs_are_near_their_closed_forms() {
     }
 }
 
-/// Parallel circles keep a closed form when their axes part.
+/// Parallel circles have a closed form for separate axes too.
 #[test]
 fn parting_axes_follow_the_closed_form() {
     for size in [1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12] {
@@ -143,8 +143,8 @@ fn parting_axes_follow_the_closed_form() {
     }
 }
 
-/// Circles around one centre, hardly tilted: the distance varies by the square of the tilt, and still its two minima,
-/// on the line in which the planes meet, are found to the accuracy that the normals have.
+/// Concentric, slightly tilted circles: the distance varies by the square of the tilt only, and still the two
+/// minima, on the intersection of the planes, are found to the accuracy of the normals.
 #[test]
 fn hardly_tilted_circles_are_nearest_on_the_common_line() {
     for (tilt, accuracy) in [(1e-2_f64, 1e-12), (1e-4, 1e-10), (1e-6, 1e-8)] {
@@ -162,8 +162,8 @@ fn hardly_tilted_circles_are_nearest_on_the_common_line() {
     }
 }
 
-/// Linked circles of radius R around centres ϱ apart come as near as ϱ only if they are a Villarceau pair; close to it
-/// they have isolated minima again.
+/// Linked circles of radius R with centres ϱ apart have distance ϱ only if they are a Villarceau pair; close to one
+/// the minima are isolated again.
 #[test]
 fn leaving_a_villarceau_pair() {
     for size in [1e-3, 1e-6, 1e-9, 1e-12] {
@@ -178,7 +178,7 @@ fn leaving_a_villarceau_pair() {
     }
 }
 
-/// The search once never ended on such numbers.
+/// Regression: the search did not terminate on such numbers.
 #[test]
 fn numbers_that_make_no_circle_have_no_distance() {
     let sound = circle([0.3, 0.2, 0.1], [0.0, 1.0, 1.0], 1.0);
@@ -208,7 +208,7 @@ fn numbers_that_make_no_circle_have_no_distance() {
     }
 }
 
-/// The square of such a tilt has no digits: the points were off by a hundredth.
+/// Regression: the square of such a tilt underflows, and the points were off by a hundredth.
 #[test]
 fn a_tilt_too_small_for_its_square_is_none() {
     for tilt in [1e-12, 1e-100, 1e-149, 1e-151, 4.5e-162, 1e-200, 5e-324] {
@@ -228,7 +228,7 @@ fn a_tilt_too_small_for_its_square_is_none() {
     }
 }
 
-/// The search once halved every interval to the end: two seconds a pair.
+/// Regression: the search bisected every interval to the smallest width, which took two seconds per pair.
 #[test]
 fn a_circle_too_small_for_its_squares_is_a_point() {
     let mut rng = rng(41);

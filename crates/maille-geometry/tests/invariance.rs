@@ -1,4 +1,4 @@
-//! Derivatives, and what must not change: rigid motion, scale, and the order of the circles.
+//! Derivatives against finite differences, and invariance under rigid motion, scaling and exchange of the circles.
 
 mod common;
 
@@ -75,7 +75,7 @@ fn gradient_and_hessian_agree_with_finite_differences() {
     assert!(checked > 5_000, "{checked}");
 }
 
-/// All minima of the one are those of the other, points mapped by `map`, lengths by `factor`.
+/// The minima of both pairs agree, with points mapped by `map` and lengths scaled by `factor`.
 fn assert_same(p: &Minima, q: &Minima, unit: f64, factor: f64, map: impl Fn(&Vec3) -> Vec3, what: &str) {
     assert_eq!(p.as_slice().len(), q.as_slice().len(), "{what}: {p:?} {q:?}");
     for m in p.as_slice() {
@@ -118,7 +118,7 @@ fn generic_minima_move_with_the_pair() {
     }
 }
 
-/// In degenerate positions rounding may add or merge minima of equal distance; the distance itself stays.
+/// In degenerate positions rounding may add or merge minima of equal distance; the distance itself does not change.
 #[test]
 fn the_distance_is_invariant_in_every_family() {
     let mut rng = rng(5);

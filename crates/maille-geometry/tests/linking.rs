@@ -1,14 +1,14 @@
-//! Linking numbers and gaps: the closed form against the Gauss integral, signs, symmetry; scores of tori.
+//! Linking numbers against the Gauss integral, their signs and symmetry; gaps of tori.
 
 mod common;
 
 use std::f64::consts::{PI, TAU};
 
 use common::{FAMILIES, circle, oracle, rng, sample_angles, uniform};
-use maille_geometry::{Circle, Torus, circle_distance_minima, interlocks, linking_number, torus_score, torus_scores};
+use maille_geometry::{Circle, Torus, circle_distance_minima, interlocks, linking_number, torus_gap, torus_gaps};
 use rand::RngExt;
 
-/// `1/4π ∮∮ (A − B)·(dA × dB)/|A − B|³` by the trapezium rule, which converges exponentially for circles apart.
+/// `1/4π ∮∮ (A − B)·(dA × dB)/|A − B|³` by the trapezoidal rule, which converges exponentially for disjoint circles.
 fn gauss_integral(a: &Circle, b: &Circle, count: usize) -> f64 {
     let along = |c: &Circle| -> Vec<_> {
         let step = TAU / count as f64;
@@ -59,7 +59,8 @@ fn is_symmetric_and_turns_with_the_normals() {
 #[test]
 fn convention_and_pairs_that_meet() {
     let base = circle([0.0; 3], [0.0, 0.0, 1.0], 1.0);
-    // About −e_y, counter-clockwise: up through the plane of the base at x = 1.5, down at x = 0.5; about e_y reversed.
+    // About −e_y, counter-clockwise: up through the plane of the base at x = 1.5, down at x = 0.5; about e_y
+    // reversed.
     assert_eq!(linking_number(&base, &circle([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], 0.5)), 1);
     assert_eq!(linking_number(&base, &circle([1.0, 0.0, 0.0], [0.0, -1.0, 0.0], 0.5)), -1);
     for (name, other) in [
@@ -78,17 +79,17 @@ fn convention_and_pairs_that_meet() {
 }
 
 #[test]
-fn scores_are_gaps() {
+fn gaps_are_distances_minus_radii() {
     let mut rng = rng(23);
     let angles = sample_angles(720);
     for _ in 0..3_000 {
         let (a, b) = uniform(&mut rng);
         let mut torus = |circle| Torus { circle, minor_radius: rng.random_range(0.01..0.15) };
         let (p, q) = (torus(a), torus(b));
-        let (minima, gaps) = torus_scores(&p, &q);
+        let (minima, gaps) = torus_gaps(&p, &q);
         let gaps: Vec<f64> = gaps.collect();
         assert_eq!(gaps.len(), minima.as_slice().len());
-        assert_eq!(gaps[0], torus_score(&p, &q));
+        assert_eq!(gaps[0], torus_gap(&p, &q));
         assert!(gaps.is_sorted());
         let mut sampled: Vec<f64> = oracle(&a, &b, &angles).iter().map(|o| o.distance).collect();
         sampled.sort_by(f64::total_cmp);

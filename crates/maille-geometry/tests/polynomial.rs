@@ -1,11 +1,11 @@
-//! The polynomial of degree 8 against the enumeration: two ways that share only the evaluation at the end.
+//! The polynomial of degree 8 against `circle_distance_minima`: two methods that share only the final evaluation.
 
 mod common;
 
 use common::{degenerate, linked, near_degenerate, rng, scale, symmetric, thin_gap, unequal, uniform};
 use maille_geometry::{circle_distance_minima, circle_distance_minima_polynomial};
 
-/// The share of pairs with the same minima, and with the same smallest distance, in `count` pairs of a family.
+/// The fractions of `count` pairs of a family with the same minima, and with the same smallest distance.
 fn agreement(name: &str, family: fn(&mut common::Rng) -> common::Pair, count: usize) -> [f64; 2] {
     let mut rng = rng(4242);
     let (mut same, mut same_closest) = (0, 0);
@@ -20,7 +20,7 @@ fn agreement(name: &str, family: fn(&mut common::Rng) -> common::Pair, count: us
         let near = |(p, q): (&f64, &f64)| (p - q).abs() < 1e-9 * unit;
         same += usize::from(exact.len() == other.len() && exact.iter().zip(&other).all(near));
         same_closest += usize::from(near((&exact[0], &other[0])));
-        // The enumeration never loses: no distance of the polynomial is below its own.
+        // No distance from the polynomial is smaller.
         assert!(other[0] > exact[0] - 1e-12 * unit, "{name}: {exact:?} {other:?}");
     }
     let share = [same, same_closest].map(|n| n as f64 / count as f64);
@@ -28,7 +28,7 @@ fn agreement(name: &str, family: fn(&mut common::Rng) -> common::Pair, count: us
     share
 }
 
-/// Measured: all of 60,000. The polynomial's roots are good enough where the angles are.
+/// Measured: all of 60,000 pairs. The roots are accurate enough where the angles are well conditioned.
 #[test]
 fn agrees_on_generic_pairs() {
     for (name, family) in [("uniform", uniform as common::Family), ("linked", linked), ("thin gap", thin_gap)] {
@@ -37,8 +37,8 @@ fn agrees_on_generic_pairs() {
     }
 }
 
-/// Measured: 1, 0.998, 0.9996, and 0.80 for pairs disturbed by 1e-12 … 1e-2, where it loses the minima that are close
-/// to an axis or differ by little. It always answers.
+/// Measured: 1, 0.998, 0.9996, and 0.80 for pairs perturbed by 1e-12 … 1e-2, where minima close to an axis or to
+/// each other are lost. At least one minimum is always returned.
 #[test]
 fn answers_degenerate_pairs_with_losses() {
     for (name, family, least) in [

@@ -68,7 +68,7 @@ pub fn linked(rng: &mut Rng) -> Pair {
     }
 }
 
-/// Pairs whose distance at one place is at most 0.05, down to 1e-9, with any angle of the tangents there.
+/// Pairs whose distance at one point is 1e-9 … 0.05, with any angle between the tangents there.
 pub fn thin_gap(rng: &mut Rng) -> Pair {
     let a = Circle::new(Vec3::zeros(), direction(rng), 1.0);
     let on_a = a.point(rng.random_range(-PI..PI));
@@ -82,7 +82,7 @@ pub fn thin_gap(rng: &mut Rng) -> Pair {
     (a, Circle::new(on_a + across * gap - on_b, normal, radius))
 }
 
-/// A degenerate pair, with its radii, offset and normal disturbed by 1e-12 … 1e-2.
+/// A degenerate pair with its radii, offset and normal perturbed by 1e-12 … 1e-2.
 pub fn near_degenerate(rng: &mut Rng) -> Pair {
     let (a, b) = degenerate(rng);
     let by = 10f64.powf(rng.random_range(-12.0..-2.0));
@@ -92,7 +92,7 @@ pub fn near_degenerate(rng: &mut Rng) -> Pair {
     (a, Circle::new(center, normal, b.radius * (1.0 + part(rng) * rng.random_range(-1.0..1.0))))
 }
 
-/// Exactly degenerate up to rounding: all families of the crate's documentation, in a random position.
+/// Degenerate up to rounding: all families of the crate documentation, in random poses.
 pub fn degenerate(rng: &mut Rng) -> Pair {
     let radius = if rng.random_bool(0.5) { 1.0 } else { rng.random_range(0.3..1.5) };
     let d = rng.random_range(0.0..2.5);
@@ -103,11 +103,11 @@ pub fn degenerate(rng: &mut Rng) -> Pair {
         1 => circle([d, 0.0, 0.0], [0.0, 0.0, -1.0], radius),
         2 => circle([0.0; 3], [angle.cos(), 0.0, angle.sin()], radius),
         3 => circle([0.0; 3], [0.0, 0.0, 1.0], 1.0),
-        // Through the centre of A, and through a point of its axis, standing.
+        // Perpendicular, through the centre of A or a point of its axis.
         4 => circle([radius, 0.0, 0.0], [0.0, 1.0, 0.0], radius),
         5 => circle([radius * angle.cos(), radius * angle.sin(), d], [0.0, 0.0, 1.0], radius),
         6 => villarceau(rng.random_range(0.02..0.98), 1.0, rng.random_bool(0.5)).1,
-        // B goes round a point of A.
+        // A meridian pair: B is centred on a point of A.
         _ => circle([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], radius.min(1.0)),
     };
     let (by, shift) = (rotation(rng), *direction(rng));
@@ -129,7 +129,7 @@ pub fn unequal(rng: &mut Rng) -> Pair {
     (a, Circle::new(offset + near, direction(rng), length(rng)))
 }
 
-/// Positions on a coarse grid, with symmetry planes, as designs have them.
+/// Positions on a coarse grid with symmetry planes, as in designs of chainmail.
 pub fn symmetric(rng: &mut Rng) -> Pair {
     let step = |rng: &mut Rng| f64::from(rng.random_range(-4..=4)) * 0.5;
     let offset = Vec3::from_fn(|_, _| step(rng));
@@ -150,7 +150,7 @@ pub struct Oracle {
     pub point_b: Vec3,
 }
 
-/// The distance from circle A of points along circle B, in the plainest form.
+/// The distance of points along circle B from circle A, by the simplest formula.
 pub struct Along {
     u: Vec3,
     v: Vec3,
@@ -175,7 +175,7 @@ impl Along {
         w.dot(&self.v).atan2(w.dot(&self.u))
     }
 
-    /// Is there no barrier between two points of B, on the shorter arc?
+    /// Is there no barrier between two points of B on the shorter arc?
     pub fn is_level_between(&self, p: &Vec3, q: &Vec3, by: f64) -> bool {
         let (from, to) = (self.angle(p), self.angle(q));
         let arc = (to - from + PI).rem_euclid(TAU) - PI;
@@ -206,8 +206,9 @@ pub fn sample_angles(count: usize) -> Vec<(f64, f64, f64)> {
         .collect()
 }
 
-/// The local minima along B of the distance from A: local minima of the samples, polished by golden section. Those
-/// shallower than `1e-11` of the pair's largest length are left out: rounding makes such where the distance is level.
+/// The local minima along B of the distance from A: local minima of the samples, refined by golden-section search.
+/// Minima shallower than `1e-11` of the pair's largest length are left out: rounding creates such where the
+/// distance is constant.
 pub fn oracle(a: &Circle, b: &Circle, angles: &[(f64, f64, f64)]) -> Vec<Oracle> {
     let along = Along::new(a, b);
     let shallow = 1e-11 * scale(a, b);

@@ -2,7 +2,7 @@
 
 use super::{RingPair, broad::in_chunks, close_pairs};
 use crate::{model::Model, state::State};
-use maille_geometry::{Circle, Minimum, circle_distance_floor, circle_distance_minima};
+use maille_geometry::{Circle, Minimum, circle_distance_lower_bound, circle_distance_minima};
 use std::cell::OnceCell;
 
 /// A pair of rings as it stands.
@@ -44,7 +44,7 @@ pub fn near_pairs(model: &Model, state: &State, margin: f64) -> Vec<NearPair> {
         let (a, b) = (circles[pair.ring_a], circles[pair.ring_b]);
         let b = Circle { center: b.center + state.translation(pair.shift), ..b };
         let touching = model.contact_distance(pair.ring_a, pair.ring_b);
-        let floor = circle_distance_floor(&a, &b);
+        let floor = circle_distance_lower_bound(&a, &b);
         NearPair { pair: *pair, a, b, touching, floor, minima: OnceCell::new() }
     };
     in_chunks(&close_pairs(model, state, margin), |pairs| pairs.iter().map(of).collect())

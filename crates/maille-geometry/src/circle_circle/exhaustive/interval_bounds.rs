@@ -1,39 +1,46 @@
-//! What can be proven of `h(θ) = ½ d²` on an interval from one sample.
+//! What one sample proves about `h(θ) = ½ d²` on an interval around it.
 //!
-//! The interval has the centre `m` and the half width `σ`; `M` is a bound of `|h‴|` over it.
+//! Let `m` be the centre of the interval, `σ` its half width (radians), and `M` an upper bound of `|h‴|` on it. By
+//! Taylor's theorem:
 //!
 //! 1. `|h′(m)| > σ |h″(m)| + ½ σ² M`: no critical point.
-//! 2. `h″(m) + σ M < 0`: concave, no minimum.
-//! 3. `h″(m) − σ M > 0`: convex.
-//! 4. Near the axis of the base, where no `M` exists: at a critical point `w·w′ = R ρ′` (w from the base centre), so
-//!    `h″ = (w·w′)′ − R ρ″ = (w·w′)′ − R ((|e′|² − (w·w′)²/R²)/ρ + e·e″/ρ)`, which is negative, a maximum, if
-//!    `(w·w′)² < R² (|e′|² − ρ K)` with `K = (max |(w·w′)′| + R max |e″|)/R`.
+//! 2. `h″(m) + σ M < 0`: h is concave, no minimum.
+//! 3. `h″(m) − σ M > 0`: h is convex, at most one minimum.
+//!
+//! Near the axis of the base circle, where no `M` exists, a fourth test applies. At a critical point `w·w′ = R ρ′`
+//! (`w` from the base centre), so that
+//!
+//! `h″ = (w·w′)′ − R ρ″ = (w·w′)′ − R ((|e′|² − (w·w′)²/R²)/ρ + e·e″/ρ)`.
+//!
+//! 4. `(w·w′)² < R² (|e′|² − ρ K)` with `K = (max |(w·w′)′| + R max |e″|)/R`: `h″ < 0` at every critical point, no
+//!    minimum.
 
-use crate::relative::{Relative, Sample};
+use crate::circle_circle::pair_frame::{PairFrame, Sample};
 
-/// What is proven of an interval.
+/// What is proved about an interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Verdict {
     /// No minimum inside.
     NoMinimum,
     /// `h″ > 0` throughout.
     Convex,
-    /// Nothing yet.
+    /// Nothing is proved.
     Unknown,
 }
 
-/// Amplitudes on the whole circle; bounds on an interval are made from them and the sample at its centre.
-pub(crate) struct Bounds {
-    /// Of z.
+/// Maxima over the whole circle. With the sample at its centre they give bounds on an interval.
+pub(crate) struct IntervalBounds {
+    /// Amplitude of `z`.
     rise: f64,
-    /// Of `(e·e′)′`, `(e·e′)″` and `(e·e′)‴`.
+    /// Bounds of `|(e·e′)′|`, `|(e·e′)″|` and `|(e·e′)‴|`.
     ee: [f64; 3],
-    /// Of `w·w′`.
+    /// Amplitude of `w·w′`.
     ww: f64,
 }
 
-impl Bounds {
-    pub fn new(pair: &Relative<'_>) -> Self {
+impl IntervalBounds {
+    /// Of a pair.
+    pub fn new(pair: &PairFrame<'_>) -> Self {
         let [x0, y0, _] = pair.offset;
         let rise = pair.radius * pair.tilt_sin;
         let first = pair.radius * (pair.tilt_cos * x0).hypot(y0);
@@ -45,10 +52,10 @@ impl Bounds {
         }
     }
 
-    /// The tests of the module's head, for the interval of half width σ around the angle of a sample.
-    pub fn verdict(&self, pair: &Relative<'_>, at: &Sample, half_width: f64) -> Verdict {
+    /// The four tests of the module documentation, for the interval of half width `σ` around a sample.
+    pub fn verdict(&self, pair: &PairFrame<'_>, at: &Sample, half_width: f64) -> Verdict {
         let (r, base_radius) = (pair.radius, pair.base_radius);
-        // |e′|² + z′² = r²: the speed of e at the centre, and its bounds.
+        // Tests 1 to 3. From |e′|² + z′² = r²: the speed |e′| at the centre, and how far e can move.
         let speed = (r * r - at.z1 * at.z1).max(0.0).sqrt();
         let travel = half_width * (speed + 0.5 * half_width * r).min(r);
         if at.rho > travel {
@@ -63,6 +70,7 @@ impl Bounds {
                 return Verdict::Convex;
             }
         }
+        // Test 4.
         let ww = (at.ee[0] + at.z * at.z1).abs() + half_width * self.ww;
         let speed_min = speed - half_width * r;
         let k = self.ww / base_radius + r;
@@ -72,23 +80,34 @@ impl Bounds {
         Verdict::Unknown
     }
 
-    /// A bound of `|h‴|`, the smaller one of two. From `h‴ = 3 z′z″ + z z‴ + 3 ρ′ρ″ + (ρ − R) ρ‴`, in which every
-    /// factor is bounded, so that it stays small for nearly coaxial pairs; and from `h‴ = (w·w′)″ − R ρ‴`.
+    /// An upper bound of `|h‴|` on the interval: the smaller of two.
     ///
-    /// `ρ′ = e·e′/ρ`, `ρ″ = ((e·e′)′ − ρ′²)/ρ`, `ρ‴ = ((e·e′)″ − 3 ρ′ρ″)/ρ`, and `|ρ′| ≤ |e′|`.
-    fn third_derivative(&self, pair: &Relative<'_>, at: &Sample, rho_min: f64, speed_max: f64, half_width: f64) -> f64 {
+    /// The first is from `h‴ = 3 z′z″ + z z‴ + 3 ρ′ρ″ + (ρ − R) ρ‴`, factor by factor, which stays small for nearly
+    /// coaxial pairs; the second from `h‴ = (w·w′)″ − R ρ‴`. Both use `ρ′ = e·e′/ρ`, `ρ″ = ((e·e′)′ − ρ′²)/ρ`,
+    /// `ρ‴ = ((e·e′)″ − 3 ρ′ρ″)/ρ`, and `|ρ′| ≤ |e′|`.
+    fn third_derivative(
+        &self,
+        pair: &PairFrame<'_>,
+        at: &Sample,
+        rho_min: f64,
+        speed_max: f64,
+        half_width: f64,
+    ) -> f64 {
+        // (e·e′)″, (e·e′)′ and e·e′.
         let inverse = 1.0 / rho_min;
         let ee2 = self.ee[1].min((at.ee[0] + 3.0 * at.z1 * at.z2).abs() + half_width * self.ee[2]);
         let ee1 = self.ee[0].min(at.ee[1].abs() + half_width * ee2);
         let ee0 = at.ee[0].abs() + half_width * ee1;
-        let first = speed_max.min(ee0 * inverse);
-        // −ρ′² only takes away.
-        let second = (at.ee[1].max(first * first - at.ee[1]) + half_width * ee2) * inverse;
-        let third = (ee2 + 3.0 * first * second) * inverse;
+        // ρ′, ρ″ and ρ‴.
+        let rho1 = speed_max.min(ee0 * inverse);
+        // The term −ρ′² can only lower ρ″.
+        let rho2 = (at.ee[1].max(rho1 * rho1 - at.ee[1]) + half_width * ee2) * inverse;
+        let rho3 = (ee2 + 3.0 * rho1 * rho2) * inverse;
+        // The two forms of h‴.
         let (rise, z1) = (self.rise, at.z1.abs() + half_width * self.rise);
         let height = (1.5 * rise * rise).min(3.0 * z1 * rise) + (at.z.abs() + half_width * z1) * z1;
-        let radial = 3.0 * first * second + (at.radial.abs() + half_width * first) * third;
-        (height + radial).min(self.ww + pair.base_radius * third)
+        let radial = 3.0 * rho1 * rho2 + (at.radial.abs() + half_width * rho1) * rho3;
+        (height + radial).min(self.ww + pair.base_radius * rho3)
     }
 }
 
@@ -99,7 +118,7 @@ mod tests {
     use super::*;
     use crate::{Circle, Vec3};
 
-    /// Every verdict on random intervals of random pairs, checked on 400 samples inside.
+    /// Every verdict on random intervals of random pairs agrees with 400 samples inside.
     #[test]
     fn verdicts_hold_on_dense_samples() {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(3);
@@ -109,10 +128,10 @@ mod tests {
             let normal = |v: Vec3| nalgebra::UnitVector3::new_normalize(v);
             let a = Circle::new(Vec3::zeros(), normal(vector(1.0)), 1.0);
             let b = Circle::new(vector(1.5), normal(vector(1.0)), rng.random_range(0.1..1.5));
-            let pair = Relative::new(&a, &b);
+            let pair = PairFrame::new(&a, &b);
             let (center, half_width) = (rng.random_range(-3.0..3.0), 0.4 * rng.random_range(0.01_f64..1.0).powi(2));
-            let verdict = Bounds::new(&pair).verdict(&pair, &pair.at_angle(center), half_width);
-            let inside = (0..=400).map(|i| pair.at_angle(center + half_width * (f64::from(i) / 200.0 - 1.0)));
+            let verdict = IntervalBounds::new(&pair).verdict(&pair, &pair.sample_at_angle(center), half_width);
+            let inside = (0..=400).map(|i| pair.sample_at_angle(center + half_width * (f64::from(i) / 200.0 - 1.0)));
             let inside: Vec<_> = inside.collect();
             let minimum = inside.windows(2).any(|pair| pair[0].slope < -1e-14 && pair[1].slope > 1e-14);
             match verdict {
@@ -122,7 +141,7 @@ mod tests {
             }
             seen[verdict as usize] += 1;
         }
-        // All three occur, most intervals are decided.
+        // All three verdicts occur, and most intervals are decided.
         assert!(seen[0] > 10_000 && seen[1] > 500 && seen[2] > 100 && seen[2] < 10_000, "{seen:?}");
     }
 }
