@@ -27,7 +27,7 @@ use maille_io::{
     record::Map,
 };
 use miette::{Result, miette};
-use std::{path::PathBuf, process::ExitCode, time::Instant};
+use std::{ops::RangeInclusive, path::PathBuf, process::ExitCode, time::Instant};
 
 /// How far a sheet stretches in each direction before it locks
 ///
@@ -96,7 +96,7 @@ pub struct Args {
     #[arg(long, short, conflicts_with = "json")]
     quiet: bool,
     /// Exact method: starts of a limit whose bound is not attained; with --compression starts of each cell
-    #[arg(long, default_value_t = ExactOptions::default().starts, value_parser = |t: &str| small(t, 10_000))]
+    #[arg(long, default_value_t = ExactOptions::default().starts, value_parser = |t: &str| small(t, 1..=10_000))]
     starts: usize,
     #[command(flatten, next_help_heading = "Energy method (lengths in units of the reference radius R)")]
     energy: EnergyArgs,
@@ -120,7 +120,7 @@ struct EnergyArgs {
     #[arg(long, default_value_t = EnergyOptions::default().l1_resolution, value_parser = positive)]
     l1_resolution: f64,
     /// Sampled points on each side of a contact
-    #[arg(long, default_value_t = EnergyOptions::default().samples, value_parser = |t: &str| small(t, 50))]
+    #[arg(long, default_value_t = EnergyOptions::default().samples, value_parser = |t: &str| small(t, 0..=50))]
     samples: usize,
     /// Spacing of the sampled points in radians [default: from the expected overlap]
     #[arg(long, value_parser = positive)]
@@ -153,7 +153,7 @@ struct EnergyArgs {
     #[arg(long)]
     side_signs: bool,
     /// Iterations of one minimisation at most
-    #[arg(long, default_value_t = EnergyOptions::default().max_iterations, value_parser = |t: &str| small(t, 10_000_000))]
+    #[arg(long, default_value_t = EnergyOptions::default().max_iterations, value_parser = |t: &str| small(t, 0..=10_000_000))]
     max_iterations: usize,
 }
 
@@ -194,10 +194,10 @@ fn cell_choice(text: &str) -> Result<CellChoice, String> {
     }
 }
 
-fn small(text: &str, most: usize) -> Result<usize, String> {
+fn small(text: &str, allowed: RangeInclusive<usize>) -> Result<usize, String> {
     match text.parse::<usize>() {
-        Ok(n) if n <= most => Ok(n),
-        _ => Err(format!("\"{text}\" is not a whole number from 0 to {most}")),
+        Ok(n) if allowed.contains(&n) => Ok(n),
+        _ => Err(format!("\"{text}\" is not a whole number from {} to {}", allowed.start(), allowed.end())),
     }
 }
 
@@ -315,7 +315,7 @@ fn once(args: &Args) -> Result<ExitCode> {
     let map = Map {
         method: match args.method {
             MethodArg::Exact => Method::Exact(ExactOptions {
-                starts: args.starts.max(1),
+                starts: args.starts,
                 seed: args.seed,
                 across,
                 compression: args.compression,

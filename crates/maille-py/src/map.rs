@@ -129,7 +129,7 @@ impl Asked {
     /// The map of a design, open.
     pub fn open(self, design: &Design, out: Option<PathBuf>, overwrite: bool) -> PyResult<maille_io::record::OpenMap> {
         let across = Across { lateral_free: self.lateral_free, shear_free: self.shear_free };
-        let (starts, seed) = (self.starts.max(1), self.seed);
+        let (starts, seed) = (self.starts, self.seed);
         let method = match self.method.as_str() {
             "exact" => Method::Exact(ExactOptions { starts, seed, across, compression: self.compression }),
             "energy" if self.compression => {

@@ -28,7 +28,7 @@ fn options(tolerance: f64, vertices: usize, starts: usize, seed: u64) -> PyResul
     if !(tolerance.is_finite() && tolerance > 0.0) {
         return Err(error::argument("tolerance", format!("{tolerance} is not positive"), "give a strain, as 0.001"));
     }
-    Ok(BoundaryOptions { tolerance, most: vertices, starts: starts.max(1), seed })
+    Ok(BoundaryOptions { tolerance, most: vertices, starts, seed })
 }
 
 fn cell_of(text: &str) -> PyResult<Cell> {
@@ -90,7 +90,7 @@ impl SurfaceFolder {
         folder: PathBuf,
         overwrite: bool,
     ) -> PyResult<(Self, Vec<String>)> {
-        let options = BoundaryOptions { starts: starts.max(1), seed, ..BoundaryOptions::default() };
+        let options = BoundaryOptions { starts, seed, ..BoundaryOptions::default() };
         let head = BoundaryHead::new(&design.design, cell_of(cell)?, &options);
         let opened = maille_io::boundary::SurfaceFolder::open(&folder, &head, overwrite);
         let (open, known) = opened.map_err(|e| error::record(&e))?;
@@ -121,7 +121,7 @@ pub fn solve_rays(
     cell: &str,
     seed: u64,
 ) -> PyResult<Vec<String>> {
-    let options = BoundaryOptions { starts: starts.max(1), seed, ..BoundaryOptions::default() };
+    let options = BoundaryOptions { starts, seed, ..BoundaryOptions::default() };
     let (model, rays) = (design.compile(cell_of(cell)?)?, read::<Ray>(&rays)?);
     let ends = wait(py, Some(1), None, |cancel, _| {
         let solver = RaySolver::new(&model, &options);

@@ -65,7 +65,7 @@ fn shifts() {
         let model = Model::compile(&design(name), Cell::PRIMITIVE).expect("it compiles");
         for (minimiser_name, minimiser) in minimisers {
             let begun = Instant::now();
-            let options = EnergyOptions { minimiser, ..EnergyOptions::default() };
+            let options = EnergyOptions { minimiser, ..usual() };
             let found = EnergyMethod::new(&model, options, &NO_CANCEL).limit(direction, l2, &NO_CANCEL);
             let wall = begun.elapsed().as_secs_f64();
             let (sin, cos) = direction.to_radians().sin_cos();
@@ -81,9 +81,14 @@ fn shifts() {
     }
 }
 
+/// Default options with a threshold that lets the energy method show what it does.
+fn usual() -> EnergyOptions {
+    EnergyOptions { tau: 0.002, ..EnergyOptions::default() }
+}
+
 /// Both laws, the square as stiff as makes the same overlap at the threshold.
 fn both_laws() -> [(&'static str, EnergyOptions); 2] {
-    let barrier = EnergyOptions::default();
+    let barrier = usual();
     let touching = 0.2;
     let depth = (4.0 * barrier.tau * touching / (3.0 * barrier.alpha)).sqrt();
     let square = EnergyOptions {
@@ -164,7 +169,7 @@ fn descent() {
     println!(
         "pull               minimiser         iterations  wall s  ended         |gradient|  energy      least curvature"
     );
-    let options = EnergyOptions::default();
+    let options = usual();
     let within = [("1.1", 0.0, 0.3), ("2-oblong", 90.0, 0.4), ("3.1", 30.0, 0.4)];
     let missed = [("1.1", 0.0, 0.45), ("1.1", 45.0, 0.78), ("3.1", 30.0, 0.57)];
     for (name, direction, l1) in within.into_iter().chain(missed) {
@@ -212,7 +217,7 @@ fn tilt() {
     let model = Model::compile_sheet(&pair, Cell::PRIMITIVE).expect("it compiles");
     for alpha in [1e2, 1e3, 1e5] {
         for samples in [0, 1, 2] {
-            let options = EnergyOptions { alpha, samples, ..EnergyOptions::default() };
+            let options = EnergyOptions { alpha, samples, ..usual() };
             let contacts = options.contacts(&model);
             let loads = Loads { forces: vec![(1, Vec3::new(0.1, 0.0, 0.0))], held: vec![0], ..Loads::default() };
             let energy = SheetEnergy { loads, ..SheetEnergy::new(&model, &contacts) };

@@ -1,7 +1,46 @@
-//! Mechanics of discrete interlocking materials: from a design to its deformation limits.
+//! Mechanics of discrete interlocking materials: sheets of rigid rings that hold together only because they are linked.
 //!
-//! Data flows one way: [`design`] → [`model`] → [`state`] → [`contact`]s → [`energy`] → [`solve`]r → [`limit`] → [`record`].
-//! Inside, lengths are in units of the design's reference radius; records are in the file's unit.
+//! A [`Design`] lists elements of rings and two lattice vectors. [`Sheet::compile`] checks it and prepares it for its own unit
+//! cell and for larger ones. A [`Question`] asks for something as large or as small as it can be: the stretch along a direction
+//! before the sheet locks, a Green strain, the wire, the clearance. [`Sheet::answer`] searches for it and returns an [`Answer`]:
+//! a value, a proven bound, the state with its contact forces, and a certificate of what is proved of it.
+//!
+//! ```
+//! use maille::{Question, Sheet, Status};
+//!
+//! let text = maille_io::builtin("1.1").ok_or("no such design")?;
+//! let sheet = Sheet::compile(&maille_io::read_design("1.1", text)?).map_err(|problems| format!("{problems:?}"))?;
+//!
+//! // How far does it stretch along 45° before it locks, with its width held?
+//! let answer = sheet.answer(&Question::stretch_along(45.0))?;
+//! assert_eq!(answer.status, Status::Global); // no state of this sheet, in any cell, stretches further: proved
+//! assert!((answer.value.unwrap() - 0.774034949).abs() < 1e-8); // by 77 %
+//! assert_eq!(answer.contacts.len(), 4); // these contacts carry the load
+//!
+//! // What is the thickest wire with which it can be woven? R (1 − √½), 2.93 times the design's.
+//! let answer = sheet.answer(&Question::thickest_wire())?;
+//! assert!((answer.value.unwrap() - 10.0 * (1.0 - 0.5_f64.sqrt())).abs() < 1e-8);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Where a question goes
+//!
+//! | module | what happens there |
+//! | --- | --- |
+//! | [`design`], [`model`], [`state`], [`lattice`] | the file's content; compiled to indices and units of R; poses and lattice vectors; cells |
+//! | [`question`], [`sheet`], [`answer`] | what is asked, to whom, and what came of it |
+//! | [`limit`] | the searches: many starts, local maximisation, certificate, larger cells; and the thesis's energy method |
+//! | [`constraint`], [`contact`] | the program that is maximised: gaps between rings as inequalities, with their derivatives |
+//! | [`bound`] | proofs that no state lies beyond a value |
+//! | [`solve`] | solvers that know nothing of rings: sequential quadratic programming, Newton's method, certificates |
+//! | [`energy`], [`simulate`] | the thesis's contact energy; finite sheets under weight and pulls |
+//! | [`characterize`] | maps: many limits over directions and lateral strains, as rows of a [`record`] |
+//!
+//! Inside, lengths are in units of the design's reference radius R; records are in the file's unit. The searches use the current
+//! rayon thread pool, and no result depends on its size. Files are read and written by the crate `maille-io`, and records are
+//! checked independently by `maille-verify`.
+//!
+//! The formulas and proofs are in the repository's `docs/theory`.
 
 pub mod answer;
 pub mod bound;
@@ -22,3 +61,12 @@ pub mod solve;
 pub mod state;
 pub mod symmetry;
 pub mod topology;
+
+pub use answer::Answer;
+pub use characterize::CellChoice;
+pub use design::Design;
+pub use error::InvalidInput;
+pub use lattice::{Across, Cell};
+pub use question::{Goal, Question, Sense, Strain};
+pub use record::Status;
+pub use sheet::Sheet;

@@ -13,6 +13,7 @@ pub use cases::{Finding, Part, RULE, Verdict};
 use cause::cause;
 
 use super::{EXACT_TIE, Map, apart, extreme, midway, ratio_label, signed, step};
+use maille::record::LimitRow;
 
 /// All statements.
 pub fn statements(maps: &[Map]) -> Vec<Finding> {
@@ -256,7 +257,8 @@ pub fn major_radius(maps: &[Map]) -> Finding {
             for row in &a.rows {
                 let (Some(of_a), Some(of_b)) = (row.l1, b.l1(row.direction_deg, row.l2)) else { continue };
                 larger.compare(of_a - of_b, a.tie(), || {
-                    format!("{}, {}°: {of_a:.4}, {small} {of_b:.4}", at(a, row.l2), row.direction_deg)
+                    let because = cause(&[a, b], maps, row.l2);
+                    format!("{}, {}°: {of_a:.4}, {small} {of_b:.4}. {because}", at(a, row.l2), row.direction_deg)
                 });
             }
             for l2 in a.l2() {
@@ -401,11 +403,12 @@ pub fn steps(maps: &[Map]) -> Finding {
     let mut dense = Cases::of("a dense topology takes more than the median");
     let mut compressed = Cases::of("compression takes more");
     let mut evidence = Vec::new();
-    let mean = |map: &Map, of: &dyn Fn(f64) -> bool| {
+    let mean_of = |map: &Map, of: &dyn Fn(f64) -> bool, count: &dyn Fn(&LimitRow) -> u64| {
         let rows: Vec<f64> =
-            map.rows.iter().filter(|row| row.l1.is_some() && of(row.l2)).map(|row| row.iterations as f64).collect();
+            map.rows.iter().filter(|row| row.l1.is_some() && of(row.l2)).map(|row| count(row) as f64).collect();
         (!rows.is_empty()).then(|| rows.iter().sum::<f64>() / rows.len() as f64)
     };
+    let mean = |map: &Map, of: &dyn Fn(f64) -> bool| mean_of(map, of, &|row| row.iterations);
     let plain: Vec<&Map> = maps.iter().filter(|map| map.is_plain()).collect();
     for map in plain.iter().filter(|map| DENSE.contains(&map.design.as_str())) {
         let alike = |other: &&&Map| {
@@ -425,7 +428,15 @@ pub fn steps(maps: &[Map]) -> Finding {
         let (Some(below), Some(above)) = (mean(map, &|l2| l2 < 0.0), mean(map, &|l2| l2 >= 0.0)) else { continue };
         let cases = if map.method == "energy" { &mut compressed } else { &mut of_exact };
         cases.add(below > above, || {
-            format!("{}: {below:.0} steps a limit with l₂ < 0, {above:.0} with l₂ ≥ 0", map.label())
+            let runs = |of: &dyn Fn(f64) -> bool| mean_of(map, of, &|row| row.runs).unwrap_or(f64::NAN);
+            let [fewer, more] = [runs(&|l2| l2 < 0.0), runs(&|l2| l2 >= 0.0)];
+            format!(
+                "{}: {below:.0} steps a limit with l₂ < 0, {above:.0} with l₂ ≥ 0. The limit is found in {fewer:.1} runs of {:.0} \
+                 steps there, and here in {more:.1} runs of {:.0}.",
+                map.label(),
+                below / fewer,
+                above / more
+            )
         });
     }
     evidence.insert(
