@@ -1,38 +1,28 @@
-// The limit map: a polar plot of l1 against the direction of the pull.
+// A polar plot of the limits: l1 against the direction of the pull.
 
 import { h, s, short } from "./dom";
+import { halfTurn, reached, sameDirection, widthColor, widths, type Choice } from "./limits";
 import type { Limit } from "./types";
 
-/** Limits that are drawn as one family: one curve for each l2. */
+/** Limits that are drawn alike: one curve for each l2. */
 export interface Family {
-  label: string;
   colors: string[];
   limits: Limit[];
   /** Of inputs that are no longer asked for. */
   old: boolean;
 }
 
-export interface Choice {
-  direction: number;
-  l2: number;
-}
-
 const SIZE = 420;
 const MIDDLE = SIZE / 2;
 const RIM = MIDDLE - 34;
+const OLD = "#c9c4ba";
+/** Distances between the rings of the grid. */
+const STEPS = [0.01, 0.02, 0.05, 0.1, 0.2, 0.25, 0.5, 1, 2, 5, 10];
 
-/** The value that the map shows: l1, or what was reached without a certificate. */
-export function reached(limit: Limit): number | null {
-  return limit.row.l1 ?? limit.row.l1_uncertified;
-}
+/** Degrees that a key turns the direction by. */
+const KEYS: Record<string, number> = { ArrowLeft: 5, ArrowUp: 5, ArrowRight: -5, ArrowDown: -5 };
 
-/** Whether two directions pull alike: D and −D do. */
-export function same(a: number, b: number): boolean {
-  const apart = (((a - b) % 180) + 180) % 180;
-  return apart < 1e-9 || 180 - apart < 1e-9;
-}
-
-export class LimitMap {
+export class PolarPlot {
   readonly node: SVGSVGElement;
   readonly tip: HTMLElement;
   private families: Family[] = [];
@@ -55,7 +45,7 @@ export class LimitMap {
       onmousemove: (e) => this.hover(e as MouseEvent),
       onmouseleave: () => this.say(null),
       onkeydown: (e) => {
-        const step = ({ ArrowLeft: 5, ArrowUp: 5, ArrowRight: -5, ArrowDown: -5 } as Record<string, number>)[(e as KeyboardEvent).key];
+        const step = KEYS[(e as KeyboardEvent).key];
         if (!step) return;
         e.preventDefault();
         onStep(step);
@@ -113,60 +103,85 @@ export class LimitMap {
     this.families = families;
     const values = families.flatMap((f) => f.limits.flatMap((l) => reached(l) ?? []));
     const most = Math.max(0.05, ...values);
-    const step = [0.01, 0.02, 0.05, 0.1, 0.2, 0.25, 0.5, 1, 2, 5, 10].find((x) => most / x <= 4.2) ?? most / 4;
-    const rim = Math.ceil(most / step - 1e-9) * step;
+    const step = STEPS.find((x) => most / x <= 4.2) ?? most / 4;
+    const count = Math.ceil(most / step - 1e-9);
+    const rim = count * step;
     this.scale = RIM / rim;
-    const parts: Node[] = [];
-    for (let k = 1; k * step <= rim * 1.0001; k++) {
-      parts.push(s("circle", { cx: MIDDLE, cy: MIDDLE, r: k * step * this.scale, class: "grid" }));
-    }
-    for (let d = 0; d < 180; d += 30) {
-      const [x, y] = this.point(d, rim);
-      parts.push(s("line", { x1: x, y1: y, x2: SIZE - x, y2: SIZE - y, class: "grid" }));
-    }
-    for (let d = 0; d < 360; d += 30) {
-      const [x, y] = this.point(d, rim * 1.09);
-      parts.push(s("text", { x, y: y + 4, class: "degrees" }, `${d}°`));
-    }
-    for (const family of families) {
-      const l2s = [...new Set(family.limits.map((l) => l.row.l2))].sort((a, b) => a - b);
-      l2s.forEach((l2, k) => {
-        const color = family.old ? "#c9c4ba" : family.colors[Math.round((k / Math.max(1, l2s.length - 1)) * (family.colors.length - 1))]!;
-        const all = family.limits.filter((l) => l.row.l2 === l2).sort((a, b) => turn(a) - turn(b));
-        const line = all.filter((l) => reached(l) !== null);
-        const round = [...line.map((l) => this.point(turn(l), reached(l)!)), ...line.map((l) => this.point(turn(l) + 180, reached(l)!))];
-        const closed = line.length > 2;
-        const d = round.map(([x, y], i) => `${i ? "L" : "M"}${x.toFixed(2)} ${y.toFixed(2)}`).join("") + (closed ? "Z" : "");
-        if (closed) parts.push(s("path", { d, class: family.old ? "curve old" : "curve", stroke: color, fill: l2s.length === 1 && !family.old ? color : "none" }));
-        if (family.old) return;
-        for (const limit of line) {
-          for (const half of [0, 180]) {
-            const [x, y] = this.point(turn(limit) + half, reached(limit)!);
-            const sure = limit.row.status === "global" || limit.row.status === "local";
-            parts.push(s("circle", { cx: x, cy: y, r: 2.6, class: "limit", stroke: color, fill: sure ? color : "#fff" }));
-          }
-        }
-      });
-    }
-    for (let k = 1; k * step <= rim * 1.0001; k++) {
-      const [x, y] = this.point(75, k * step);
-      parts.push(s("text", { x, y: y - 3, class: "value" }, short(1 + k * step, 3)));
-    }
-    if (choice) {
-      const [x, y] = this.point(choice.direction, rim);
-      parts.push(s("line", { x1: x, y1: y, x2: SIZE - x, y2: SIZE - y, class: "ray" }));
-      for (const family of families.filter((f) => !f.old)) {
-        const limit = family.limits.find((l) => same(l.row.direction_deg, choice.direction) && l.row.l2 === choice.l2);
-        if (!limit || reached(limit) === null) continue;
-        for (const half of [0, 180]) {
-          const [cx, cy] = this.point(choice.direction + half, reached(limit)!);
-          parts.push(s("circle", { cx, cy, r: 6, class: "chosen" }));
-        }
-      }
-    }
-    this.node.replaceChildren(...parts);
+    const rings = Array.from({ length: count }, (_, k) => (k + 1) * step);
+    this.node.replaceChildren(
+      ...this.grid(rings, rim),
+      ...families.flatMap((family) => this.curves(family)),
+      ...rings.map((value) => this.label(value)),
+      ...(choice ? this.chosen(families, choice, rim) : []),
+    );
     if (!this.tip.textContent) this.say(null);
   }
-}
 
-const turn = (limit: Limit) => ((limit.row.direction_deg % 180) + 180) % 180;
+  private grid(rings: number[], rim: number): Node[] {
+    const circles = rings.map((x) => s("circle", { cx: MIDDLE, cy: MIDDLE, r: x * this.scale, class: "grid" }));
+    const angles = Array.from({ length: 12 }, (_, k) => 30 * k);
+    const words = angles.map((degrees) => {
+      const [x, y] = this.point(degrees, rim * 1.09);
+      return s("text", { x, y: y + 4, class: "degrees" }, `${degrees}°`);
+    });
+    return [...circles, ...angles.slice(0, 6).map((degrees) => this.line(degrees, rim, "grid")), ...words];
+  }
+
+  /** A line through the middle, from rim to rim. */
+  private line(degrees: number, rim: number, name: string): Node {
+    const [x, y] = this.point(degrees, rim);
+    return s("line", { x1: x, y1: y, x2: SIZE - x, y2: SIZE - y, class: name });
+  }
+
+  /** The length that a ring of the grid stands for. */
+  private label(value: number): Node {
+    const [x, y] = this.point(75, value);
+    return s("text", { x, y: y - 3, class: "value" }, short(1 + value, 3));
+  }
+
+  private curves(family: Family): Node[] {
+    const l2s = widths(family.limits);
+    return l2s.flatMap((l2, k) => {
+      const color = family.old ? OLD : widthColor(family.colors, k, l2s.length);
+      const limits = family.limits.filter((l) => l.row.l2 === l2 && reached(l) !== null);
+      limits.sort((a, b) => halfTurn(a.row.direction_deg) - halfTurn(b.row.direction_deg));
+      const filled = l2s.length === 1 && !family.old;
+      const curve = limits.length > 2 ? [this.curve(limits, color, family.old, filled)] : [];
+      return family.old ? curve : [...curve, ...limits.flatMap((limit) => this.dots(limit, color))];
+    });
+  }
+
+  /** Closed by the directions opposite to those of `limits`. */
+  private curve(limits: Limit[], color: string, old: boolean, filled: boolean): Node {
+    const points = [0, 180].flatMap((half) => limits.map((limit) => this.place(limit, half)));
+    const d = points.map(([x, y], k) => `${k ? "L" : "M"}${x.toFixed(2)} ${y.toFixed(2)}`).join("") + "Z";
+    return s("path", { d, class: old ? "curve old" : "curve", stroke: color, fill: filled ? color : "none" });
+  }
+
+  private dots(limit: Limit, color: string): Node[] {
+    const sure = limit.row.status === "global" || limit.row.status === "local";
+    return [0, 180].map((half) => {
+      const [cx, cy] = this.place(limit, half);
+      return s("circle", { cx, cy, r: 2.6, class: "limit", stroke: color, fill: sure ? color : "#fff" });
+    });
+  }
+
+  private chosen(families: Family[], { direction, l2 }: Choice, rim: number): Node[] {
+    const parts = [this.line(direction, rim, "ray")];
+    for (const family of families.filter((f) => !f.old)) {
+      const limit = family.limits.find((l) => sameDirection(l.row.direction_deg, direction) && l.row.l2 === l2);
+      const value = limit && reached(limit);
+      if (value == null) continue;
+      for (const half of [0, 180]) {
+        const [cx, cy] = this.point(direction + half, value);
+        parts.push(s("circle", { cx, cy, r: 6, class: "chosen" }));
+      }
+    }
+    return parts;
+  }
+
+  /** Where a limit is drawn that has a value. */
+  private place(limit: Limit, half: number): [number, number] {
+    return this.point(halfTurn(limit.row.direction_deg) + half, reached(limit)!);
+  }
+}
