@@ -19,7 +19,6 @@ mod forces;
 pub(crate) mod journal;
 mod limits;
 mod lock;
-mod map;
 mod reference;
 mod run;
 mod simulation;
@@ -32,7 +31,6 @@ pub use forces::{FORCE_COLUMNS, ForceColumn, ForceTable, PLACE_COLUMNS, read_for
 pub(crate) use limits::csv_cell;
 pub use limits::{read_limits, write_limits};
 pub use lock::FolderLock;
-pub use map::{Chain, Map, MapError, OpenMap};
 pub use reference::{Reference, ReferenceCell};
 pub use run::{Counters, RunRecord, input_hash, read_run, write_run};
 pub use simulation::{

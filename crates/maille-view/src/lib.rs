@@ -1,6 +1,6 @@
 //! The viewer: a server on the loopback address, with its page inside, and the page as one file.
 //!
-//! It is a door, as the program is: designs come in as text, limits come from [`maille_io::record::Map`], files from the
+//! It is a door, as the program is: designs come in as text, limits come from [`maille_io::run::Map`], files from the
 //! writers of `maille-io`. [`serve`] runs until a flag is set; [`bundle_file`] makes the page that needs no server.
 
 pub mod api;
@@ -22,8 +22,9 @@ use api::{Listed, Palette, Shown, ShownMap, Start, Subject};
 use maille::{lattice::Cell, record::LimitRow};
 use maille_io::{
     builtin_designs, read_design,
-    record::{Map, Record},
+    record::Record,
     render::{FORCE, KINDS, LOADS, UNLOADED},
+    run::Map,
     weave::Weave,
 };
 use std::{

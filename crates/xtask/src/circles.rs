@@ -19,7 +19,6 @@ const KNOWN: &[(&str, &[&str])] = &[
     ("maille-cli", &["completions.rs", "main.rs"]),
     ("maille-geometry", &["batch.rs", "solve.rs"]),
     ("maille-geometry", &["bounds.rs", "halving.rs", "minima.rs", "quick.rs", "relative.rs", "search.rs", "single.rs"]),
-    ("maille-io", &["boundary", "plot", "record"]),
     (
         "maille-io",
         &[
