@@ -16,7 +16,6 @@ const KNOWN: &[(&str, &[&str])] = &[
     ("maille", &["constraint/mod.rs", "constraint/pair.rs"]),
     ("maille", &["limit/exact.rs", "limit/pull.rs"]),
     ("maille", &["model.rs", "state.rs", "topology/broad.rs", "topology/mod.rs"]),
-    ("maille-cli", &["completions.rs", "main.rs"]),
     ("maille-geometry", &["batch.rs", "solve.rs"]),
     ("maille-geometry", &["bounds.rs", "halving.rs", "minima.rs", "quick.rs", "relative.rs", "search.rs", "single.rs"]),
     (
@@ -34,10 +33,7 @@ const KNOWN: &[(&str, &[&str])] = &[
             "mesh/vtk.rs",
         ],
     ),
-    ("maille-io", &["record/forces.rs", "record/simulation.rs"]),
     ("maille-io", &["render/camera.rs", "render/film.rs", "render/mod.rs", "render/overlay.rs", "render/scene.rs"]),
-    ("maille-io", &["report.rs", "report/statements.rs", "report/statements/cause.rs"]),
-    ("maille-io", &["table.rs", "table/condition.rs", "table/order.rs"]),
     ("maille-verify", &["chain.rs", "tie.rs"]),
     ("maille-view", &["bundle.rs", "lib.rs", "routes.rs"]),
 ];
