@@ -34,8 +34,6 @@ const KNOWN: &[(&str, &[&str])] = &[
         ],
     ),
     ("maille-io", &["render/camera.rs", "render/film.rs", "render/mod.rs", "render/overlay.rs", "render/scene.rs"]),
-    ("maille-verify", &["chain.rs", "tie.rs"]),
-    ("maille-view", &["bundle.rs", "lib.rs", "routes.rs"]),
 ];
 
 /// Crates whose folders below `src` stand in no circle either; a file there is a folder of one.
