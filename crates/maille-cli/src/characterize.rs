@@ -24,7 +24,7 @@ use maille::{
 };
 use maille_io::{
     numbers::{USUAL_DIRECTIONS, USUAL_L2},
-    record::Map,
+    run::Map,
 };
 use miette::{Result, miette};
 use std::{ops::RangeInclusive, path::PathBuf, process::ExitCode, time::Instant};

@@ -1,7 +1,7 @@
 //! `maille completions` and `maille man`: what a shell and `man` know of the program.
 
 use crate::output;
-use clap::{Command, CommandFactory};
+use clap::Command;
 use miette::{IntoDiagnostic, Result};
 use std::path::PathBuf;
 
@@ -28,17 +28,16 @@ pub struct ManArgs {
     folder: PathBuf,
 }
 
-/// Prints completions.
-pub fn completions(args: &CompletionsArgs) -> Result<()> {
+/// Prints completions of `program`.
+pub fn completions(args: &CompletionsArgs, mut program: Command) -> Result<()> {
     let mut bytes = Vec::new();
-    clap_complete::generate(args.shell, &mut crate::Args::command(), "maille", &mut bytes);
+    clap_complete::generate(args.shell, &mut program, "maille", &mut bytes);
     output::print(&bytes)
 }
 
-/// Writes manual pages.
-pub fn man(args: &ManArgs) -> Result<()> {
-    let mut command = crate::Args::command();
-    command.build();
+/// Writes manual pages of `program`.
+pub fn man(args: &ManArgs, mut program: Command) -> Result<()> {
+    program.build();
     let page = |command: &Command, name: String| -> Result<()> {
         let mut bytes = Vec::new();
         clap_mangen::Man::new(command.clone()).title(name.to_uppercase()).render(&mut bytes).into_diagnostic()?;
@@ -47,8 +46,8 @@ pub fn man(args: &ManArgs) -> Result<()> {
         output::say!("{}", path.display());
         Ok(())
     };
-    page(&command, "maille".into())?;
-    for sub in command.get_subcommands().filter(|sub| sub.get_name() != "help") {
+    page(&program, "maille".into())?;
+    for sub in program.get_subcommands().filter(|sub| sub.get_name() != "help") {
         page(sub, format!("maille-{}", sub.get_name()))?;
     }
     Ok(())

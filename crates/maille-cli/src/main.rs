@@ -39,7 +39,7 @@ mod verify;
 mod view;
 mod watch;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use miette::Result;
 use std::process::ExitCode;
 
@@ -126,8 +126,8 @@ fn main() -> ExitCode {
         Command::Export(args) => done(export::run(&args)),
         Command::Render(args) => done(render::run(&args)),
         Command::Schema(args) => done(schema::run(&args)),
-        Command::Completions(args) => done(completions::completions(&args)),
-        Command::Man(args) => done(completions::man(&args)),
+        Command::Completions(args) => done(completions::completions(&args, Args::command())),
+        Command::Man(args) => done(completions::man(&args, Args::command())),
         Command::Plot(args) => done(plot::run(&args)),
         Command::Table(args) => done(table::run(&args)),
         Command::View(args) => done(view::run(&args)),

@@ -6,7 +6,7 @@ use crate::{
     progress::Progress,
 };
 use maille::record::{LimitRow, Status};
-use maille_io::record::{Map, MapError, OpenMap};
+use maille_io::run::{Map, MapError, OpenMap};
 use miette::{IntoDiagnostic, Report, Result, WrapErr};
 use rayon::prelude::*;
 use std::{path::PathBuf, sync::atomic::AtomicBool};

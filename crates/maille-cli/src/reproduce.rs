@@ -20,8 +20,9 @@ use maille::{
 use maille_io::{
     DesignSource, chapter6,
     plot::Quantity,
-    record::{FolderLock, Map, NamedRecord},
+    record::{FolderLock, NamedRecord},
     report::{self, MINIMA, MINIMA_DEG, NOTCHED, SCALED, STEPS, Sheet, Verdict, figures, page, sheet_png, statements},
+    run::Map,
 };
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use serde_json::json;

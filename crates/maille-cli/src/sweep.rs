@@ -11,7 +11,8 @@ use crate::{
 };
 use maille_io::{
     builtin,
-    record::{FolderLock, Map, OpenMap},
+    record::FolderLock,
+    run::{Map, OpenMap},
     study::{Study, StudyDesign},
     table::{Field, Table},
 };

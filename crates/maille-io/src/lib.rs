@@ -16,6 +16,7 @@ pub mod plot;
 pub mod record;
 pub mod render;
 pub mod report;
+pub mod run;
 pub mod study;
 pub mod table;
 pub mod weave;

@@ -19,7 +19,7 @@ mod forces;
 pub(crate) mod journal;
 mod limits;
 mod lock;
-mod map;
+mod plan;
 mod reference;
 mod run;
 mod simulation;
@@ -32,11 +32,11 @@ pub use forces::{FORCE_COLUMNS, ForceColumn, ForceTable, PLACE_COLUMNS, read_for
 pub(crate) use limits::csv_cell;
 pub use limits::{read_limits, write_limits};
 pub use lock::FolderLock;
-pub use map::{Chain, Map, MapError, OpenMap};
+pub use plan::{LoadedPlace, PulledPlace, SheetPlan};
 pub use reference::{Reference, ReferenceCell};
 pub use run::{Counters, RunRecord, input_hash, read_run, write_run};
 pub use simulation::{
-    LoadedPlace, PulledPlace, SIMULATION, SheetPlan, SimulationFiles, SimulationOutcome, SimulationRecord,
-    open_simulation, read_frames, read_simulation, save_simulation, write_frames, write_simulation,
+    SIMULATION, SimulationFiles, SimulationOutcome, SimulationRecord, open_simulation, read_frames, read_simulation,
+    save_simulation, write_frames, write_simulation,
 };
 pub use states::{read_states, write_states};

@@ -4,7 +4,7 @@ use crate::{
     design_toml::NumberPath,
     numbers::{Numbers, parse, parse_l2},
     plot::Quantity,
-    record::Map,
+    run::Map,
 };
 use maille::{
     characterize::{CellChoice, Method},

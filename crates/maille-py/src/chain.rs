@@ -20,13 +20,13 @@ use std::{
 #[pyclass(frozen, module = "maille._native")]
 pub struct OpenMap {
     name: String,
-    open: Mutex<Option<maille_io::record::OpenMap>>,
+    open: Mutex<Option<maille_io::run::OpenMap>>,
     /// What [`Self::finish`] has given: an interrupt can hide that it has.
     finished: Mutex<Option<maille_io::record::Record>>,
 }
 
 impl OpenMap {
-    fn lock(&self) -> MutexGuard<'_, Option<maille_io::record::OpenMap>> {
+    fn lock(&self) -> MutexGuard<'_, Option<maille_io::run::OpenMap>> {
         self.open.lock().unwrap_or_else(|e| e.into_inner())
     }
 }

@@ -1,11 +1,7 @@
 //! Errors of the crates as the classes of `maille.errors`, with their fields.
 
 use maille::error::InvalidInput;
-use maille_io::{
-    DesignError,
-    record::{MapError, RecordError},
-    study::StudyError,
-};
+use maille_io::{DesignError, record::RecordError, run::MapError, study::StudyError};
 use pyo3::{
     prelude::*,
     types::{PyDict, PyList},

@@ -13,7 +13,8 @@ use maille::{
 use maille_io::{
     numbers::{USUAL_DIRECTIONS, USUAL_L2, distinct, parse, parse_l2},
     plot::Quantity,
-    record::{LIMIT_COLUMNS, Map, NamedRecord, Values},
+    record::{LIMIT_COLUMNS, NamedRecord, Values},
+    run::{Map, save_record},
     table::{Field, Table},
 };
 use pyo3::{
@@ -127,7 +128,7 @@ pub struct Asked {
 
 impl Asked {
     /// The map of a design, open.
-    pub fn open(self, design: &Design, out: Option<PathBuf>, overwrite: bool) -> PyResult<maille_io::record::OpenMap> {
+    pub fn open(self, design: &Design, out: Option<PathBuf>, overwrite: bool) -> PyResult<maille_io::run::OpenMap> {
         let across = Across { lateral_free: self.lateral_free, shear_free: self.shear_free };
         let (starts, seed) = (self.starts, self.seed);
         let method = match self.method.as_str() {
@@ -238,7 +239,7 @@ impl Record {
 
     fn save(&self, folder: PathBuf, quantity_name: &str, overwrite: bool) -> PyResult<()> {
         let quantity = quantity(quantity_name)?;
-        self.record.save(&folder, quantity, overwrite).map_err(|e| error::map(&e))
+        save_record(&self.record, &folder, quantity, overwrite).map_err(|e| error::map(&e))
     }
 
     fn __len__(&self) -> usize {

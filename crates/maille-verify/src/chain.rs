@@ -9,7 +9,7 @@
 use crate::{
     record::Chain,
     strain::{ACROSS, axes},
-    tie::{Linked, Place, between},
+    tie::Linked,
 };
 
 /// What a chain proves of l1, where l2 is held and the shear is 0.
@@ -20,28 +20,6 @@ pub(crate) enum ChainBound {
     Impossible,
 }
 
-/// The vector v and the length of a chain from a ring to its image.
-pub(crate) fn length(start: Linked<'_>, rings: &[Place]) -> Result<([i32; 2], f64), String> {
-    let (Some(first), Some(last)) = (rings.first(), rings.last()) else {
-        return Err("the chain is empty".into());
-    };
-    let Some(vector) = between(first.1, last.1).filter(|vector| first.0 == last.0 && *vector != [0, 0]) else {
-        return Err("the chain does not lead from a ring to its image".into());
-    };
-    let mut length = 0.0;
-    let count = start.sheet.rings.len();
-    for pair in rings.windows(2) {
-        let (a, b) = (pair[0], pair[1]);
-        if a.0.max(b.0) >= count {
-            return Err(format!("the chain names ring {}, of {count} rings", a.0.max(b.0)));
-        }
-        let (one, other) = (&start.sheet.rings[a.0], &start.sheet.rings[b.0]);
-        length +=
-            if one.element == other.element && a.1 == b.1 { (one.arm - other.arm).norm() } else { start.link(a, b)? };
-    }
-    Ok((vector, length))
-}
-
 /// The bound of `chain` on the start in the cell that the chain's shifts count.
 pub(crate) fn bound(
     start: Linked<'_>,
@@ -50,7 +28,7 @@ pub(crate) fn bound(
     direction_deg: f64,
     l2: f64,
 ) -> Result<ChainBound, String> {
-    let (vector, length) = length(start, &chain.rings)?;
+    let (vector, length) = start.chain(&chain.rings)?;
     if vector != chain.vector {
         return Err(format!("the chain leads to {vector:?}, {:?} is written", chain.vector));
     }

@@ -10,10 +10,7 @@
 //!   of `docs/theory/bounds.md`.
 //! - **chain**: a walk of links and of rigid edges from a ring to its image at v: |F v| ≤ L, its length.
 
-use crate::{
-    chain,
-    sheet::{Pair, Ring, Sheet, Vec3},
-};
+use crate::sheet::{Pair, Ring, Sheet, Vec3};
 
 /// Largest minor radius in major radii for which the theorem on crossing pairs is proved.
 const THICKEST: f64 = 0.125;
@@ -67,6 +64,31 @@ impl<'a> Linked<'a> {
         }
     }
 
+    /// The vector v and the length of a chain from a ring to its image.
+    pub fn chain(&self, rings: &[Place]) -> Result<([i32; 2], f64), String> {
+        let (Some(first), Some(last)) = (rings.first(), rings.last()) else {
+            return Err("the chain is empty".into());
+        };
+        let Some(vector) = between(first.1, last.1).filter(|vector| first.0 == last.0 && *vector != [0, 0]) else {
+            return Err("the chain does not lead from a ring to its image".into());
+        };
+        let mut length = 0.0;
+        let count = self.sheet.rings.len();
+        for pair in rings.windows(2) {
+            let (a, b) = (pair[0], pair[1]);
+            if a.0.max(b.0) >= count {
+                return Err(format!("the chain names ring {}, of {count} rings", a.0.max(b.0)));
+            }
+            let (one, other) = (&self.sheet.rings[a.0], &self.sheet.rings[b.0]);
+            length += if one.element == other.element && a.1 == b.1 {
+                (one.arm - other.arm).norm()
+            } else {
+                self.link(a, b)?
+            };
+        }
+        Ok((vector, length))
+    }
+
     fn bodies_differ(&self, a: Place, b: Place) -> Result<(), String> {
         if (self.ring(a)?.element, a.1) == (self.ring(b)?.element, b.1) {
             return Err(format!("rings {} and {} of a tie are of one body", a.0, b.0));
@@ -81,7 +103,7 @@ impl<'a> Linked<'a> {
             ("strand-pair", &[a, a2, b]) => (&[0.5, 0.5, -1.0], self.strand_pair(a, a2, b)?),
             ("crossing-pairs", &[a, a2, b, b2]) => (&[0.5, 0.5, -0.5, -0.5], self.crossing_pairs([a, a2], [b, b2])?),
             ("chain", _) => {
-                let (vector, length) = chain::length(*self, rings)?;
+                let (vector, length) = self.chain(rings)?;
                 return Ok(Tie { terms: Vec::new(), span: self.sheet.translation(vector), length });
             }
             _ => return Err(format!("\"{kind}\" of {} rings is no tie", rings.len())),

@@ -1,6 +1,6 @@
 //! A page without a server: one file that holds the script, the style and the limits.
 
-use crate::{ViewError, api::Start, assets::asset};
+use crate::{api::Start, assets::asset, error::ViewError};
 
 /// Where the data go in: the page reads the element of this name.
 const DATA: &str = "maille-data";

@@ -1,8 +1,8 @@
 //! What the server answers.
 
 use crate::{
-    App,
     api::{Activity, Edit, Export, Judged, New, Refused, Save, Solve, Subject, Text},
+    app::App,
     assets::asset,
     export,
     guard::guard,

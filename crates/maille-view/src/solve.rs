@@ -18,7 +18,7 @@ use maille::{
     model::Model,
     record::{LimitRow, StateRecord},
 };
-use maille_io::{plot::Quantity, record::Map};
+use maille_io::{plot::Quantity, run::Map};
 use std::{
     borrow::Cow,
     convert::Infallible,

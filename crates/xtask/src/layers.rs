@@ -5,9 +5,8 @@
 //! first, in `ARCHITECTURE.md` and here.
 
 use crate::{
-    Finding, files, read,
-    tokens::{self, Token},
-    uses,
+    repository::{Finding, files, read},
+    source::{self, NamedPath, Source},
 };
 use std::path::Path;
 
@@ -156,42 +155,61 @@ fn check_module(file: &str, source: &str) -> Vec<Finding> {
     if matches!(module.last().map(String::as_str), Some("mod")) || module == ["lib"] {
         module.pop();
     }
+    let Source { modules, paths, .. } = match source::read(source) {
+        Ok(source) => source,
+        Err(e) => return vec![Finding::new(file, e.span().start().line, format!("cannot be read: {e}"))],
+    };
     let mut out = Vec::new();
-    let tokens = tokens::tokens(source);
     match module.first() {
         Some(own) if !has_room(own) => out.push(Finding::new(file, 0, no_room("module", own))),
         Some(_) => {}
         // The root: every module that it declares has a room, inline ones too.
         None => {
-            for pair in tokens.windows(2) {
-                if let [(Token::Name(keyword), _), (Token::Name(name), line)] = pair
-                    && keyword == "mod"
-                    && !has_room(name)
-                {
-                    out.push(Finding::new(file, *line, no_room("module", name)));
+            for (name, line) in modules.iter().flat_map(|(path, line)| Some((path.last()?, *line))) {
+                if !has_room(name) {
+                    out.push(Finding::new(file, line, no_room("module", name)));
                 }
             }
         }
     }
-    for used in uses::uses(source, &module) {
+    for path in &paths {
+        let from = [module.as_slice(), &path.module].concat();
         // The crate's root stands above all modules.
-        let Some(own) = used.from.first() else { continue };
-        if let Some(problem) = judge_use(own, &used.name) {
-            out.push(Finding::new(file, used.line, problem));
+        let Some(own) = from.first() else { continue };
+        if let Some((name, line)) = from_root(path, from.len())
+            && let Some(problem) = judge_use(own, name)
+        {
+            out.push(Finding::new(file, line, problem));
+        }
+        if own == ASIDE && path.names()[0] == "maille_geometry" {
+            let problem = format!("{ASIDE} stands aside and knows no ring: no maille_geometry");
+            out.push(Finding::new(file, path.line(), problem));
         }
     }
-    if module.first().is_some_and(|own| own == ASIDE) {
-        for (_, line) in tokens.iter().filter(|(token, _)| *token == Token::Name("maille_geometry".into())) {
-            out.push(Finding::new(file, *line, format!("{ASIDE} stands aside and knows no ring: no maille_geometry")));
-        }
-    }
+    // A group of imports names its module more than once.
+    out.dedup();
     out
+}
+
+/// The name that a path takes from the crate's root, or what stands in its place (`*`, `as`): by `crate::…` and by
+/// chains of `self::` and `super::` that are `depth` modules high.
+fn from_root(path: &NamedPath, depth: usize) -> Option<(&str, usize)> {
+    let names = path.names();
+    let up = names.iter().take_while(|name| matches!(**name, "crate" | "self" | "super")).count();
+    let supers = names[..up].iter().filter(|name| **name == "super").count();
+    if names[0] != "crate" && (supers == 0 || supers < depth) {
+        return None;
+    }
+    match path.segments.get(up) {
+        Some((name, line)) => Some((name, *line)),
+        None => path.import.is_some().then(|| ("as", path.line())),
+    }
 }
 
 /// What is wrong with a use of module `name` in module `own`.
 fn judge_use(own: &str, name: &str) -> Option<String> {
     if !has_room(name) {
-        return Some(if name.starts_with(|c: char| c.is_lowercase()) && !matches!(name, "self" | "as") {
+        return Some(if name.starts_with(|c: char| c.is_lowercase()) && name != "as" {
             format!("{own} uses {name}: {}", no_room("module", name))
         } else {
             format!("`{name}` straight from the crate's root hides its module: name the module in the path")

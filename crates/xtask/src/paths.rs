@@ -3,7 +3,7 @@
 //! Looked at are code spans (every word with a slash in it) and the targets of relative links. Fenced blocks are left
 //! alone: they hold commands and listings.
 
-use crate::{Finding, files, read};
+use crate::repository::{Finding, files, read};
 use std::path::Path;
 
 /// Documents at the root; those below [`FOLDER`] join them.

@@ -1,6 +1,6 @@
 //! The steps of `ci`, each announced and timed.
 
-use crate::{Finding, bench, certify, gallery, layers, paths, view, wheel::Environment};
+use crate::{bench, certify, circles, gallery, layers, paths, repository::Finding, view, wheel::Environment};
 use std::{
     path::Path,
     process::{Command, Stdio},
@@ -68,11 +68,11 @@ fn failed(done: Result<(), String>) -> Result<(), Failed> {
     })
 }
 
-/// The layer check; prints the order that it holds the code to.
+/// The checks of layers and of circles; prints the order that they hold the code to.
 pub fn layers(root: &Path) -> Result<(), Failed> {
     println!("{}", layers::order_of_crates());
     println!("{}", layers::order_of_modules());
-    report(layers::check(root))
+    report([layers::check(root), circles::check(root)].concat())
 }
 
 /// The check of the paths named in the documents.

@@ -78,7 +78,9 @@ impl Environment {
 
     /// Runs the examples of the package.
     pub fn examples(&self) -> Result<(), String> {
-        for file in crate::files(&self.root, &format!("{PACKAGE}/examples"), "py").map_err(|e| e.to_string())? {
+        for file in
+            crate::repository::files(&self.root, &format!("{PACKAGE}/examples"), "py").map_err(|e| e.to_string())?
+        {
             println!("   {file}");
             self.run(self.python().arg(self.root.join(&file)).current_dir(&self.folder), &format!("run {file}"))?;
         }

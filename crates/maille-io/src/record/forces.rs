@@ -2,7 +2,7 @@
 
 use super::{
     error::{RecordError, complete},
-    simulation::SheetPlan,
+    plan::SheetPlan,
 };
 use csv::{ReaderBuilder, StringRecord};
 use maille::{

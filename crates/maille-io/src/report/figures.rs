@@ -1,6 +1,6 @@
 //! The figures of chapter 6, from records.
 
-use super::{Map, extreme, ratio_label, signed};
+use super::map::{Map, extreme, ratio_label, signed};
 use crate::{
     plot::{
         Layout, OfStep, PolarPlot, Quantity, Ray, RayKind, Spread, difference_svg, parameter_words, polar_svg, run_svg,

@@ -1,8 +1,9 @@
 //! The page: one HTML file with everything in it.
 
 use super::{
-    Figure, Finding, Map, Part, Verdict, ratio_label, signed,
-    statements::{RULE, SCALED},
+    figures::Figure,
+    map::{Map, SCALED, ratio_label, signed},
+    statements::{Finding, Part, RULE, Verdict},
 };
 use base64::{Engine, prelude::BASE64_STANDARD};
 use maille::{

@@ -12,7 +12,7 @@ use cases::{Cases, finding};
 pub use cases::{Finding, Part, RULE, Verdict};
 use cause::cause;
 
-use super::{EXACT_TIE, Map, apart, extreme, midway, ratio_label, signed, step};
+use super::map::{EXACT_TIE, Map, SCALED, answered, apart, extreme, midway, ratio_label, signed, step};
 use maille::record::LimitRow;
 
 /// All statements.
@@ -309,8 +309,6 @@ pub fn major_radius(maps: &[Map]) -> Finding {
     )
 }
 
-/// Added to the name of a design that is another one in another size.
-pub const SCALED: &str = "-scaled";
 /// Limits of one sheet in two sizes differ by rounding alone.
 const ROUNDING: f64 = 1e-9;
 
@@ -464,8 +462,6 @@ pub fn steps(maps: &[Map]) -> Finding {
 
 /// Designs whose minima statement 8 speaks of.
 pub const NOTCHED: [&str; 2] = ["1.2", "4.3"];
-/// Added to the name of a record of the directions beside the minima.
-pub const MINIMA: &str = "-minima";
 /// Those directions: the minima, and this far beside them.
 pub const MINIMA_DEG: [f64; 6] = [0.0, 0.5, 89.5, 90.0, 90.5, 179.5];
 
@@ -551,11 +547,11 @@ pub fn shown(maps: &[Map]) -> Finding {
         let from = usize::from(!["1.1", "1.2"].contains(&map.design.as_str()));
         for l2 in &SHOWN[from..] {
             let rows: Vec<_> = map.rows.iter().filter(|row| row.l2 == *l2).collect();
-            if !rows.is_empty() && rows.iter().all(|row| row.l1.is_none() && super::answered(row)) {
+            if !rows.is_empty() && rows.iter().all(|row| row.l1.is_none() && answered(row)) {
                 proved += 1;
             }
-            cases.add(!rows.is_empty() && rows.iter().all(|row| super::answered(row)), || {
-                let missing = rows.iter().filter(|row| !super::answered(row)).count();
+            cases.add(!rows.is_empty() && rows.iter().all(|row| answered(row)), || {
+                let missing = rows.iter().filter(|row| !answered(row)).count();
                 if rows.is_empty() {
                     format!("{}: not computed", at(map, *l2))
                 } else {

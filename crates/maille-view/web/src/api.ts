@@ -20,7 +20,11 @@ async function ask(path: string, body: unknown, signal?: AbortSignal): Promise<R
     answer = await fetch(path, init);
   } catch (error) {
     if (signal?.aborted) throw error;
-    throw new Refusal(0, { problem: "the server does not answer", help: "is `maille view` still running?", problems: [] });
+    throw new Refusal(0, {
+      problem: "the server does not answer",
+      help: "is `maille view` still running?",
+      problems: [],
+    });
   }
   if (answer.ok) return answer;
   const text = await answer.text();

@@ -31,7 +31,10 @@ export function s<K extends keyof SVGElementTagNameMap>(
 
 /** A number as a person reads it: at most `digits` decimals, no minus before zero. */
 export function short(x: number, digits = 6): string {
-  return (Math.round(x * 10 ** digits) / 10 ** digits + 0).toFixed(digits).replace(/\.?0+$/, "").replace("-", "−");
+  return (Math.round(x * 10 ** digits) / 10 ** digits + 0)
+    .toFixed(digits)
+    .replace(/\.?0+$/, "")
+    .replace("-", "−");
 }
 
 /** Calls `work` once, `wait` ms after the last call. */

@@ -3,6 +3,7 @@
 import * as api from "./api";
 import { h } from "./dom";
 import type { Side } from "./side";
+import type { ElementSpec } from "./types";
 
 const number = (x: number) => (Number.isInteger(x) ? x.toFixed(1) : String(x));
 
@@ -45,7 +46,13 @@ export class Editor {
     ];
     const weave = h("select", {}, ...weaves.map((w) => h("option", { value: w }, w)));
     const make = async () => {
-      const request = { name: name.value, weave: weave.value, major: Number(major.value), minor: Number(minor.value), unit: unit.value };
+      const request = {
+        name: name.value,
+        weave: weave.value,
+        major: Number(major.value),
+        minor: Number(minor.value),
+        unit: unit.value,
+      };
       try {
         const made = await api.weave(request);
         this.fileName.value = `${name.value}.toml`;
@@ -73,7 +80,15 @@ export class Editor {
         "details",
         { class: "new" },
         h("summary", {}, "New from a weave"),
-        h("div", { class: "grid" }, field("Weave", weave), field("Name", name), field("R", major), field("r", minor), field("Unit", unit)),
+        h(
+          "div",
+          { class: "grid" },
+          field("Weave", weave),
+          field("Name", name),
+          field("R", major),
+          field("r", minor),
+          field("Unit", unit),
+        ),
         h("button", { type: "button", onclick: () => void make() }, "Make the design"),
       ),
     );
@@ -123,8 +138,9 @@ export class Editor {
     const [x, y, z] = last?.center ?? [0, 0, 0];
     const R = design?.reference_radius ?? 1;
     const ring = `{ major_radius = ${number(R)}, normal = [0.0, 0.0, 1.0] }`;
-    const table = `\n[[elements]]\nname = "element-${k}"\ncenter = [${number(x)}, ${number(y)}, ${number(z + R)}]\nrings = [${ring}]\n`;
-    void this.write(`${this.side.text.trimEnd()}\n${table}`);
+    const center = `[${number(x)}, ${number(y)}, ${number(z + R)}]`;
+    const table = `[[elements]]\nname = "element-${k}"\ncenter = ${center}\nrings = [${ring}]\n`;
+    void this.write(`${this.side.text.trimEnd()}\n\n${table}`);
   }
 
   /** Takes an element's lines out of the text; comments of others stay. */
@@ -163,8 +179,14 @@ export class Editor {
       ),
     );
     const lost = side.problems.length ? [] : side.lost;
-    const words = lost.length ? h("p", { class: "lost" }, h("b", {}, `${lost.length} links are broken: `), lost.map((l) => l.words).join("; ")) : null;
-    const fine = h("p", { class: "fine" }, `no problems; ${side.own?.pairs.filter((p) => p.number).length ?? 0} links a cell`);
+    const words = lost.length
+      ? h("p", { class: "lost" }, h("b", {}, `${lost.length} links are broken: `), lost.map((l) => l.words).join("; "))
+      : null;
+    const fine = h(
+      "p",
+      { class: "fine" },
+      `no problems; ${side.own?.pairs.filter((p) => p.number).length ?? 0} links a cell`,
+    );
     this.problems.replaceChildren(...(list.length ? list : [words ?? fine]));
     if (!this.table.contains(document.activeElement)) this.drawTable();
   }
@@ -181,32 +203,49 @@ export class Editor {
   private drawTable(): void {
     const design = this.side.design;
     if (!design) return this.table.replaceChildren();
-    const cell = (field: string, value: number, label: string) =>
-      h("td", {}, h("input", {
-        type: "text", inputmode: "decimal", value: String(value), "aria-label": label,
-        onchange: (e) => {
-          const input = e.target as HTMLInputElement;
-          const typed = Number(input.value);
-          if (input.value.trim() === "" || !Number.isFinite(typed)) input.value = String(value);
-          else void this.set(field, number(typed));
-        },
-      }));
-    const rows = design.elements.flatMap((element, i) =>
-      element.rings.map((ring, k) =>
-        h(
-          "tr",
-          {},
-          k
-            ? h("th", { scope: "row" }, `ring ${k}`)
-            : h("th", { scope: "row" }, element.name),
-          ...(k ? [h("td", { colspan: 3 })] : element.center.map((x, axis) => cell(`elements[${i}].center[${axis}]`, x, `${element.name}, centre ${"xyz"[axis]}`))),
-          cell(`elements[${i}].rings[${k}].major_radius`, ring.major_radius, `${element.name}, ring ${k}, R`),
-          ...ring.normal.map((x, axis) => cell(`elements[${i}].rings[${k}].normal[${axis}]`, x, `${element.name}, ring ${k}, normal ${"xyz"[axis]}`)),
-          h("td", {}, k ? null : h("button", { type: "button", "aria-label": `Remove ${element.name}`, title: "Remove", onclick: () => this.remove(i) }, "×")),
-        ),
+    const rows = design.elements.flatMap((element, i) => element.rings.map((_, k) => this.row(element, i, k)));
+    const head = ["element", "x", "y", "z", "R", "nx", "ny", "nz", ""];
+    this.table.replaceChildren(
+      h(
+        "table",
+        {},
+        h("thead", {}, h("tr", {}, ...head.map((t) => h("th", { scope: "col" }, t)))),
+        h("tbody", {}, ...rows),
       ),
     );
-    const head = ["element", "x", "y", "z", "R", "nx", "ny", "nz", ""];
-    this.table.replaceChildren(h("table", {}, h("thead", {}, h("tr", {}, ...head.map((t) => h("th", { scope: "col" }, t)))), h("tbody", {}, ...rows)));
+  }
+
+  /** Ring `k` of element `i`; its first ring has the element's name and centre. */
+  private row({ name, center, rings }: ElementSpec, i: number, k: number): HTMLElement {
+    const { major_radius, normal } = rings[k]!;
+    const place = center.map((x, axis) => this.cell(`[${i}].center[${axis}]`, x, `${name}, centre ${"xyz"[axis]}`));
+    const ring = `${name}, ring ${k}`;
+    const remove = { type: "button", "aria-label": `Remove ${name}`, title: "Remove", onclick: () => this.remove(i) };
+    return h(
+      "tr",
+      {},
+      h("th", { scope: "row" }, k ? `ring ${k}` : name),
+      ...(k ? [h("td", { colspan: 3 })] : place),
+      this.cell(`[${i}].rings[${k}].major_radius`, major_radius, `${ring}, R`),
+      ...normal.map((x, axis) => this.cell(`[${i}].rings[${k}].normal[${axis}]`, x, `${ring}, normal ${"xyz"[axis]}`)),
+      h("td", {}, k ? null : h("button", remove, "×")),
+    );
+  }
+
+  /** A number of the elements that can be typed anew. */
+  private cell(field: string, value: number, label: string): HTMLElement {
+    const onchange = () => {
+      const typed = Number(input.value);
+      if (input.value.trim() === "" || !Number.isFinite(typed)) input.value = String(value);
+      else void this.set(`elements${field}`, number(typed));
+    };
+    const input = h("input", {
+      type: "text",
+      inputmode: "decimal",
+      value: String(value),
+      "aria-label": label,
+      onchange,
+    });
+    return h("td", {}, input);
   }
 }

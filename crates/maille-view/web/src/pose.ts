@@ -20,7 +20,7 @@ function of(poses: PoseRecord[], a1: number[], a2: number[]): Poses {
   };
 }
 
-/** The start, or, a part `t` of the way from it, the state of `limit`: straight lines, and rotations at a constant rate. */
+/** A part `t` of the way from the start to the state of `limit`: straight lines, rotations at a constant rate. */
 export function posesAt(sheet: Sheet, limit: Limit | null, t: number): Poses {
   const start = of(sheet.poses, sheet.a1, sheet.a2);
   if (!limit || t === 0) return start;
@@ -50,8 +50,13 @@ export function copies(cell: string): [number, number] {
   return [Number(m ?? 1), Number(n ?? 1)];
 }
 
-/** The ring of a larger cell that is ring `ring` of the design's cell in the cell `shift`, with the larger cell's shift. */
-export function inLarger(small: Sheet, large: Sheet, ring: number, shift: [number, number]): [number, [number, number]] {
+/** The ring of a larger cell that is `ring` of the design's cell in the cell `shift`, with the larger cell's shift. */
+export function inLarger(
+  small: Sheet,
+  large: Sheet,
+  ring: number,
+  shift: [number, number],
+): [number, [number, number]] {
   if (large.cell === small.cell) return [ring, shift];
   const size = copies(large.cell);
   const up = shift.map((x, k) => Math.floor(x / size[k]!)) as [number, number];

@@ -2,7 +2,7 @@
 
 import * as api from "./api";
 import { calm } from "./dom";
-import { reached, same, type Choice } from "./map";
+import { halfTurn, reached, sameDirection, type Choice } from "./limits";
 import type { Design, Limit, ListedProblem, Refused, Sheet, Shown, Subject } from "./types";
 
 const SESSION = Math.random().toString(36).slice(2);
@@ -57,7 +57,17 @@ export class Side {
   async open(shown: Shown): Promise<void> {
     this.cancel();
     Object.assign(this, { name: shown.name, file: shown.file, text: shown.text, minorRadius: null, spacing: null });
-    Object.assign(this, { base: null, own: null, limits: [], old: [], failure: null, problems: [], source: null, choice: null, total: 0 });
+    Object.assign(this, {
+      base: null,
+      own: null,
+      limits: [],
+      old: [],
+      failure: null,
+      problems: [],
+      source: null,
+      choice: null,
+      total: 0,
+    });
     this.sheets.clear();
     if (shown.map) {
       this.take(shown.map.source, shown.map.sheets, shown.map.limits);
@@ -87,7 +97,8 @@ export class Side {
   /** Asks what is wrong with the design, and what it looks like. False if it cannot be solved, or this is old. */
   async judge(): Promise<boolean> {
     this.judging?.abort();
-    const mine = (this.judging = new AbortController());
+    const mine = new AbortController();
+    this.judging = mine;
     try {
       const judged = await api.judge(this.subject, mine.signal);
       if (mine.signal.aborted) return false;
@@ -135,7 +146,8 @@ export class Side {
   /** The map: what is chosen and every 15 degrees first, then every 5. */
   async solve(): Promise<void> {
     this.cancel();
-    const mine = (this.solving = new AbortController());
+    const mine = new AbortController();
+    this.solving = mine;
     this.running = true;
     this.limits = [];
     const first = directions(COARSE, 0);
@@ -157,7 +169,13 @@ export class Side {
 
   private stream(slot: string, list: number[], signal: AbortSignal): Promise<void> {
     const l2 = [this.free ? 0 : this.l2];
-    const request = { slot: `${SESSION}-${slot}`, subject: this.subject, directions_deg: list, l2, lateral_free: this.free };
+    const request = {
+      slot: `${SESSION}-${slot}`,
+      subject: this.subject,
+      directions_deg: list,
+      l2,
+      lateral_free: this.free,
+    };
     return api.solve(request, signal, (event) => {
       if ("begun" in event) return;
       if ("sheet" in event) this.sheets.set(event.sheet.cell, event.sheet);
@@ -175,12 +193,13 @@ export class Side {
 
   /** Chooses a direction; a limit that is not known is asked for. */
   async choose(direction: number, l2: number | null): Promise<void> {
-    direction = ((direction % 180) + 180) % 180;
+    direction = halfTurn(direction);
     this.choice = { direction, l2: l2 ?? this.choice?.l2 ?? (this.free ? 0 : this.l2) };
     this.changed();
     if (this.chosen || this.source !== null || this.problems.length) return;
     this.asking?.abort();
-    const mine = (this.asking = new AbortController());
+    const mine = new AbortController();
+    this.asking = mine;
     try {
       await this.stream(`${this.id}-one`, [direction], mine.signal);
     } catch (error) {
@@ -192,7 +211,7 @@ export class Side {
   get chosen(): Limit | null {
     const choice = this.choice;
     if (!choice) return null;
-    const fits = (l: Limit) => same(l.row.direction_deg, choice.direction) && l.row.l2 === choice.l2;
+    const fits = (l: Limit) => sameDirection(l.row.direction_deg, choice.direction) && l.row.l2 === choice.l2;
     return this.limits.find(fits) ?? null;
   }
 
@@ -214,7 +233,9 @@ export class Side {
     const key = (sheet: Sheet, a: number, b: number, [i, j]: [number, number]) => {
       const [from, to] = [ringName(sheet, a), ringName(sheet, b)];
       // Of the two ways to write a pair, one.
-      return from < to || (from === to && (i > 0 || (i === 0 && j > 0))) ? `${from} ${to} ${i},${j}` : `${to} ${from} ${-i || 0},${-j || 0}`;
+      return from < to || (from === to && (i > 0 || (i === 0 && j > 0)))
+        ? `${from} ${to} ${i},${j}`
+        : `${to} ${from} ${-i || 0},${-j || 0}`;
     };
     const kept = new Set(own.pairs.filter((p) => p.number).map((p) => key(own, p.ring_a, p.ring_b, p.shift)));
     const find = (name: string) => own.rings.findIndex((_, ring) => ringName(own, ring) === name);
@@ -234,6 +255,7 @@ export class Side {
     const direction = this.choice ? this.choice.direction : "0:180:5";
     const l2 = this.choice?.l2 ?? this.l2;
     const radius = this.minorRadius === null ? "" : ` --minor-radius ${this.minorRadius}`;
-    return `maille characterize ${quoted(this.name)}${radius} --directions ${direction} ${this.free ? "--lateral free" : `--l2 ${l2}`}`;
+    const width = this.free ? "--lateral free" : `--l2 ${l2}`;
+    return `maille characterize ${quoted(this.name)}${radius} --directions ${direction} ${width}`;
   }
 }

@@ -9,7 +9,9 @@ async function accessible(page: Page, where: string): Promise<void> {
   const found = await page.evaluate(async () => {
     const run = (window as unknown as { axe: typeof axe }).axe;
     const { violations, passes } = await run.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21aa"] });
-    const words = violations.map((v) => `${v.id}: ${v.nodes.map((n) => `${n.html.slice(0, 120)} ${n.failureSummary}`).join(" | ")}`);
+    const words = violations.map(
+      (v) => `${v.id}: ${v.nodes.map((n) => `${n.html.slice(0, 120)} ${n.failureSummary}`).join(" | ")}`,
+    );
     return { words, contrast: passes.find((p) => p.id === "color-contrast")?.nodes.length ?? 0 };
   });
   expect(found.words, where).toEqual([]);
@@ -39,7 +41,9 @@ test("the keyboard reaches every control, and shows where it is", async ({ page,
     await page.getByRole("tab", { name: mode }).click();
     await solved(page).catch(() => {});
     const wanted = await page.evaluate(() => {
-      const all = [...document.querySelectorAll<HTMLElement>("button, select, input, textarea, summary, svg.map, canvas")];
+      const all = [
+        ...document.querySelectorAll<HTMLElement>("button, select, input, textarea, summary, svg.map, canvas"),
+      ];
       const there = all.filter((e) => e.checkVisibility() && !(e as HTMLButtonElement).disabled);
       there.forEach((e, k) => (e.dataset["wanted"] = String(k)));
       (document.activeElement as HTMLElement).blur();
@@ -51,16 +55,28 @@ test("the keyboard reaches every control, and shows where it is", async ({ page,
       const at = await page.evaluate(() => {
         const e = document.activeElement as HTMLElement;
         const style = getComputedStyle(e);
-        return { id: e.dataset["wanted"] ?? "", seen: style.outlineStyle !== "none" && parseFloat(style.outlineWidth) >= 2, tag: e.outerHTML.slice(0, 90) };
+        return {
+          id: e.dataset["wanted"] ?? "",
+          seen: style.outlineStyle !== "none" && parseFloat(style.outlineWidth) >= 2,
+          tag: e.outerHTML.slice(0, 90),
+        };
       });
       if (at.id) {
         expect(at.seen, `${mode}: ${at.tag} shows no focus`).toBe(true);
         reached.add(at.id);
       }
     }
-    const missed = await page.evaluate((ids) => [...document.querySelectorAll<HTMLElement>("[data-wanted]")].filter((e) => !ids.includes(e.dataset["wanted"]!)).map((e) => e.outerHTML.slice(0, 90)), [...reached]);
+    const missed = await page.evaluate(
+      (ids) =>
+        [...document.querySelectorAll<HTMLElement>("[data-wanted]")]
+          .filter((e) => !ids.includes(e.dataset["wanted"]!))
+          .map((e) => e.outerHTML.slice(0, 90)),
+      [...reached],
+    );
     expect(missed, mode).toEqual([]);
-    await page.evaluate(() => document.querySelectorAll<HTMLElement>("[data-wanted]").forEach((e) => delete e.dataset["wanted"]));
+    await page.evaluate(() =>
+      document.querySelectorAll<HTMLElement>("[data-wanted]").forEach((e) => delete e.dataset["wanted"]),
+    );
   }
 });
 
@@ -72,7 +88,8 @@ for (const width of [1440, 1024, 390]) {
     await clickMap(page, 45, 0.6);
     await expect(page.locator("data.l1")).toBeVisible();
     await page.evaluate(() => scrollTo(0, 0));
-    const shot = (name: string) => page.screenshot({ path: `test-results/${name}-${width}.png`, fullPage: width === 390 });
+    const shot = (name: string) =>
+      page.screenshot({ path: `test-results/${name}-${width}.png`, fullPage: width === 390 });
     await page.waitForTimeout(300);
     await shot("explore");
     // The picture of the guide's page on the viewer.
@@ -80,12 +97,20 @@ for (const width of [1440, 1024, 390]) {
     // Nothing sticks out sideways.
     expect(await page.evaluate(() => document.documentElement.scrollWidth - innerWidth)).toBeLessThanOrEqual(0);
     await page.getByRole("tab", { name: "Edit" }).click();
-    await page.getByLabel("Design file, TOML").fill((await page.getByLabel("Design file, TOML").inputValue()).replace("minor_radius = 0.1", "minor_radius = 0.3"));
+    await page
+      .getByLabel("Design file, TOML")
+      .fill(
+        (await page.getByLabel("Design file, TOML").inputValue()).replace("minor_radius = 0.1", "minor_radius = 0.3"),
+      );
     await expect(page.locator(".problem")).not.toHaveCount(0);
     await page.waitForTimeout(300);
     await shot("edit");
     expect(await page.evaluate(() => document.documentElement.scrollWidth - innerWidth)).toBeLessThanOrEqual(0);
-    await page.getByLabel("Design file, TOML").fill((await page.getByLabel("Design file, TOML").inputValue()).replace("minor_radius = 0.3", "minor_radius = 0.1"));
+    await page
+      .getByLabel("Design file, TOML")
+      .fill(
+        (await page.getByLabel("Design file, TOML").inputValue()).replace("minor_radius = 0.3", "minor_radius = 0.1"),
+      );
     await page.getByRole("tab", { name: "Compare" }).click();
     await page.getByLabel("Its wire radius").fill("0.05");
     await solved(page);

@@ -37,7 +37,8 @@ export const test = base.extend<{ program: Program; problems: string[] }>({
           child.stderr.on("data", hear);
           child.on("exit", (code) => reject(new Error(`the program ended with ${code}: ${said}`)));
         }),
-      run: (...args) => execFileSync(PROGRAM, args, { cwd: folder, encoding: "utf8", stdio: ["ignore", "pipe", "pipe"] }),
+      run: (...args) =>
+        execFileSync(PROGRAM, args, { cwd: folder, encoding: "utf8", stdio: ["ignore", "pipe", "pipe"] }),
     });
     for (const child of children) {
       if (child.exitCode !== null) continue;
@@ -47,14 +48,15 @@ export const test = base.extend<{ program: Program; problems: string[] }>({
     }
     rmSync(folder, { recursive: true });
   },
-  // No test may leave an error in the console. It needs the program, so that it is asked before the server ends: a page may
-  // still be asking for something then.
+  // No test may leave an error in the console. It needs the program, so that it is asked before the server ends: a page
+  // may still be asking for something then.
   problems: [
     async ({ page, program: _ }, use) => {
       const problems: string[] = [];
       page.on("pageerror", (error) => problems.push(String(error)));
       page.on("console", (message) => {
-        if (message.type() === "error" && !/status of 4\d\d|ERR_ABORTED/.test(message.text())) problems.push(message.text());
+        if (message.type() === "error" && !/status of 4\d\d|ERR_ABORTED/.test(message.text()))
+          problems.push(message.text());
       });
       await use(problems);
       expect(problems).toEqual([]);
@@ -75,7 +77,9 @@ export async function clickMap(page: Page, direction: number, share: number): Pr
   const box = (await map.boundingBox())!;
   const [middle, rim] = [box.width / 2, box.width * (0.5 - 34 / 420)];
   const angle = (direction * Math.PI) / 180;
-  await map.click({ position: { x: middle + share * rim * Math.cos(angle), y: middle - share * rim * Math.sin(angle) } });
+  await map.click({
+    position: { x: middle + share * rim * Math.cos(angle), y: middle - share * rim * Math.sin(angle) },
+  });
 }
 
 export { expect };

@@ -54,7 +54,18 @@ test("a record is shown as it is", async ({ page, program }) => {
   await expect(page.getByLabel("Wire radius", { exact: true })).toBeEnabled();
   await page.getByRole("button", { name: "l₂ −0.125" }).click();
   await page.getByLabel("Direction of pull").fill("45");
-  const row = program.run("table", "record", "--format", "csv", "--columns", "l1", "--where", "direction_deg=45", "--where", "l2=-0.125");
+  const row = program.run(
+    "table",
+    "record",
+    "--format",
+    "csv",
+    "--columns",
+    "l1",
+    "--where",
+    "direction_deg=45",
+    "--where",
+    "l2=-0.125",
+  );
   await expect(page.locator("data.l1")).toHaveAttribute("value", row.trim().split("\n").at(-1)!);
 });
 
@@ -89,7 +100,10 @@ test("the wire radius changes the map, and drags leave nothing behind", async ({
 });
 
 test("a broken design says what is wrong, at its line", async ({ page, program }) => {
-  writeFileSync(join(program.folder, "mine.toml"), program.run("new", "mine", "--weave", "european-4-in-1", "--major", "5", "--minor", "0.6", "-o", "-"));
+  writeFileSync(
+    join(program.folder, "mine.toml"),
+    program.run("new", "mine", "--weave", "european-4-in-1", "--major", "5", "--minor", "0.6", "-o", "-"),
+  );
   await page.goto(await program.view("mine.toml"));
   await page.getByRole("tab", { name: "Edit" }).click();
   const area = page.getByLabel("Design file, TOML");
@@ -163,7 +177,9 @@ test("two radii side by side", async ({ page, program }) => {
   await expect(page.locator(".stage canvas")).toHaveCount(2);
   await page.getByLabel("Its wire radius").fill("0.15");
   await expect(page.locator("data.l1")).toHaveCount(2);
-  await expect.poll(async () => Number(await page.locator("data.l1").nth(1).getAttribute("value"))).toBeCloseTo(0.36, 9);
+  await expect
+    .poll(async () => Number(await page.locator("data.l1").nth(1).getAttribute("value")))
+    .toBeCloseTo(0.36, 9);
   await solved(page);
   await expect(page.locator(".map .curve:not(.old)")).toHaveCount(2);
   await expect(page.locator(".map-legend")).toContainText("r = 0.15");
@@ -189,7 +205,9 @@ test("a bundle opens from the disk, without a server", async ({ page, program })
   await page.getByLabel("Direction of pull").fill("0");
   await page.getByRole("button", { name: "l₂ 0" }).click();
   expect(Number(await page.locator("data.l1").getAttribute("value"))).toBeCloseTo(0.44, 9);
-  expect(requests.filter((url) => !url.startsWith("file:") && !url.startsWith("data:") && !url.startsWith("blob:"))).toEqual([]);
+  expect(
+    requests.filter((url) => !url.startsWith("file:") && !url.startsWith("data:") && !url.startsWith("blob:")),
+  ).toEqual([]);
 });
 
 test("the time of a frame with five thousand rings", async ({ page, program }) => {

@@ -1,6 +1,6 @@
 //! Causes of exceptions, from records.
 
-use super::super::{ENERGY_TIE, EXACT_TIE, Map};
+use crate::report::map::{ENERGY_TIE, EXACT_TIE, Map};
 use maille::record::LimitRow;
 
 /// Why a case of these maps is an exception, as far as the records tell: the energy method stopped in a local minimum short of an

@@ -1,9 +1,7 @@
 //! Maps, from a design to its record: what is there is read, what is left is asked for, each limit is kept as it comes.
 
-use super::error::RecordError;
-use super::folder::{Record, RecordFolder};
-use super::run::{Counters, RunRecord, input_hash};
 use crate::plot::{Layout, PlotError, PolarPlot, Quantity, parameter_words, polar_svg, svg_to_png};
+use crate::record::{Counters, Record, RecordError, RecordFolder, RunRecord, input_hash};
 use maille::characterize::{CellChoice, Finished, Method, Task, chains, characterize, tasks};
 use maille::design::Design;
 use maille::lattice::Cell;
@@ -120,9 +118,9 @@ impl OpenMap {
         self.map.out.as_deref()
     }
 
-    /// The chains of the map, the least that can be asked for alone: the limits along one direction, in the order in which
-    /// they go on from each other, with those of its images. The record of a map of these directions alone has the same rows, bit for
-    /// bit.
+    /// The chains of the map, the least that can be asked for alone: the limits along one direction, in the order in
+    /// which they go on from each other, with those of its images. The record of a map of these directions alone has the
+    /// same rows, bit for bit.
     pub fn chains(&self) -> impl Iterator<Item = Chain> {
         let chain = |directions_deg: Vec<f64>| {
             let inputs = json!({ "program_version": VERSION, "parameters": self.parameters_of(&directions_deg) });
@@ -149,8 +147,8 @@ impl OpenMap {
         Record { run: RunRecord { counters, ..RunRecord::new(&self.design, &parameters, VERSION) }, rows, states }
     }
 
-    /// Takes a limit that was found elsewhere; says whether it was one of the map that was left. With a folder, it is on the
-    /// disk when this returns.
+    /// Takes a limit that was found elsewhere; says whether it was one of the map that was left. With a folder, it is on
+    /// the disk when this returns.
     pub fn keep(&mut self, row: LimitRow, state: StateRecord) -> Result<bool, RecordError> {
         match place(&self.all, &row).filter(|k| self.collected.rows[*k].is_none()) {
             Some(k) => self.collected.keep(k, Finished { row, state }).map(|()| true),
@@ -199,7 +197,7 @@ impl OpenMap {
         };
         let record = Record { run, rows, states };
         if let Some(folder) = &collected.folder {
-            record.write_polar(folder, map.quantity)?;
+            write_polar(&record, folder, map.quantity)?;
         }
         Ok(record)
     }
@@ -216,21 +214,19 @@ pub struct Chain {
     pub hash: String,
 }
 
-impl Record {
-    /// Writes the record to a folder of its own, with its plot: as a run that had found it there.
-    pub fn save(&self, folder: &Path, quantity: Quantity, overwrite: bool) -> Result<(), MapError> {
-        let RunRecord { design, parameters, program_version, .. } = &self.run;
-        let (mut folder, ..) = RecordFolder::open(folder, design, parameters, program_version, overwrite)?;
-        folder.write(&self.rows, &self.states)?;
-        self.write_polar(&folder, quantity)
-    }
+/// Writes a record to a folder of its own, with its plot: as a run that had found it there.
+pub fn save_record(record: &Record, folder: &Path, quantity: Quantity, overwrite: bool) -> Result<(), MapError> {
+    let RunRecord { design, parameters, program_version, .. } = &record.run;
+    let (mut folder, ..) = RecordFolder::open(folder, design, parameters, program_version, overwrite)?;
+    folder.write(&record.rows, &record.states)?;
+    write_polar(record, &folder, quantity)
+}
 
-    fn write_polar(&self, folder: &RecordFolder, quantity: Quantity) -> Result<(), MapError> {
-        let words = parameter_words(&self.run.parameters);
-        let svg = polar_svg(&PolarPlot::from_rows(&self.run.design, &self.rows, quantity, &words), Layout::Beside);
-        let png = svg_to_png(&svg, 2.0)?;
-        Ok(folder.write_polar(&svg, &png)?)
-    }
+fn write_polar(record: &Record, folder: &RecordFolder, quantity: Quantity) -> Result<(), MapError> {
+    let words = parameter_words(&record.run.parameters);
+    let svg = polar_svg(&PolarPlot::from_rows(&record.run.design, &record.rows, quantity, &words), Layout::Beside);
+    let png = svg_to_png(&svg, 2.0)?;
+    Ok(folder.write_polar(&svg, &png)?)
 }
 
 /// Where a row belongs among the tasks.

@@ -1,0 +1,76 @@
+// The polar plot of the limits with its legend, and how far the solving is.
+
+import { h, short } from "./dom";
+import { widthColor, widths } from "./limits";
+import { PolarPlot, type Family } from "./polar-plot";
+import type { Side } from "./side";
+import type { ViewState } from "./state";
+
+const COLORS = { a: ["#1b4f8f", "#2f77b4", "#6aa9d8"], b: ["#b3541e", "#d4602a", "#eaa06a"] };
+
+/** Limits of a sheet, and those from before a change until there are new ones. */
+function families(side: Side, colors: string[]): Family[] {
+  const out: Family[] = [];
+  if (side.old.length && (side.running || side.problems.length || !side.limits.length)) {
+    out.push({ colors, limits: side.old, old: true });
+  }
+  out.push({ colors, limits: side.limits, old: false });
+  return out;
+}
+
+function key(color: string, words: string): HTMLElement {
+  return h("span", { class: "key" }, h("i", { style: `background:${color}` }), words);
+}
+
+function named(side: Side, color: string, name: string | undefined): HTMLElement {
+  const radius = side.own && short(Math.min(...side.own.rings.map((r) => r.minor_radius)), 4);
+  return key(color, `${name}, r = ${radius}`);
+}
+
+export class PlotCard {
+  readonly node: HTMLElement;
+  private plot: PolarPlot;
+  private legend = h("div", { class: "map-legend" });
+  private progress = h("div", { class: "progress" });
+
+  constructor(private state: ViewState) {
+    this.plot = new PolarPlot(
+      (direction, l2) => state.choose(direction, l2),
+      (degrees) => state.step(degrees),
+    );
+    this.node = h("div", { class: "map-box" }, this.plot.node, this.legend, this.plot.tip, this.progress);
+  }
+
+  draw(): void {
+    const { a, b, mode } = this.state;
+    const two = mode === "compare";
+    const second = two ? families(b, COLORS.b) : [];
+    this.plot.draw([...families(a, COLORS.a), ...second], a.choice);
+    this.legend.replaceChildren(...this.keys());
+    this.progress.replaceChildren(...this.done(a.running || !two ? a : b));
+  }
+
+  private keys(): HTMLElement[] {
+    const { a, b, mode } = this.state;
+    if (mode === "compare") {
+      return [named(a, COLORS.a[0]!, a.own?.name), named(b, COLORS.b[0]!, b.own?.name ?? "…")];
+    }
+    const l2s = widths(a.limits);
+    if (l2s.length > 1) return l2s.map((l2, k) => key(widthColor(COLORS.a, k, l2s.length), `l₂ = ${short(l2)}`));
+    return [h("span", { class: "key" }, "stretch 1 + l₁ along each direction of pull")];
+  }
+
+  private done(side: Side): HTMLElement[] {
+    const found = side.limits.length;
+    if (side.running) {
+      return [
+        h("progress", { max: side.total, value: Math.min(found, side.total), "aria-label": "Limits found" }),
+        h("span", {}, `${found} of ${side.total} limits`),
+        h("button", { type: "button", onclick: () => this.state.cancel(side) }, "Cancel"),
+      ];
+    }
+    if (side.source !== null) return [h("span", {}, `${found} limits of ${side.source}`)];
+    if (found) return [h("span", {}, `${found} limits`)];
+    return [h("span", {}, side.problems.length ? "not solved" : "…")];
+  }
+}

@@ -1,0 +1,200 @@
+//! The circle check: no file of a crate uses itself through others, and no folder of `maille-io` does.
+
+use crate::{
+    modules::{self, Uses},
+    repository::{Finding, files, read},
+};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::Path,
+};
+
+/// Circles that are known, each with its crate and all files below `src`, or all folders, that reach each other,
+/// sorted. Take a circle out here when it is opened, and shorten it when it gets smaller; a new one is not to be added.
+const KNOWN: &[(&str, &[&str])] = &[
+    ("maille", &["bound/chain.rs", "bound/link.rs", "bound/mod.rs"]),
+    ("maille", &["constraint/mod.rs", "constraint/pair.rs"]),
+    ("maille", &["limit/exact.rs", "limit/pull.rs"]),
+    ("maille", &["model.rs", "state.rs", "topology/broad.rs", "topology/mod.rs"]),
+    ("maille-geometry", &["batch.rs", "solve.rs"]),
+    ("maille-geometry", &["bounds.rs", "halving.rs", "minima.rs", "quick.rs", "relative.rs", "search.rs", "single.rs"]),
+    (
+        "maille-io",
+        &[
+            "mesh/colour.rs",
+            "mesh/glb.rs",
+            "mesh/mod.rs",
+            "mesh/obj.rs",
+            "mesh/ply.rs",
+            "mesh/scene.rs",
+            "mesh/stl.rs",
+            "mesh/three_mf.rs",
+            "mesh/torus.rs",
+            "mesh/vtk.rs",
+        ],
+    ),
+    ("maille-io", &["render/camera.rs", "render/film.rs", "render/mod.rs", "render/overlay.rs", "render/scene.rs"]),
+];
+
+/// Crates whose folders below `src` stand in no circle either; a file there is a folder of one.
+const FOLDERS: &[&str] = &["maille-io"];
+
+/// This file.
+const HERE: &str = "crates/xtask/src/circles.rs";
+
+/// New circles, and known ones that are no more.
+pub fn check(root: &Path) -> Vec<Finding> {
+    let folders = std::fs::read_dir(root.join("crates")).into_iter().flatten().flatten();
+    let mut names: Vec<String> = folders.map(|f| f.file_name().to_string_lossy().into_owned()).collect();
+    names.sort_unstable();
+    names.iter().flat_map(|name| check_crate(root, name).unwrap_or_else(|finding| vec![finding])).collect()
+}
+
+fn check_crate(root: &Path, name: &str) -> Result<Vec<Finding>, Finding> {
+    let folder = format!("crates/{name}/src");
+    let failed = |problem: String| Finding::new(folder.as_str(), 0, problem);
+    let mut sources = BTreeMap::new();
+    for file in files(root, &folder, "rs").map_err(|e| failed(format!("cannot be read: {e}")))? {
+        let below = file[folder.len() + 1..].to_string();
+        sources.insert(below, read(root, &file)?);
+    }
+    let uses = modules::uses(&sources).map_err(failed)?;
+    let mut graphs = vec![uses.clone()];
+    if FOLDERS.contains(&name) {
+        graphs.push(between_folders(&uses));
+    }
+    let known: Vec<&[&str]> = KNOWN.iter().filter(|(of, _)| *of == name).map(|(_, circle)| *circle).collect();
+    Ok(judge(&folder, &graphs, &known))
+}
+
+/// Findings on the circles in `graphs`: those that are not `known`, and the known that are in none of them.
+fn judge(folder: &str, graphs: &[Uses], known: &[&[&str]]) -> Vec<Finding> {
+    let mut out = Vec::new();
+    let mut found = BTreeSet::new();
+    for graph in graphs {
+        for circle in circles(graph) {
+            if !known.contains(&circle.iter().map(String::as_str).collect::<Vec<_>>().as_slice()) {
+                let inside = graph.iter().filter(|((from, to), _)| circle.contains(from) && circle.contains(to));
+                let uses: String = inside.map(|((from, to), line)| format!("\n  {from}:{line} uses {to}")).collect();
+                out.push(Finding::new(folder, 0, format!("a circle of {}{uses}", circle.join(", "))));
+            }
+            found.insert(circle);
+        }
+    }
+    for circle in known {
+        if !found.contains(&circle.iter().map(|file| file.to_string()).collect::<Vec<_>>()) {
+            let circle = circle.join(", ");
+            let problem = format!("the known circle of {circle} in {folder} is opened or changed: correct the list");
+            out.push(Finding::new(HERE, 0, problem));
+        }
+    }
+    out
+}
+
+/// Uses between the folders and files at the top; those of the crate's root are left out.
+fn between_folders(uses: &Uses) -> Uses {
+    let folder = |file: &str| file.split('/').next().unwrap_or(file).trim_end_matches(".rs").to_string();
+    let mut out = Uses::new();
+    for ((from, to), line) in uses {
+        let pair = (folder(from), folder(to));
+        if pair.0 != pair.1 && pair.0 != "lib" {
+            out.entry(pair).or_insert(*line);
+        }
+    }
+    out
+}
+
+/// Sets of nodes of which each reaches each other, as large as they are, with their nodes sorted.
+fn circles(uses: &Uses) -> Vec<Vec<String>> {
+    let mut reach: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
+    for (from, to) in uses.keys() {
+        reach.entry(from).or_default().insert(to);
+    }
+    // What is reached by one more step, until nothing is.
+    loop {
+        let longer: BTreeMap<&str, BTreeSet<&str>> = reach
+            .iter()
+            .map(|(from, to)| {
+                (*from, to.iter().flat_map(|to| reach.get(to).into_iter().flatten()).chain(to).copied().collect())
+            })
+            .collect();
+        if longer == reach {
+            break;
+        }
+        reach = longer;
+    }
+    let reaches = |from: &str, to: &str| reach.get(from).is_some_and(|reached| reached.contains(to));
+    let circles: BTreeSet<Vec<String>> = reach
+        .keys()
+        .filter(|node| reaches(node, node))
+        .map(|node| reach[node].iter().filter(|other| reaches(other, node)).map(|other| other.to_string()).collect())
+        .collect();
+    circles.into_iter().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn uses(files: &[(&str, &str)]) -> Uses {
+        let files = files.iter().map(|(name, text)| (name.to_string(), text.to_string())).collect();
+        modules::uses(&files).unwrap()
+    }
+
+    fn found(files: &[(&str, &str)]) -> Vec<String> {
+        circles(&uses(files)).into_iter().map(|circle| circle.join(" ")).collect()
+    }
+
+    #[test]
+    fn a_planted_circle_is_found() {
+        let mut files = vec![
+            ("lib.rs", "mod a; mod b; mod c;"),
+            ("a.rs", "use crate::b::B; pub struct A(B);"),
+            ("b/mod.rs", "mod d; pub use d::D; pub struct B;"),
+            ("b/d.rs", "pub struct D;"),
+            ("c.rs", "pub fn c() { crate::a::A; super::b::D; }"),
+        ];
+        assert_eq!(found(&files), [""; 0]);
+        files[3].1 = "pub struct D; fn f() { m!(super::super::c::c()) }";
+        assert_eq!(found(&files), ["b/d.rs c.rs"], "what b passes on is d's, not b's");
+        files[2].1 = "mod d; pub use d::D; pub struct B(D);";
+        assert_eq!(found(&files), ["a.rs b/d.rs b/mod.rs c.rs"]);
+    }
+
+    #[test]
+    fn paths_lead_to_the_file_that_defines() {
+        let files = [
+            ("main.rs", "mod a; mod b; fn main() { a::e::run() }"),
+            ("a/mod.rs", "pub mod e; use crate::b; pub use e::*; pub struct A(b::Other);"),
+            ("a/e.rs", "pub struct E; pub fn run() {} use serde::E as F; #[cfg(test)] mod tests { use crate::b; }"),
+            ("b.rs", "use super::a; pub struct Other; fn f(x: a::E) -> a::E { a::f() }"),
+        ];
+        let found: Vec<String> = uses(&files).into_iter().map(|((a, b), line)| format!("{a}:{line} {b}")).collect();
+        assert_eq!(found, ["a/mod.rs:1 b.rs", "b.rs:1 a/e.rs", "b.rs:1 a/mod.rs", "main.rs:1 a/e.rs"]);
+    }
+
+    #[test]
+    fn folders_are_judged_as_wholes() {
+        let files = [
+            ("lib.rs", "pub mod plot; pub mod record;"),
+            ("plot.rs", "pub mod axes; pub mod curve;"),
+            ("plot/axes.rs", "pub struct Axes;"),
+            ("plot/curve.rs", "use crate::record::Row;"),
+            ("record.rs", "pub struct Row; mod map;"),
+            ("record/map.rs", "use crate::plot::axes::Axes;"),
+        ];
+        assert_eq!(found(&files), [""; 0]);
+        assert_eq!(circles(&between_folders(&uses(&files))), [["plot", "record"]]);
+    }
+
+    #[test]
+    fn known_circles_pass_until_they_are_opened() {
+        let round = uses(&[("lib.rs", "mod a; mod b;"), ("a.rs", "use crate::b::B;"), ("b.rs", "use super::a::A;")]);
+        let straight = uses(&[("lib.rs", "mod a; mod b;"), ("a.rs", "use crate::b::B;"), ("b.rs", "pub struct B;")]);
+        let known: &[&[&str]] = &[&["a.rs", "b.rs"]];
+        let round = [round];
+        assert_eq!(judge("src", &round, known), []);
+        assert!(judge("src", &round, &[])[0].problem.contains("b.rs:1 uses a.rs"));
+        assert_eq!(judge("src", &[straight], known)[0].file, HERE);
+    }
+}
