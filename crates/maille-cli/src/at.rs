@@ -1,6 +1,6 @@
 //! `--at direction=30,l2=-0.125`: a row of a record; `--at roomiest`: a state that is found now.
 
-use maille::limit::extreme::Extreme;
+use maille::search::extreme::Extreme;
 use std::fmt;
 
 /// Which row of a record is meant.

@@ -11,8 +11,8 @@ use crate::{
 };
 use maille::{
     lattice::Cell,
-    limit::boundary::{Boundary, BoundaryOptions, BoundaryVertex, boundary},
     record::Status,
+    survey::surface::{Boundary, BoundaryOptions, BoundaryVertex, boundary},
 };
 use maille_io::{
     boundary::{BoundaryHead, SurfaceFolder, boundary_csv, boundary_obj, boundary_ply},

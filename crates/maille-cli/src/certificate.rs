@@ -1,6 +1,6 @@
 //! A certificate on the screen and in JSON.
 
-use maille::solve::certificate::Certificate;
+use maille::solver::certificate::Certificate;
 
 /// One line of what was checked.
 pub fn line(c: &Certificate) -> String {

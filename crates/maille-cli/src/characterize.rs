@@ -13,14 +13,16 @@ use crate::{
     watch::watch,
 };
 use maille::{
-    characterize::{CellChoice, Method},
-    energy::{HessianMethod, MinimaMethod, barrier::ContactLaw, target::Protocol},
     lattice::Across,
-    limit::{
-        ExactOptions,
-        energy::{EnergyOptions, Minimiser},
-    },
     record::LimitRow,
+    relaxation::{
+        HessianMethod, MinimaMethod,
+        barrier::ContactLaw,
+        limit::{EnergyOptions, Minimiser},
+        target::Protocol,
+    },
+    search::ExactOptions,
+    survey::{CellChoice, Method},
 };
 use maille_io::{
     numbers::{USUAL_DIRECTIONS, USUAL_L2},

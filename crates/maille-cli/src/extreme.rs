@@ -12,14 +12,14 @@ use crate::{
 };
 use maille::{
     answer::Answer,
-    characterize::CellChoice,
     design::Design,
     lattice::Cell,
-    limit::extreme::{Extreme, Size},
     model::Model,
     question::{Goal, Question, Sense},
     record::Status,
+    search::extreme::{Extreme, Size},
     sheet::Sheet,
+    survey::CellChoice,
 };
 use maille_io::{answer, write_design};
 use miette::Result;

@@ -1,9 +1,7 @@
 //! A design from a built-in name or a file, and its model.
 
 use crate::exit::{self, wrong};
-use maille::{
-    characterize::CellChoice, design::Design, error::InvalidInput, lattice::Cell, model::Model, sheet::Sheet,
-};
+use maille::{design::Design, error::InvalidInput, lattice::Cell, model::Model, sheet::Sheet, survey::CellChoice};
 pub use maille_io::record::file_name;
 use maille_io::{DesignError, DesignSource, builtin, builtin_designs, nearest_builtin, study::Variant, write_design};
 use miette::{IntoDiagnostic, Report, Result, WrapErr};

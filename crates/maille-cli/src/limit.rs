@@ -10,9 +10,9 @@ use crate::{
 };
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use maille::{
-    characterize::CellChoice,
     question::{Goal, Question, Sense, Strain},
     record::Status,
+    survey::CellChoice,
 };
 use maille_io::answer::StrainAnswer;
 use miette::Result;

@@ -7,10 +7,10 @@ use crate::{
     source::read_record,
 };
 use maille::{
-    characterize::{Finished, Method, Task, characterize},
     lattice::Cell,
     model::Model,
     record::{LimitRow, Status},
+    survey::{Finished, Method, Task, characterize},
 };
 use miette::{Report, Result};
 use serde_json::Value;

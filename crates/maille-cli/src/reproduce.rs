@@ -10,12 +10,12 @@ use crate::{
     records,
 };
 use maille::{
-    characterize::{CellChoice, Method},
     design::{Design, Source},
-    energy::target::Protocol,
     lattice::Cell,
-    limit::{ExactOptions, energy::EnergyOptions},
     model::Model,
+    relaxation::{limit::EnergyOptions, target::Protocol},
+    search::ExactOptions,
+    survey::{CellChoice, Method},
 };
 use maille_io::{
     DesignSource, chapter6,

@@ -11,10 +11,12 @@ use crate::{
 use maille::{
     error::InvalidInput,
     lattice::Cell,
-    limit::energy::EnergyOptions,
     model::Model,
     record::{FrameRecord, pose_records},
-    simulate::{Accepted, End, Simulation, TAU, along, simulate},
+    relaxation::{
+        limit::EnergyOptions,
+        simulate::{Accepted, End, Simulation, TAU, along, simulate},
+    },
 };
 use maille_geometry::Vec3;
 use maille_io::{

@@ -11,9 +11,9 @@ use maille::{
     design::Design,
     error::InvalidInput,
     lattice::Cell,
-    limit::extreme::Extreme,
     model::Model,
     record::{ContactRecord, FrameRecord, StateRecord, Status},
+    search::extreme::Extreme,
     state::State,
 };
 use maille_io::{

@@ -3,12 +3,12 @@
 //! The verdicts are asserted as they came out, exceptions too, beside numbers that closed forms give.
 
 use maille::{
-    characterize::{Method, characterize},
     design::Design,
     lattice::Cell,
-    limit::ExactOptions,
     model::Model,
     record::LimitRow,
+    search::ExactOptions,
+    survey::{Method, characterize},
 };
 use maille_io::{
     record::{Counters, NamedRecord, Record, RunRecord},
@@ -28,7 +28,7 @@ fn limits_along(design: &Design, directions: &[f64], l2: &[f64], words: &str) ->
     let model = Model::compile(design, Cell::PRIMITIVE).unwrap();
     let rows: Mutex<Vec<LimitRow>> = Mutex::new(Vec::new());
     let method = Method::Exact(ExactOptions::default());
-    let found = |finished: maille::characterize::Finished| rows.lock().unwrap().push(finished.row);
+    let found = |finished: maille::survey::Finished| rows.lock().unwrap().push(finished.row);
     let cancel = AtomicBool::new(false);
     characterize(&[model], design.minor_radius, &method, directions, l2, &|_| true, &cancel, &found);
     let mut rows = rows.into_inner().unwrap();

@@ -3,11 +3,11 @@
 use maille::{
     answer::{Answer, CellTrend},
     design::Design,
-    limit::extreme::Extreme,
     model::Model,
     question::{Goal, Question, Strain},
     record::{Status, pose_records},
-    solve::certificate::Certificate,
+    search::extreme::Extreme,
+    solver::certificate::Certificate,
 };
 use maille_geometry::Vec3;
 use serde_json::{Map, Value, json};

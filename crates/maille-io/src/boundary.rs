@@ -7,8 +7,8 @@ mod journal;
 pub use self::journal::{BoundaryHead, SurfaceFolder, read_surface, surface_line, write_surface};
 
 use maille::{
-    limit::boundary::{Boundary, BoundaryVertex},
     record::Status,
+    survey::surface::{Boundary, BoundaryVertex},
 };
 use std::fmt::Write;
 

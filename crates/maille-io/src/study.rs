@@ -7,11 +7,11 @@ use crate::{
     run::Map,
 };
 use maille::{
-    characterize::{CellChoice, Method},
     design::Design,
     error::InvalidInput,
     lattice::Cell,
-    limit::ExactOptions,
+    search::ExactOptions,
+    survey::{CellChoice, Method},
 };
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode, SourceSpan};
 use serde::Deserialize;

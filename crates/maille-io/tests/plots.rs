@@ -4,7 +4,7 @@
 mod rows;
 
 use maille::record::{ForceRow, LimitRow, Status};
-use maille::simulate::End;
+use maille::relaxation::simulate::End;
 use maille_io::plot::{
     Curve, CurveKind, Layout, NamedSimulation, PolarPlot, Quantity, Spread, difference_svg, force_svg, polar_svg,
     steps_svg, svg_to_png, times_svg,

@@ -1,7 +1,7 @@
 //! Designs.
 
 use crate::error;
-use maille::{characterize::CellChoice, error::InvalidInput, lattice::Cell, model::Model, sheet::Sheet};
+use maille::{error::InvalidInput, lattice::Cell, model::Model, sheet::Sheet, survey::CellChoice};
 use maille_io::{DesignSource, NumberPath, builtin, builtin_designs, nearest_builtin, write_design};
 use pyo3::prelude::*;
 

@@ -6,9 +6,10 @@ use crate::{
     wait::{Step, wait},
 };
 use maille::{
-    characterize::{CellChoice, Method},
     lattice::Across,
-    limit::{ExactOptions, energy::EnergyOptions},
+    relaxation::limit::EnergyOptions,
+    search::ExactOptions,
+    survey::{CellChoice, Method},
 };
 use maille_io::{
     numbers::{USUAL_DIRECTIONS, USUAL_L2, distinct, parse, parse_l2},

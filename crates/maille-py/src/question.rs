@@ -3,11 +3,11 @@
 use crate::{design::Design, error, map::cell_choice, wait::wait};
 use maille::{
     answer::Answer,
-    characterize::CellChoice,
     lattice::Cell,
-    limit::extreme::Extreme,
     question::{Goal, Question, Sense, Strain},
+    search::extreme::Extreme,
     sheet::Sheet,
+    survey::CellChoice,
 };
 use maille_io::answer::{self, StrainAnswer};
 use pyo3::prelude::*;

@@ -8,7 +8,7 @@ use crate::{
 use maille::{
     lattice::Cell,
     record::{FrameRecord, pose_records},
-    simulate::simulate as run,
+    relaxation::simulate::simulate as run,
 };
 use maille_io::{
     mesh::Tile,

@@ -7,7 +7,7 @@ use crate::{
 };
 use maille::{
     lattice::Cell,
-    limit::boundary::{BoundaryOptions, BoundaryVertex, Ray, RaySolver, boundary_by as boundary_by_rays},
+    survey::surface::{BoundaryOptions, BoundaryVertex, Ray, RaySolver, boundary_by as boundary_by_rays},
 };
 use maille_io::boundary::BoundaryHead;
 use pyo3::prelude::*;
@@ -44,7 +44,7 @@ fn read<T: DeserializeOwned>(texts: &[String]) -> PyResult<Vec<T>> {
     texts.iter().map(read).collect()
 }
 
-fn surface(found: maille::limit::boundary::Boundary) -> Surface {
+fn surface(found: maille::survey::surface::Boundary) -> Surface {
     (found.vertices.iter().map(json).collect(), found.triangles, found.arch)
 }
 
@@ -67,7 +67,7 @@ pub fn boundary(
     let found = wait(py, threads, progress.as_ref(), |cancel, tell| {
         let mut planned = |rays| tell(Step::More(rays));
         let found = |_: &_| tell(Step::Done);
-        maille::limit::boundary::boundary(&model, &options, &[], cancel, &mut planned, &found)
+        maille::survey::surface::boundary(&model, &options, &[], cancel, &mut planned, &found)
     })?;
     Ok(surface(found))
 }

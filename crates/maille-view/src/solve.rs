@@ -12,11 +12,11 @@ use axum::{
 };
 use futures_util::stream::unfold;
 use maille::{
-    characterize::{CellChoice, Method},
     lattice::{Across, Cell},
-    limit::ExactOptions,
     model::Model,
     record::{LimitRow, StateRecord},
+    search::ExactOptions,
+    survey::{CellChoice, Method},
 };
 use maille_io::{plot::Quantity, run::Map};
 use std::{

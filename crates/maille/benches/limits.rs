@@ -3,13 +3,10 @@
 use divan::{Bencher, counter::ItemsCount};
 use maille::{
     lattice::Cell,
-    limit::{
-        ExactOptions,
-        energy::{EnergyMethod, EnergyOptions},
-        stretch::ExactMethod,
-    },
     model::Model,
     record::Status,
+    relaxation::limit::{EnergyMethod, EnergyOptions},
+    search::{ExactOptions, stretch::ExactMethod},
 };
 use maille_io::{builtin, read_design};
 use std::{sync::atomic::AtomicBool, time::Instant};

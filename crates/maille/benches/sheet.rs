@@ -5,11 +5,10 @@
 
 use divan::{Bencher, black_box, counter::ItemsCount};
 use maille::{
-    energy::{Configuration, ContactOptions, HessianMethod, SheetEnergy},
     lattice::Cell,
-    limit::energy::EnergyOptions,
     model::Model,
-    solve::{
+    relaxation::{Configuration, ContactOptions, HessianMethod, SheetEnergy, limit::EnergyOptions},
+    solver::{
         curvature::{Curvature, Decomposed},
         newton::Objective,
         sparse::Patterns,

@@ -2,10 +2,10 @@
 
 use divan::{Bencher, counter::ItemsCount};
 use maille::{
-    characterize::{Method, characterize, tasks},
     lattice::Cell,
-    limit::ExactOptions,
     model::Model,
+    search::ExactOptions,
+    survey::{Method, characterize, tasks},
 };
 use maille_io::{builtin, read_design};
 use std::sync::atomic::AtomicBool;

@@ -6,11 +6,11 @@
 //! Prints counts by design and status, and writes them to OUT.csv.
 
 use maille::{
-    characterize::{Finished, Method, characterize},
     lattice::Cell,
-    limit::ExactOptions,
     model::Model,
     record::Status,
+    search::ExactOptions,
+    survey::{Finished, Method, characterize},
 };
 use maille_io::{chapter6, read_design};
 use std::{

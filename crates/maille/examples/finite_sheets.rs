@@ -5,10 +5,12 @@
 use maille::{
     answer::Answer,
     lattice::Cell,
-    limit::energy::{EnergyMethod, EnergyOptions},
     model::Model,
     record::Status,
-    simulate::{Setup, TAU, elements_at, simulate},
+    relaxation::{
+        limit::{EnergyMethod, EnergyOptions},
+        simulate::{Setup, TAU, elements_at, simulate},
+    },
 };
 use maille_geometry::Vec3;
 use std::{fmt::Write as _, sync::atomic::AtomicBool, time::Instant};

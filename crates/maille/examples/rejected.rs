@@ -5,17 +5,17 @@
 
 use maille::{
     design::{Design, RingSpec},
-    energy::{
+    lattice::Cell,
+    model::Model,
+    record::Status,
+    relaxation::{
         Configuration, SheetEnergy,
         barrier::ContactLaw,
+        limit::{EnergyMethod, EnergyOptions, Minimiser},
         load::Loads,
         target::{Protocol, Target, target_gradient},
     },
-    lattice::Cell,
-    limit::energy::{EnergyMethod, EnergyOptions, Minimiser},
-    model::Model,
-    record::Status,
-    solve::{
+    solver::{
         curvature::Decomposed,
         descent::steepest_descent,
         newton::{NewtonOptions, Objective, Outcome, minimize},

@@ -2,11 +2,11 @@
 
 use crate::{
     bound::{BindingChain, Bound, BoundKind, DualForce},
-    constraint::Contact,
     lattice::Cell,
     model::Model,
+    program::Contact,
     record::{Status, StepRecord},
-    solve::certificate::Certificate,
+    solver::certificate::Certificate,
     state::State,
 };
 use nalgebra::Matrix2;

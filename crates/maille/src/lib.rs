@@ -29,12 +29,12 @@
 //! | --- | --- |
 //! | [`design`], [`model`], [`state`], [`lattice`] | the file's content; compiled to indices and units of R; poses and lattice vectors; cells |
 //! | [`question`], [`sheet`], [`answer`] | what is asked, to whom, and what came of it |
-//! | [`limit`] | the searches: many starts, local maximisation, certificate, larger cells; and the thesis's energy method |
-//! | [`constraint`], [`contact`] | the program that is maximised: gaps between rings as inequalities, with their derivatives |
+//! | [`search`] | the exact method: many starts, local maximisation, certificate, larger cells |
+//! | [`program`] | what is maximised: gaps between rings as inequalities, with their derivatives |
 //! | [`bound`] | proofs that no state lies beyond a value |
-//! | [`solve`] | solvers that know nothing of rings: sequential quadratic programming, Newton's method, certificates |
-//! | [`energy`], [`simulate`] | the thesis's contact energy; finite sheets under weight and pulls |
-//! | [`characterize`] | maps: many limits over directions and lateral strains, as rows of a [`record`] |
+//! | [`solver`] | solvers that know nothing of rings: sequential quadratic programming, Newton's method, certificates |
+//! | [`relaxation`] | the thesis's energy method, and finite sheets under weight and pulls |
+//! | [`survey`] | many questions: maps over directions and lateral strains, as rows of a [`record`], and the surface of all strains |
 //!
 //! Inside, lengths are in units of the design's reference radius R; records are in the file's unit. The searches use the current
 //! rayon thread pool, and no result depends on its size. Files are read and written by the crate `maille-io`, and records are
@@ -44,29 +44,27 @@
 
 pub mod answer;
 pub mod bound;
-pub mod characterize;
-pub mod constraint;
-pub mod contact;
 pub mod design;
-pub mod energy;
 pub mod error;
 pub mod lattice;
-pub mod limit;
 pub mod model;
+pub mod program;
 pub mod question;
 pub mod record;
+pub mod relaxation;
+pub mod search;
 pub mod sheet;
-pub mod simulate;
-pub mod solve;
+pub mod solver;
 pub mod state;
+pub mod survey;
 pub mod symmetry;
 pub mod topology;
 
 pub use answer::Answer;
-pub use characterize::CellChoice;
 pub use design::Design;
 pub use error::InvalidInput;
 pub use lattice::{Across, Cell};
 pub use question::{Goal, Question, Sense, Strain};
 pub use record::Status;
 pub use sheet::Sheet;
+pub use survey::CellChoice;

@@ -1,9 +1,9 @@
 //! What can be asked of a sheet.
 
 use crate::{
-    constraint::metric::factor,
     error::InvalidInput,
     lattice::{Across, direction},
+    program::metric::factor,
 };
 use nalgebra::{Matrix2, Vector2};
 use serde::{Deserialize, Serialize};

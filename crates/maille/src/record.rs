@@ -213,7 +213,7 @@ pub struct FrameRecord {
     pub poses: Vec<PoseRecord>,
 }
 
-/// One line of `forces.csv`: what holds a simulated sheet in one of its frames, see [`crate::simulate::force`].
+/// One line of `forces.csv`: what holds a simulated sheet in one of its frames, see [`crate::relaxation::simulate::force`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct ForceRow {
     /// Share of the pull.
@@ -221,7 +221,7 @@ pub struct ForceRow {
     /// Distance of the first pulled place from the one opposite to it, along the pull, by that at the start.
     pub stretch: Option<f64>,
     /// Force along the pull on an element of the first pulled place, their mean; positive where it stretches the sheet.
-    /// Forces are in [`crate::simulate::WEIGHT_UNIT`]s, 1e-3 β R.
+    /// Forces are in [`crate::relaxation::simulate::WEIGHT_UNIT`]s, 1e-3 β R.
     pub mean_force: Option<f64>,
     /// F in the plane, rows first: row i, column k is ∂x_i/∂X_k.
     pub deformation: Option<[[f64; 2]; 2]>,

@@ -2,19 +2,19 @@
 
 use crate::{
     answer::{Answer, CellTrend},
-    characterize::{CellChoice, one},
-    constraint::{Contact, metric::factor},
     design::Design,
     error::InvalidInput,
     lattice::Cell,
-    limit::{
+    model::Model,
+    program::{Contact, metric::factor},
+    question::{Goal, Question, Sense},
+    search::{
         ExactOptions,
         extreme::{Extreme, ExtremeOptions, extreme},
         strain::{StrainMethod, StrainOptions},
     },
-    model::Model,
-    question::{Goal, Question, Sense},
     state::{Pose, State},
+    survey::{CellChoice, one},
 };
 use maille_geometry::Vec3;
 use nalgebra::{Matrix2, Rotation3, UnitQuaternion};
@@ -147,6 +147,6 @@ fn as_strain(answer: Answer) -> Answer {
 impl CellChoice {
     /// The cells that the exact method may search.
     fn exact_cells(self, elements: usize) -> Vec<Cell> {
-        self.cells(&crate::characterize::Method::Exact(ExactOptions::default()), elements)
+        self.cells(&crate::survey::Method::Exact(ExactOptions::default()), elements)
     }
 }

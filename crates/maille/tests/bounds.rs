@@ -3,9 +3,9 @@
 use maille::{
     bound::{Bound, BoundKind, ChainBound, LinkBound, best_bound, crossing_pairs_length},
     design::Design,
-    energy::target::target_gradient,
     lattice::direction,
     model::Model,
+    relaxation::target::target_gradient,
     state::State,
     topology,
 };

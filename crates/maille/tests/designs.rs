@@ -4,8 +4,8 @@ mod common;
 
 use common::model;
 use maille::{
-    limit::energy::{EnergyMethod, EnergyOptions},
     record::Status,
+    relaxation::limit::{EnergyMethod, EnergyOptions},
     topology::{neighbours, smallest_gap},
 };
 use std::sync::atomic::AtomicBool;

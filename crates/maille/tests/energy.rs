@@ -5,14 +5,14 @@ mod common;
 use common::{design, model, shaken};
 use maille::{
     design::Design,
-    energy::{
+    lattice::Cell,
+    model::Model,
+    relaxation::{
         Configuration, ContactOptions, MinimaMethod, SheetEnergy,
         barrier::ContactLaw,
         target::{Protocol, Target, target_gradient},
     },
-    lattice::Cell,
-    model::Model,
-    solve::newton::Objective,
+    solver::newton::Objective,
     state::State,
 };
 use maille_geometry::Vec3;

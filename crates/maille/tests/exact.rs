@@ -6,9 +6,9 @@ use common::{design, map, model};
 use maille::{
     bound::ChainBound,
     lattice::Cell,
-    limit::ExactOptions,
     model::Model,
     record::{LimitRow, StateRecord, Status},
+    search::ExactOptions,
 };
 use maille_geometry::{Circle, Vec3, linking_number};
 use nalgebra::{Quaternion, Unit, UnitQuaternion};

@@ -4,9 +4,9 @@ use maille::{
     answer::Answer,
     design::Design,
     lattice::Cell,
-    limit::extreme::{Extreme, ExtremeOptions, extreme},
     model::Model,
     record::Status,
+    search::extreme::{Extreme, ExtremeOptions, extreme},
     topology,
 };
 use std::sync::atomic::AtomicBool;

@@ -1,6 +1,6 @@
 //! Derivatives of the point–circle distance and of the moving minimum, against finite differences.
 
-use maille::contact::kernel::{Grad, Hess, PairFrame, PointJet, RootMotion};
+use maille::program::gap_kernel::{Grad, Hess, PairFrame, PointJet, RootMotion};
 use maille_geometry::{Circle, Vec3, circle_distance_minima};
 use nalgebra::{Unit, UnitQuaternion};
 use rand::{RngExt, SeedableRng};

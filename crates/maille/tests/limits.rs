@@ -4,15 +4,15 @@ mod common;
 
 use common::{design, map, model};
 use maille::{
-    characterize::{Finished, Method, Task, characterize, tasks},
-    energy::target::Protocol,
     lattice::Cell,
-    limit::{
-        ExactOptions,
-        energy::{EnergyMethod, EnergyOptions, Minimiser},
-    },
     model::Model,
     record::Status,
+    relaxation::{
+        limit::{EnergyMethod, EnergyOptions, Minimiser},
+        target::Protocol,
+    },
+    search::ExactOptions,
+    survey::{Finished, Method, Task, characterize, tasks},
 };
 use std::sync::{Mutex, atomic::AtomicBool};
 

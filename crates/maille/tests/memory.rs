@@ -2,11 +2,11 @@
 #![cfg(target_os = "linux")]
 
 use maille::{
-    energy::{Configuration, SheetEnergy},
     lattice::Cell,
-    limit::{ExactOptions, energy::EnergyOptions, stretch::ExactMethod},
     model::Model,
-    solve::{newton::Objective, sparse::Patterns},
+    relaxation::{Configuration, SheetEnergy, limit::EnergyOptions},
+    search::{ExactOptions, stretch::ExactMethod},
+    solver::{newton::Objective, sparse::Patterns},
     topology::{RingPair, close_pairs},
 };
 use maille_geometry::{Circle, Vec3, circle_distance_minima};

@@ -3,22 +3,22 @@
 mod common;
 
 use maille::{
-    constraint::{Parameter, Pull, SheetProgram},
     lattice::Cell,
     model::Model,
-    solve::{
+    program::{LatticeFamily, Parameter, SheetProgram},
+    solver::{
         rows::{Derivatives, Loads, Multiplier},
         sqp::Program,
     },
 };
 use maille_geometry::Vec3;
 
-fn supercell() -> (Model, Pull) {
+fn supercell() -> (Model, LatticeFamily) {
     let model = Model::compile(&common::design("3.1", 0.1), "2,1;0,2".parse::<Cell>().unwrap()).unwrap();
     let stretch = |along: Vec3| [model.start.a1, model.start.a2].map(|a| along * a.dot(&along));
     let parameter = |rate| Parameter { rate, weight: 1.0, ..Parameter::default() };
     let parameters = vec![parameter(stretch(Vec3::x())), parameter(stretch(Vec3::y()))];
-    let pull = Pull { base: [model.start.a1, model.start.a2], parameters, metric: None };
+    let pull = LatticeFamily { base: [model.start.a1, model.start.a2], parameters, metric: None };
     (model, pull)
 }
 

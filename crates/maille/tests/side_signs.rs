@@ -6,10 +6,10 @@ mod common;
 use common::design;
 use maille::{
     design::{Design, ElementSpec, RingSpec},
-    energy::{Configuration, ContactOptions, MinimaMethod, SheetEnergy, barrier::ContactLaw},
     lattice::Cell,
     model::Model,
-    solve::newton::Objective,
+    relaxation::{Configuration, ContactOptions, MinimaMethod, SheetEnergy, barrier::ContactLaw},
+    solver::newton::Objective,
     topology::{links_kept, side::SideSigns, smallest_gap},
 };
 

@@ -4,21 +4,21 @@ mod common;
 
 use common::{design, shaken};
 use maille::{
-    energy::{
-        Configuration, ContactOptions, MinimaMethod, SheetEnergy,
-        barrier::ContactLaw,
-        load::{Drag, Floor, Loads, PositionTarget},
-    },
     lattice::Cell,
-    limit::energy::EnergyOptions,
     model::Model,
     record::ForceRow,
-    simulate::{
-        End, Setup, Simulation, TAU, WEIGHT_UNIT, along, elements_at,
-        force::{Grip, deformation_gradient, force_row},
-        simulate,
+    relaxation::{
+        Configuration, ContactOptions, MinimaMethod, SheetEnergy,
+        barrier::ContactLaw,
+        limit::EnergyOptions,
+        load::{Drag, Floor, Loads, PositionTarget},
+        simulate::{
+            End, Setup, Simulation, TAU, WEIGHT_UNIT, along, elements_at,
+            force::{Grip, deformation_gradient, force_row},
+            simulate,
+        },
     },
-    solve::{newton::Objective, sparse::Patterns},
+    solver::{newton::Objective, sparse::Patterns},
     state::State,
 };
 use maille_geometry::Vec3;

@@ -4,12 +4,12 @@
 mod common;
 
 use maille::{
-    characterize::{Finished, Method, characterize},
     design::Design,
     lattice::{Cell, direction},
-    limit::ExactOptions,
     model::Model,
     record::Status,
+    search::ExactOptions,
+    survey::{Finished, Method, characterize},
 };
 use maille_geometry::Vec3;
 use nalgebra::{Quaternion, UnitQuaternion};

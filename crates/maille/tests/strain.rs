@@ -2,17 +2,19 @@
 
 use maille::{
     answer::Answer,
-    characterize::{CellChoice, Method, characterize},
     lattice::{Across, Cell},
-    limit::{
-        ExactOptions,
-        boundary::{BoundaryOptions, BoundaryVertex, boundary},
-        strain::{StrainMethod, StrainOptions},
-    },
     model::Model,
     question::{Goal, Question, Sense, Strain, StrainQuery},
     record::{LimitRow, Status},
+    search::{
+        ExactOptions,
+        strain::{StrainMethod, StrainOptions},
+    },
     sheet::Sheet,
+    survey::{
+        CellChoice, Method, characterize,
+        surface::{BoundaryOptions, BoundaryVertex, boundary},
+    },
 };
 use nalgebra::Matrix2;
 use std::sync::{Mutex, atomic::AtomicBool};

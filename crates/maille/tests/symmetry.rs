@@ -4,12 +4,12 @@ mod common;
 
 use common::{design, map, model, shaken};
 use maille::{
-    characterize::{CellChoice, Finished, Method, chains},
     design::Design,
     lattice::Cell,
-    limit::ExactOptions,
     model::Model,
+    search::ExactOptions,
     state::State,
+    survey::{CellChoice, Finished, Method, chains},
     symmetry::{Image, Orbit, between, operations, orbits},
     topology::{self, RingPair},
 };

@@ -23,21 +23,21 @@ const CRATES: &[&[&str]] = &[
 /// The modules of `maille`, lowest first. A module uses its own row and the rows before it. The check covers unit
 /// tests as well: a test that needs a later module belongs into the crate's `tests` folder.
 const MODULES: &[&[&str]] = &[
-    &["error", "tolerance"],
+    &["error"],
     &["design"],
     &["lattice"],
     &["model", "state", "topology", "symmetry"],
-    &["contact"],
-    &["bound"],
-    &["energy", "constraint"],
+    &["program", "bound"],
     &["record"],
-    &["limit", "simulate"],
-    &["characterize"],
+    &["question", "answer"],
+    &["search", "relaxation"],
+    &["survey"],
+    &["sheet"],
 ];
 
 /// Stands aside from the order: it uses no other module and no ring, and only [`ASIDE_USERS`] use it.
-const ASIDE: &str = "solve";
-const ASIDE_USERS: &[&str] = &["energy", "constraint", "limit", "simulate", "characterize"];
+const ASIDE: &str = "solver";
+const ASIDE_USERS: &[&str] = &["program", "bound", "answer", "search", "relaxation", "survey"];
 
 /// Where the modules of [`MODULES`] live.
 const SOURCES: &str = "crates/maille/src";
@@ -256,13 +256,13 @@ mod tests {
     #[test]
     fn a_backward_use_is_found_with_its_line() {
         let (line, problem) =
-            only("state.rs", "//! State.\n\nuse crate::{\n    model::Model,\n    energy::SheetEnergy,\n};\n");
+            only("state.rs", "//! State.\n\nuse crate::{\n    model::Model,\n    relaxation::SheetEnergy,\n};\n");
         assert_eq!(line, 5);
         assert!(
-            problem.starts_with("state uses energy, which stands after it: error, tolerance ← design ←"),
+            problem.starts_with("state uses relaxation, which stands after it: error ← design ←"),
             "{problem}"
         );
-        assert_eq!(only("contact/kernel.rs", "fn f() -> crate::limit::LimitOutcome {}").0, 1);
+        assert_eq!(only("program/gap_kernel.rs", "fn f() -> crate::search::Search {}").0, 1);
         assert_eq!(only("design.rs", "use super::lattice::Cell;").0, 1);
         assert_eq!(only("design.rs", "\nmod tests {\n use super::super::lattice::Cell;\n}").0, 3);
     }
@@ -273,32 +273,32 @@ mod tests {
         assert_eq!(problems("model.rs", source), []);
         assert_eq!(problems("topology/links.rs", source), []);
         assert_eq!(
-            problems("limit.rs", "use crate::{energy::target, record::Status, solve::newton, limit::Search};"),
+            problems("search.rs", "use crate::{relaxation::target, record::Status, solver::newton, search::Search};"),
             []
         );
-        assert_eq!(problems("lib.rs", "pub mod limit; pub use crate::limit::LimitOutcome;"), []);
+        assert_eq!(problems("lib.rs", "pub mod search; pub use crate::search::Search;"), []);
     }
 
     #[test]
-    fn solve_stands_aside() {
-        assert_eq!(problems("solve/newton.rs", "use super::eigen; use crate::solve::eigen::symmetric_eigen;"), []);
-        assert!(only("solve/newton.rs", "use crate::error::InvalidInput;").1.contains("uses no other module"));
-        assert!(only("solve/newton.rs", "\nuse maille_geometry::Vec3;").1.contains("knows no ring"));
-        assert!(only("topology.rs", "use crate::solve::newton;").1.contains("characterize use it"));
-        assert_eq!(problems("energy/mod.rs", "use crate::solve::newton::Objective;"), []);
+    fn the_solver_stands_aside() {
+        assert_eq!(problems("solver/newton.rs", "use super::eigen; use crate::solver::eigen::symmetric_eigen;"), []);
+        assert!(only("solver/newton.rs", "use crate::error::InvalidInput;").1.contains("uses no other module"));
+        assert!(only("solver/newton.rs", "\nuse maille_geometry::Vec3;").1.contains("knows no ring"));
+        assert!(only("topology.rs", "use crate::solver::newton;").1.contains("survey use it"));
+        assert_eq!(problems("relaxation/mod.rs", "use crate::solver::newton::Objective;"), []);
     }
 
     #[test]
     fn a_module_without_a_room_is_found() {
         assert!(only("shear.rs", "").1.contains("module shear has no room"));
-        assert!(only("limit.rs", "use crate::shear::Shear;").1.contains("module shear has no room"));
-        assert_eq!(only("lib.rs", "pub mod limit;\nmod shear { use super::limit::LimitOutcome; }").0, 2);
+        assert!(only("search.rs", "use crate::shear::Shear;").1.contains("module shear has no room"));
+        assert_eq!(only("lib.rs", "pub mod search;\nmod shear { use super::search::Search; }").0, 2);
     }
 
     #[test]
     fn a_path_that_hides_its_module_is_found() {
         for source in ["use crate::*;", "use crate::Vec3;", "use crate as root;", "use super::{self as root};"] {
-            assert!(only("limit.rs", source).1.contains("name the module"), "{source}");
+            assert!(only("search.rs", source).1.contains("name the module"), "{source}");
         }
     }
 

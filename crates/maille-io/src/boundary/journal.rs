@@ -10,7 +10,7 @@ use crate::{
 use maille::{
     design::Design,
     lattice::Cell,
-    limit::boundary::{BoundaryOptions, BoundaryVertex},
+    survey::surface::{BoundaryOptions, BoundaryVertex},
 };
 use serde::{Deserialize, Serialize};
 use serde_json::json;

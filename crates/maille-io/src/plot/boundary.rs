@@ -5,7 +5,7 @@ use super::frame::{Entry, Frame, GRID, INK, Layout, RIM, SOFT, style};
 use super::look::{self, Look};
 use super::scale::Scale;
 use crate::boundary::{colour, point, triangles};
-use maille::{limit::boundary::Boundary, record::Status};
+use maille::{record::Status, survey::surface::Boundary};
 
 /// Names of the coordinates.
 const NAMES: [&str; 3] = ["E_xx", "E_yy", "E_xy"];

@@ -6,7 +6,7 @@ use super::frame::{Entry, Frame, Layout};
 use super::look;
 use super::scale::Axis;
 use crate::record::{ForceTable, SimulationRecord};
-use maille::simulate::End;
+use maille::relaxation::simulate::End;
 
 /// A simulation and its table, for a plot.
 #[derive(Clone, Debug)]

@@ -9,7 +9,7 @@ use maille::{
     error::InvalidInput,
     model::Model,
     record::ForceRow,
-    simulate::{Setup, Simulation, force::force_row},
+    relaxation::simulate::{Setup, Simulation, force::force_row},
 };
 
 /// A column of the table. Units: `1` is a plain number or a count, `β R/1000` that of `--gravity` and `--force`.

@@ -2,9 +2,11 @@
 
 use maille::{
     error::InvalidInput,
-    limit::energy::EnergyOptions,
     model::Model,
-    simulate::{Setup, elements_at, force::Grip},
+    relaxation::{
+        limit::EnergyOptions,
+        simulate::{Setup, elements_at, force::Grip},
+    },
 };
 use maille_geometry::Vec3;
 use serde::{Deserialize, Serialize};
@@ -17,7 +19,7 @@ pub struct SheetPlan {
     pub fix: Vec<String>,
     /// Where they are pulled.
     pub pull: Vec<PulledPlace>,
-    /// Weight of every element, in [`maille::simulate::WEIGHT_UNIT`].
+    /// Weight of every element, in [`maille::relaxation::simulate::WEIGHT_UNIT`].
     pub gravity: Option<[f64; 3]>,
     /// Where else forces act.
     pub force: Vec<LoadedPlace>,
@@ -49,7 +51,7 @@ pub struct PulledPlace {
     pub way: Vec<[f64; 3]>,
 }
 
-/// A place and the force on each of its elements, in [`maille::simulate::WEIGHT_UNIT`].
+/// A place and the force on each of its elements, in [`maille::relaxation::simulate::WEIGHT_UNIT`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LoadedPlace {
     /// Its name.
@@ -63,7 +65,7 @@ fn usual_alpha() -> f64 {
 }
 
 fn usual_tau() -> f64 {
-    maille::simulate::TAU
+    maille::relaxation::simulate::TAU
 }
 
 fn elements_of(model: &Model, field: &str, place: &str) -> Result<Vec<usize>, InvalidInput> {

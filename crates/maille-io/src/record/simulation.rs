@@ -14,7 +14,7 @@ use maille::{
     design::Design,
     model::Model,
     record::FrameRecord,
-    simulate::{End, Simulation},
+    relaxation::simulate::{End, Simulation},
 };
 use serde::{Deserialize, Serialize};
 use std::{fs, io::Write, path::Path};

@@ -2,11 +2,11 @@
 
 use crate::plot::{Layout, PlotError, PolarPlot, Quantity, parameter_words, polar_svg, svg_to_png};
 use crate::record::{Counters, Record, RecordError, RecordFolder, RunRecord, input_hash};
-use maille::characterize::{CellChoice, Finished, Method, Task, chains, characterize, tasks};
 use maille::design::Design;
 use maille::lattice::Cell;
 use maille::model::Model;
 use maille::record::{LimitRow, StateRecord};
+use maille::survey::{CellChoice, Finished, Method, Task, chains, characterize, tasks};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;

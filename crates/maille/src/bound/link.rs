@@ -31,12 +31,12 @@
 
 use super::{
     BindingChain, Bound, ChainBound, axes,
-    cone::{Cone, ConeProgram, eigenvalues, pack},
     tie::{self, Tie, TieKind},
 };
 use crate::{
     lattice::{Across, Shift},
     model::Model,
+    solver::cone::{Cone, ConeProgram, eigenvalues, pack},
 };
 use maille_geometry::Vec3;
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix4, Vector2};

@@ -8,10 +8,8 @@
 //!
 //! A good solution has r ≈ 0; what rounding leaves of it is charged with the largest |p_m| that the chains allow.
 
-use super::{
-    ChainBound,
-    cone::{Cone, ConeProgram},
-};
+use super::ChainBound;
+use crate::solver::cone::{Cone, ConeProgram};
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
 /// What the chains say of the largest p₀.

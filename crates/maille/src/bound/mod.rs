@@ -20,7 +20,6 @@
 //! satisfies the inequalities of the primitive cell: what is proved for the primitive cell holds for every cell.
 
 mod chain;
-pub mod cone;
 mod image;
 mod link;
 mod metric;

@@ -2,12 +2,12 @@
 #![allow(dead_code, reason = "each test file uses its part")]
 
 use maille::{
-    characterize::{Finished, Method, characterize, tasks},
     design::Design,
     lattice::Cell,
-    limit::ExactOptions,
     model::Model,
+    search::ExactOptions,
     state::State,
+    survey::{Finished, Method, characterize, tasks},
 };
 use maille_geometry::Vec3;
 use rand::{RngExt, SeedableRng};

@@ -1,0 +1,178 @@
+//! Extremes of a weave that are no strains: the thickest wire with which it exists, and the state with the largest clearance.
+//!
+//! The program of a limit with another parameter p in place of l1. All rings must keep the core distance
+//!
+//! - thickest wire: (1 + p)(r_a + r_b), so that the minor radii (1 + p) r are as large as can be;
+//! - largest clearance: r_a + r_b + p, so that the smallest gap p is as large as can be.
+//!
+//! Over all poses, and over the lattice where it is free: a1 along its direction, a2 in the plane (a common turn changes
+//! nothing). Links are kept as in a limit, and the certificate is the same. No bound is known that proves such a state
+//! the best of all, so the most that is claimed is `local`, with the number of starts and of distinct values they led to.
+
+use super::{
+    local::LocalSolution,
+    multistart::{Entered, Multistart, Start, Target, perturbed_starts, verdict},
+    options::THIN_WIRE,
+};
+use crate::{
+    answer::Answer,
+    design::Design,
+    model::Model,
+    program::{LatticeFamily, Parameter},
+    record::Status,
+    state::State,
+    topology,
+};
+use maille_geometry::Vec3;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// What is as large as can be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extreme {
+    /// All minor radii, in the proportions of the design.
+    ThickestWire,
+    /// The smallest gap between the tori of two rings.
+    LargestClearance,
+}
+
+/// How the search goes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ExtremeOptions {
+    /// Whether the lattice may change.
+    pub lattice_free: bool,
+    /// Starts: the design's state, then perturbed ones.
+    pub starts: usize,
+    /// Seed of the perturbations.
+    pub seed: u64,
+}
+
+impl Default for ExtremeOptions {
+    fn default() -> Self {
+        ExtremeOptions { lattice_free: true, starts: 8, seed: 1 }
+    }
+}
+
+/// A ring's size in the design's unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Size {
+    /// R.
+    pub major_radius: f64,
+    /// r.
+    pub minor_radius: f64,
+}
+
+impl Size {
+    /// Makers' aspect ratio: inner diameter / wire diameter.
+    pub fn aspect_ratio(&self) -> f64 {
+        (self.major_radius - self.minor_radius) / self.minor_radius
+    }
+}
+
+/// A saved design is thinner by this share: what its rounding could make overlap.
+const SPARED: f64 = 1e-9;
+
+impl Extreme {
+    /// Different sizes of rings with the wire that was found; NaN where none was.
+    pub fn sizes(self, answer: &Answer, model: &Model) -> Vec<Size> {
+        let factor = if self == Extreme::ThickestWire { answer.value.unwrap_or(f64::NAN) } else { 1.0 };
+        let mut out: Vec<Size> = Vec::new();
+        for ring in &model.rings {
+            let [major_radius, minor_radius] = [ring.major_radius, ring.minor_radius * factor].map(|x| x * model.unit);
+            if !out.iter().any(|s| (s.major_radius, s.minor_radius) == (major_radius, minor_radius)) {
+                out.push(Size { major_radius, minor_radius });
+            }
+        }
+        out
+    }
+
+    /// The largest clearance, in the design's unit; `None` where the wire was sought.
+    pub fn clearance(self, answer: &Answer, model: &Model) -> Option<f64> {
+        answer.value.filter(|_| self == Extreme::LargestClearance).map(|gap| gap * model.unit)
+    }
+
+    /// The state of the answer as a design.
+    pub fn design(self, answer: &Answer, design: &Design, model: &Model) -> Design {
+        let mut out = answer.state.design(design, model);
+        let (words, factor) = match self {
+            Extreme::ThickestWire => ("tightest", answer.value.unwrap_or(1.0) * (1.0 - SPARED)),
+            Extreme::LargestClearance => ("roomiest", 1.0),
+        };
+        out.name = format!("{} {words}", out.name);
+        out.minor_radius = out.minor_radius.map(|r| r * factor);
+        let rings = out.elements.iter_mut().flat_map(|element| &mut element.rings);
+        rings.for_each(|ring| ring.minor_radius = ring.minor_radius.map(|r| r * factor));
+        out
+    }
+}
+
+/// An extreme, with the lattice free or held.
+pub(super) struct Sought {
+    pub what: Extreme,
+    pub lattice_free: bool,
+}
+
+impl Target for Sought {
+    /// p first, then the lattice where it is free.
+    fn family(&self, model: &Model) -> LatticeFamily {
+        let base = [model.start.a1, model.start.a2];
+        let goal = match self.what {
+            Extreme::ThickestWire => Parameter { thicken: 1.0, weight: 1.0, ..Parameter::default() },
+            Extreme::LargestClearance => Parameter { widen: 1.0, weight: 1.0, ..Parameter::default() },
+        };
+        let mut parameters = vec![goal];
+        if self.lattice_free {
+            let rates = [[base[0].normalize(), Vec3::zeros()], [Vec3::zeros(), Vec3::x()], [Vec3::zeros(), Vec3::y()]];
+            parameters.extend(rates.map(|rate| Parameter { rate, ..Parameter::default() }));
+        }
+        LatticeFamily { base, parameters, metric: None }
+    }
+
+    /// With thin wire, or with a p below every gap.
+    fn enter(&self, model: &Model, start: Start, _: &AtomicBool) -> Entered {
+        let p = self.first_parameters(model, &start.state);
+        Entered { at: Some((start.state, p)), iterations: 0 }
+    }
+
+    fn start(&self, solution: &LocalSolution) -> Start {
+        Start::written(solution.state.clone())
+    }
+}
+
+impl Sought {
+    /// Parameters at a start.
+    pub fn first_parameters(&self, model: &Model, state: &State) -> Vec<f64> {
+        let goal = match self.what {
+            Extreme::ThickestWire => THIN_WIRE - 1.0,
+            Extreme::LargestClearance => topology::smallest_gap(model, state).map_or(0.0, |(gap, _)| gap.min(0.0)),
+        };
+        let lattice = if self.lattice_free { 3 } else { 0 };
+        std::iter::once(goal).chain(std::iter::repeat_n(0.0, lattice)).collect()
+    }
+}
+
+/// Searches for an extreme of `model` on the current thread pool. The result does not depend on the number of threads.
+///
+/// The value is the factor of the minor radii, or the clearance in reference radii. The status is `local` with a complete
+/// certificate, else `uncertified`; `not-converged` where no start led to a state without overlap.
+pub fn extreme(model: &Model, what: Extreme, options: &ExtremeOptions, cancel: &AtomicBool) -> Answer {
+    let target = Sought { what, lattice_free: options.lattice_free };
+    let search = Multistart { target: &target, upper_bound: f64::INFINITY, seed: options.seed, cancel };
+    let straight = std::iter::once(Start::written(model.start.clone()));
+    let found = search.run(model, straight.chain(perturbed_starts(model, options.seed, 1..options.starts)).collect());
+    let interrupted = cancel.load(Ordering::Relaxed);
+    let counted = |answer: Answer| Answer {
+        n_starts: Some(found.runs),
+        n_distinct: Some(found.distinct.len() as u64),
+        runs: found.runs,
+        iterations: found.iterations,
+        ..answer
+    };
+    let Some(best) = found.best else {
+        let status = if interrupted { Status::Interrupted } else { Status::NotConverged };
+        return counted(Answer { links_ok: Some(false), ..Answer::new(model, status) });
+    };
+    let status = if interrupted { Status::Interrupted } else { verdict(&best, f64::INFINITY) };
+    let value = Some(if what == Extreme::ThickestWire { 1.0 + best.value() } else { best.value() });
+    let gradient = best.state.deformation_gradient(model);
+    counted(Answer { value, gradient, ..Answer::new(model, status) }).with_solution(model, best)
+}

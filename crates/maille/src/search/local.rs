@@ -1,0 +1,173 @@
+//! Local maximisation from one start: maximise, polish, certify, and begin again from a perturbed state where no certificate
+//! holds.
+
+use super::{
+    multistart::perturbed,
+    options::{FEASIBLE, RESTART_SIZE, ROUNDS},
+};
+use crate::{
+    model::Model,
+    program::{
+        Contact, Posed, SheetProgram,
+        flat::{COAXIAL, SHIFTED},
+    },
+    solver::{
+        certificate::{Certificate, measure_curvature, measure_gaps},
+        kkt::polish,
+        rows::{Derivatives, Multiplier, violation},
+        sqp::{Program, SqpOptions, maximize},
+    },
+    state::State,
+    topology,
+};
+use rand_chacha::ChaCha8Rng;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// What one start led to.
+pub(super) struct LocalSolution {
+    pub state: State,
+    /// Parameters; the first is what was maximised.
+    pub p: Vec<f64>,
+    pub certificate: Certificate,
+    /// Contacts that carry, force per unit of the first parameter.
+    pub contacts: Vec<Contact>,
+    pub links_ok: bool,
+    /// Whether the certificate holds and the links are those of the start.
+    pub certified: bool,
+}
+
+impl LocalSolution {
+    /// What was maximised.
+    pub fn value(&self) -> f64 {
+        self.p[0]
+    }
+
+    fn of(solve: Solve) -> Self {
+        let Solve { x: Posed { state, p, .. }, certificate, contacts, links_ok, certified } = solve;
+        LocalSolution { state, p, certificate, contacts, links_ok, certified }
+    }
+}
+
+/// The end of a round.
+struct Solve {
+    x: Posed,
+    certificate: Certificate,
+    contacts: Vec<Contact>,
+    links_ok: bool,
+    certified: bool,
+}
+
+/// From a start to a certified state, or to the best feasible one; with the quadratic programs that it took. Where no certificate
+/// holds, the search begins again from a perturbed state, up to `restarts` times.
+pub(super) fn local_maximize(
+    model: &Model,
+    program: &mut SheetProgram<'_>,
+    start: Posed,
+    restarts: usize,
+    rng: &mut ChaCha8Rng,
+    cancel: &AtomicBool,
+) -> (Option<LocalSolution>, u64) {
+    let mut rounds = Rounds { model, cancel, iterations: 0, last_resort: None };
+    let (mut x, mut best): (Posed, Option<Solve>) = (start, None);
+    for restart in 0..=restarts {
+        if restart > 0 {
+            let size = RESTART_SIZE * restart as f64;
+            program.forget_released_pairs();
+            x = program.posed(perturbed(model, &x.state, size, rng), x.p.clone());
+        }
+        let (end, solve) = rounds.round(program, x);
+        if solve.certified {
+            best = Some(solve);
+            break;
+        }
+        x = end;
+        let better = best.as_ref().is_none_or(|b| program.value(&solve.x) > program.value(&b.x));
+        if better && feasible(program, &solve.x) {
+            best = Some(solve);
+        }
+        if cancel.load(Ordering::Relaxed) {
+            break;
+        }
+    }
+    if best.as_ref().is_none_or(|best| !best.certified) {
+        best = rounds.last_resort.take().or(best);
+    }
+    (best.map(LocalSolution::of), rounds.iterations)
+}
+
+struct Rounds<'a> {
+    model: &'a Model,
+    cancel: &'a AtomicBool,
+    iterations: u64,
+    /// Certified at the cost of a hair of the value, for want of better.
+    last_resort: Option<Solve>,
+}
+
+impl Rounds<'_> {
+    /// Keeps a last resort that has the links of the start, measured by true gaps; its pairs must not be shifted, see `round`.
+    fn keep(&mut self, program: &mut SheetProgram<'_>, found: Option<(Posed, Certificate)>) {
+        let Some((x, mut certificate)) = found.filter(|_| self.last_resort.is_none()) else { return };
+        if !program.shifted(&x, &certificate.multipliers, SHIFTED).is_empty() {
+            return;
+        }
+        measure_gaps(program, &x, &mut certificate);
+        measure_curvature(program, &x, &mut certificate);
+        let links_ok = topology::links_kept(self.model, &x.state);
+        if certificate.holds() && links_ok {
+            let contacts = program.contacts(&x, &certificate.multipliers);
+            self.last_resort = Some(Solve { x, certificate, contacts, links_ok, certified: true });
+        }
+    }
+
+    /// Maximises and polishes in turns, until a certificate holds or nothing more is promised.
+    fn round(&mut self, program: &mut SheetProgram<'_>, start: Posed) -> (Posed, Solve) {
+        let mut x = start;
+        let mut known: Vec<Multiplier> = Vec::new();
+        let (mut pause_at, mut first_radius) = (0.1, 0.1);
+        let mut last = None;
+        for round in 0..ROUNDS {
+            let options = SqpOptions { pause_at, first_radius, ..SqpOptions::default() };
+            let end = maximize(program, x, known, &options, self.cancel);
+            self.iterations += end.iterations as u64;
+            let ((polished, mut certificate), last_resort) = polish(program, &end);
+            self.keep(program, last_resort);
+            let locked = certificate.holds();
+            let mut carrying = certificate.multipliers.clone();
+            let shifted = locked && program.release_flat_pairs(&polished, &mut carrying, SHIFTED);
+            if !shifted {
+                measure_gaps(program, &polished, &mut certificate);
+            }
+            let links_ok = topology::links_kept(self.model, &polished.state);
+            let certified = !shifted && certificate.holds() && links_ok;
+            let contacts = program.contacts(&polished, &certificate.multipliers);
+            // Where heights of flat pairs lock what their gaps do not: on from there by gaps.
+            let on = shifted || locked && !certified && program.release_flat_pairs(&polished, &mut carrying, COAXIAL);
+            (x, known) = if on { (polished.clone(), carrying) } else { (end.point, end.multipliers) };
+            last = Some(Solve { x: polished, certificate, contacts, links_ok, certified });
+            if certified {
+                break;
+            }
+            if on {
+                (pause_at, first_radius) = (1e-2, 0.03);
+                continue;
+            }
+            if end.settled && program.release_flat_pairs(&x, &mut known, COAXIAL) || program.take_flat_pairs(&x) {
+                known.clear();
+                (pause_at, first_radius) = (1e-2, 0.03);
+                continue;
+            }
+            if end.settled && round > 0 {
+                break;
+            }
+            pause_at *= 0.2;
+            first_radius = (10.0 * pause_at).clamp(1e-3, 0.1);
+        }
+        let mut solve: Solve = last.unwrap_or_else(|| unreachable!("at least one round"));
+        measure_curvature(program, &solve.x, &mut solve.certificate);
+        (x, solve)
+    }
+}
+
+fn feasible(program: &SheetProgram<'_>, x: &Posed) -> bool {
+    violation(&program.rows(x, 0.0, Derivatives::None)) < FEASIBLE
+}

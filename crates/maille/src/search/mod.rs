@@ -1,0 +1,17 @@
+//! The exact method: answers by local maximisation from many starts, certified and compared with proven bounds.
+//!
+//! `local` is one maximisation, `multistart` the search from many starts and in larger cells, and the other files say what is
+//! maximised and from where: `stretch` (with `stretch_lattices`, and `unlinked` where no chain of links binds), `strain`, `extreme`
+//! (wire and clearance). `overlap` frees a start that overlaps. Every tolerance is in `options`.
+
+pub mod extreme;
+mod local;
+mod multistart;
+mod options;
+mod overlap;
+pub mod strain;
+pub mod stretch;
+mod stretch_lattices;
+mod unlinked;
+
+pub use options::{ExactOptions, ExactParameters};

@@ -1,0 +1,328 @@
+//! The one search behind every exact answer: local maximisation from many starts, in one cell and then in larger ones.
+//!
+//! What is maximised is the first parameter of a family of lattices, see [`Target`]. Starts are solved until the proven upper
+//! bound is attained; where none is known, all of them, side by side. A result depends on the starts and the seed alone,
+//! not on the number of threads.
+
+use super::{
+    local::{LocalSolution, local_maximize},
+    options::{
+        ATTAINED, BOUND_RETRIES, BOUND_RETRY_GAP, BOUND_RETRY_SIZE, CELL_PERTURBATION, LARGER_CELL_RESTARTS,
+        OWN_IMAGE_FORCE, PERTURBATIONS, RESTARTS, SAME_VALUE,
+    },
+};
+use crate::{
+    answer::CellTrend,
+    lattice::Cell,
+    model::Model,
+    program::{LatticeFamily, SheetProgram},
+    record::Status,
+    state::{Pose, State},
+    topology::crossing::{Motion, StepBound},
+};
+use maille_geometry::Vec3;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+use std::{
+    ops::Range,
+    sync::atomic::{AtomicBool, Ordering},
+};
+
+/// A state from which a search begins, with the strains of its lattice where it is stretched along a direction.
+#[derive(Clone)]
+pub(super) struct Start {
+    pub state: State,
+    pub l1: f64,
+    pub l2: f64,
+    pub shear: f64,
+}
+
+impl Start {
+    /// A state with the written lattice.
+    pub fn written(state: State) -> Self {
+        Start { state, l1: 0.0, l2: 0.0, shear: 0.0 }
+    }
+}
+
+/// A start that was brought to what is held.
+pub(super) struct Entered {
+    /// The state and its parameters; `None` where what is held was not reached.
+    pub at: Option<(State, Vec<f64>)>,
+    /// Quadratic programs.
+    pub iterations: u64,
+}
+
+/// What is maximised: the first parameter of a family of lattices.
+pub(super) trait Target: Sync {
+    /// The family in one cell.
+    fn family(&self, model: &Model) -> LatticeFamily;
+
+    /// Brings a start to what is held.
+    fn enter(&self, model: &Model, start: Start, cancel: &AtomicBool) -> Entered;
+
+    /// A solution as a start.
+    fn start(&self, solution: &LocalSolution) -> Start;
+}
+
+/// A search for the largest value of one target.
+pub(super) struct Multistart<'a, T> {
+    pub target: &'a T,
+    /// A proven upper bound; infinite where none is known.
+    pub upper_bound: f64,
+    pub seed: u64,
+    pub cancel: &'a AtomicBool,
+}
+
+/// What the solves of one cell found.
+#[derive(Default)]
+pub(super) struct SearchResult {
+    pub best: Option<LocalSolution>,
+    /// Value of the first start.
+    pub first: Option<f64>,
+    /// Distinct certified values.
+    pub distinct: Vec<f64>,
+    /// Quadratic programs.
+    pub iterations: u64,
+    /// Local maximisations.
+    pub runs: u64,
+}
+
+/// What the cells found together.
+pub(super) struct CellSearch {
+    /// The best of all cells, with the counts of all.
+    pub result: SearchResult,
+    /// Its cell.
+    pub cell: usize,
+    /// What each cell found.
+    pub by_cell: Vec<CellTrend>,
+    /// The best of each cell as a start.
+    pub starts: Vec<Option<Start>>,
+}
+
+/// Which larger cells are searched, and from where.
+pub(super) struct LargerCells<'a> {
+    /// All of them, each from as many starts of its own; otherwise only while the solution presses an element on its own image.
+    pub every: bool,
+    /// Starts of a larger cell of its own.
+    pub own_starts: usize,
+    /// Whether larger cells are tried where the first one has no state.
+    pub where_none: bool,
+    /// The state that is repeated over a larger cell where the first one has none.
+    pub fallback: Option<Start>,
+    /// States of the larger cells at a neighbouring question.
+    pub neighbours: &'a [Option<Start>],
+}
+
+impl<T: Target> Multistart<'_, T> {
+    /// Solves `starts` in one cell and keeps the best: certified first, then by value; of equals the first.
+    pub fn run(&self, model: &Model, starts: Vec<Start>) -> SearchResult {
+        if self.upper_bound.is_finite() {
+            let mut result = SearchResult::default();
+            for start in starts {
+                if self.cancelled() {
+                    break;
+                }
+                let found = self.retried(model, start, result.runs);
+                result.take(found);
+                if result.attains(self.upper_bound) {
+                    break;
+                }
+            }
+            return result;
+        }
+        let numbered: Vec<(u64, Start)> = (0..).zip(starts).collect();
+        let solve = |(k, start): (u64, Start)| (!self.cancelled()).then(|| self.solve(model, start, k));
+        let solved: Vec<Option<SearchResult>> = numbered.into_par_iter().with_max_len(1).map(solve).collect();
+        let mut result = SearchResult::default();
+        solved.into_iter().flatten().for_each(|found| result.take(found));
+        result
+    }
+
+    /// One start. A certified solution just short of the upper bound is perturbed and solved again: in cells of many elements
+    /// contacts that hardly carry can hold it there.
+    fn retried(&self, model: &Model, start: Start, before: u64) -> SearchResult {
+        let mut result = self.solve(model, start, before);
+        for retry in 1..=BOUND_RETRIES {
+            let Some(solution) = result.best.as_ref().filter(|best| best.certified) else { break };
+            let short = self.upper_bound - solution.value();
+            if !(ATTAINED..BOUND_RETRY_GAP).contains(&short) || self.cancelled() {
+                break;
+            }
+            let from = self.target.start(solution);
+            let state = perturbed(model, &from.state, BOUND_RETRY_SIZE, &mut rng(self.seed.wrapping_add(retry)));
+            let again = self.solve(model, Start { state, ..from }, before + result.runs);
+            let better = again.best.filter(|new| (new.certified, new.value()) > (true, solution.value()));
+            (result.iterations, result.runs) = (result.iterations + again.iterations, result.runs + again.runs);
+            if let Some(better) = better {
+                result.distinct = vec![better.value()];
+                result.best = Some(better);
+            }
+        }
+        result
+    }
+
+    /// One local maximisation, the one after `before` others.
+    fn solve(&self, model: &Model, start: Start, before: u64) -> SearchResult {
+        let Entered { at, iterations } = self.target.enter(model, start, self.cancel);
+        let Some((state, p)) = at else { return SearchResult { iterations, runs: 1, ..SearchResult::default() } };
+        let family = self.target.family(model);
+        let mut program = SheetProgram::new(model, &family);
+        let x = program.posed(state, p);
+        let restarts = if model.cell.copies() > 1 { LARGER_CELL_RESTARTS } else { RESTARTS };
+        let mut stream = rng(self.seed ^ (before + 1));
+        let (best, more) = local_maximize(model, &mut program, x, restarts, &mut stream, self.cancel);
+        let distinct = best.iter().filter(|best| best.certified).map(LocalSolution::value).collect();
+        let first = best.as_ref().map(LocalSolution::value);
+        SearchResult { best, first, distinct, iterations: iterations + more, runs: 1 }
+    }
+
+    /// Goes on from the first of `models` to larger ones, see [`LargerCells`]. `result` is what the first cell found.
+    pub fn larger_cells(&self, models: &[Model], result: SearchResult, rule: &LargerCells<'_>) -> CellSearch {
+        let mut by_cell = vec![result.by_cell(models[0].cell)];
+        let mut starts: Vec<Option<Start>> = vec![None; models.len()];
+        starts[0] = result.best.as_ref().map(|best| self.target.start(best));
+        let smallest = starts[0].clone().or_else(|| rule.fallback.clone());
+        let presses = |best: &LocalSolution| own_image_force(&models[0], &best.contacts) > OWN_IMAGE_FORCE;
+        let asks = rule.every || result.best.as_ref().map_or(rule.where_none, presses);
+        let (mut result, mut cell) = (result, 0);
+        for larger in 1..models.len() {
+            // The last cell is for values that have grown.
+            let idle = !rule.every && larger + 1 == models.len() && larger > 1 && cell == 0 && result.best.is_some();
+            if !asks || idle || result.attains(self.upper_bound) || self.cancelled() {
+                break;
+            }
+            let model = &models[larger];
+            let repeated = smallest.iter().map(|from| {
+                let mut stream = rng(self.seed.wrapping_add(larger as u64));
+                let state = perturbed(model, &tiled(model, &from.state), CELL_PERTURBATION, &mut stream);
+                Start { state, ..from.clone() }
+            });
+            let neighbour = rule.neighbours.get(larger).into_iter().flatten().cloned();
+            // Then starts of its own: the smaller cell's answer can hide what they find.
+            let own = perturbed_starts(model, self.seed, 0..rule.own_starts);
+            let found = self.run(model, repeated.chain(neighbour).chain(own).collect());
+            by_cell.push(found.by_cell(model.cell));
+            starts[larger] = found.best.as_ref().map(|best| self.target.start(best));
+            if found.improves_on(&result) {
+                cell = larger;
+            }
+            result.merge(found);
+        }
+        CellSearch { result, cell, by_cell, starts }
+    }
+
+    fn cancelled(&self) -> bool {
+        self.cancel.load(Ordering::Relaxed)
+    }
+}
+
+impl SearchResult {
+    /// What it found, as that of one cell.
+    fn by_cell(&self, cell: Cell) -> CellTrend {
+        let value = self.best.as_ref().filter(|best| best.certified).map(LocalSolution::value);
+        CellTrend { cell, value, n_starts: self.runs, n_distinct: self.distinct.len() as u64 }
+    }
+
+    /// Whether it has a better solution than `other`: certified first, and more than the same.
+    pub fn improves_on(&self, other: &SearchResult) -> bool {
+        match (&self.best, &other.best) {
+            (Some(new), Some(old)) => (new.certified, new.value()) > (old.certified, old.value() + SAME_VALUE),
+            (new, _) => new.is_some(),
+        }
+    }
+
+    /// Whether the best certified value is the upper bound.
+    pub fn attains(&self, upper_bound: f64) -> bool {
+        self.best.as_ref().is_some_and(|best| best.certified && (best.value() - upper_bound).abs() <= ATTAINED)
+    }
+
+    /// Adds another start of the same cell: the better solution stays, of equals the one that was there.
+    fn take(&mut self, found: SearchResult) {
+        let better = match (&found.best, &self.best) {
+            (Some(new), Some(old)) => (new.certified, new.value()) > (old.certified, old.value()),
+            (new, _) => new.is_some(),
+        };
+        if self.runs == 0 {
+            self.first = found.first;
+        }
+        self.count(&found);
+        if better {
+            self.best = found.best;
+        }
+    }
+
+    /// Adds another search: its solution is taken where it is better by more than what makes two the same.
+    pub fn merge(&mut self, found: SearchResult) {
+        let better = found.improves_on(self);
+        self.count(&found);
+        if better {
+            self.best = found.best;
+        }
+    }
+
+    fn count(&mut self, found: &SearchResult) {
+        (self.runs, self.iterations) = (self.runs + found.runs, self.iterations + found.iterations);
+        for &value in &found.distinct {
+            if !self.distinct.iter().any(|other| (other - value).abs() < SAME_VALUE) {
+                self.distinct.push(value);
+            }
+        }
+    }
+}
+
+/// What is claimed of a solution: `global` where it attains its proven upper bound, `local` where it is certified. A value above
+/// its bound is `uncertified`, as one of the two must be wrong.
+pub(super) fn verdict(solution: &LocalSolution, upper_bound: f64) -> Status {
+    let above = solution.value() - upper_bound;
+    match (solution.certified && above <= ATTAINED, above.abs() <= ATTAINED) {
+        (true, true) => Status::Global,
+        (true, false) => Status::Local,
+        (false, _) => Status::Uncertified,
+    }
+}
+
+/// The random numbers of one start, kept apart from those of all others by its seed.
+pub(super) fn rng(seed: u64) -> ChaCha8Rng {
+    ChaCha8Rng::seed_from_u64(seed)
+}
+
+/// Starts of a cell: the design's state, every element moved and turned at random, but no circle across another.
+pub(super) fn perturbed_starts(model: &Model, seed: u64, numbers: Range<usize>) -> impl Iterator<Item = Start> {
+    numbers.map(move |k| {
+        let mut stream = rng(seed.wrapping_mul(0x9e37_79b9).wrapping_add(k as u64));
+        Start::written(perturbed(model, &model.start, PERTURBATIONS[k % PERTURBATIONS.len()], &mut stream))
+    })
+}
+
+/// `state` with its elements moved and turned by up to `size`, in R and radians; less where circles could meet.
+pub(super) fn perturbed(model: &Model, state: &State, size: f64, rng: &mut ChaCha8Rng) -> State {
+    let mut vector = || Vec3::from_fn(|_, _| size * rng.random_range(-1.0..1.0));
+    let elements = state.poses.iter().map(|_| (vector(), vector())).collect();
+    let motion = Motion { elements, lattice: [Vec3::zeros(); 2], carried: false };
+    let fraction = StepBound::new(model, state).largest_fraction(model, &motion, f64::INFINITY);
+    let moved = state
+        .poses
+        .iter()
+        .zip(&motion.elements)
+        .map(|(p, (shift, turn))| p.moved(&(shift * fraction), &(turn * fraction)));
+    State { poses: moved.collect(), ..state.clone() }
+}
+
+/// Largest force between an element and its own image.
+pub(super) fn own_image_force(model: &Model, contacts: &[crate::program::Contact]) -> f64 {
+    let element = |ring: usize| model.rings[ring].element;
+    let own = contacts.iter().filter(|c| element(c.pair.ring_a) == element(c.pair.ring_b));
+    own.map(|c| c.force).fold(0.0, f64::max)
+}
+
+/// A primitive cell's state repeated over the cell of `model`.
+pub(super) fn tiled(model: &Model, state: &State) -> State {
+    let copies = model.cell.cosets();
+    let poses = copies.iter().flat_map(|&coset| {
+        let shift = state.translation(coset);
+        state.poses.iter().map(move |pose| Pose { position: pose.position + shift, ..*pose })
+    });
+    let [a1, a2] = model.cell.vectors(state.a1, state.a2);
+    State { poses: poses.collect(), a1, a2 }
+}

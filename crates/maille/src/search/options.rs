@@ -1,0 +1,162 @@
+//! What a search takes from its user, and every tolerance that it takes by itself. All of them go into the record.
+//!
+//! Lengths are in reference radii R, angles in radians, values in the unit of what is sought (strain, or R for a clearance).
+
+use crate::{
+    lattice::Across,
+    solver::certificate::{GAP_TOLERANCE, RESIDUAL_TOLERANCE},
+};
+use serde::{Deserialize, Serialize};
+
+/// What a user chooses of the exact method.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ExactOptions {
+    /// Starts of a limit whose bound is not attained: the neighbouring limit's state, then perturbed design states.
+    pub starts: usize,
+    /// Seed of the perturbations.
+    pub seed: u64,
+    /// Whether width and shear are held or left to the sheet.
+    #[serde(default)]
+    pub across: Across,
+    /// Whether l1 is made as small as can be, not as large.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub compression: bool,
+}
+
+impl Default for ExactOptions {
+    fn default() -> Self {
+        ExactOptions { starts: 4, seed: 1, across: Across::HELD, compression: false }
+    }
+}
+
+/// Values that differ by less are the same.
+pub(super) const SAME_VALUE: f64 = 1e-7;
+/// A bound is attained within this.
+pub(super) const ATTAINED: f64 = 1e-9;
+/// A state is feasible if no gap is below minus this.
+pub(super) const FEASIBLE: f64 = 1e-9;
+
+/// Sizes of the perturbed starts, taken in turn, in R and radians.
+pub(super) const PERTURBATIONS: [f64; 6] = [0.03, 0.1, 0.3, 0.05, 0.2, 0.02];
+/// Size of the perturbation of a start that goes straight from the design's state: it only breaks symmetries.
+pub(super) const STRAIGHT: f64 = 0.003;
+/// Further starts where none reached what is held.
+pub(super) const MORE_STARTS: usize = 6;
+
+/// Rounds of maximising and polishing of one local maximisation.
+pub(super) const ROUNDS: usize = 10;
+/// A local maximisation without a certificate begins again from a perturbed state so often.
+pub(super) const RESTARTS: usize = 6;
+/// The same in larger cells, where it is costly.
+pub(super) const LARGER_CELL_RESTARTS: usize = 1;
+/// Size of the first of these perturbations; the next ones are multiples.
+pub(super) const RESTART_SIZE: f64 = 0.003;
+
+/// A certified value is short of its bound by less than this: it is perturbed and solved again.
+pub(super) const BOUND_RETRY_GAP: f64 = 1e-6;
+/// So many times at most.
+pub(super) const BOUND_RETRIES: u64 = 3;
+/// Size of that perturbation.
+pub(super) const BOUND_RETRY_SIZE: f64 = 0.003;
+
+/// A force between an element and its own image above this (per unit of what is maximised) calls for a larger cell.
+pub(super) const OWN_IMAGE_FORCE: f64 = 1e-6;
+/// Perturbation of the smaller cell's state, repeated over a larger cell.
+pub(super) const CELL_PERTURBATION: f64 = 0.1;
+/// Starts of a larger cell of its own, at most: its solves are costly.
+pub(super) const CELL_STARTS: usize = 3;
+
+/// What the value gives way, relative to 1 + |value|, while the ranges of what is free are found.
+pub(super) const FREE_SLACK: f64 = 1e-6;
+/// Solves for an end of such a range, each from where the last one paused.
+pub(super) const RANGE_ROUNDS: usize = 3;
+/// With l2 free: distance of the held l2 whose limits are starts.
+pub(super) const LATERAL_STEP: f64 = 0.125;
+/// As many of the largest of them are starts.
+pub(super) const LATERAL_STARTS: usize = 3;
+/// With l2 free: how often the limit with l2 held where it was found is asked for, at most.
+pub(super) const LATERAL_ROUNDS: usize = 3;
+
+/// Stages of a pull that no chain of links binds: each is twice as long as the one before, up to l1 = 128.
+pub(super) const UNLINKED_STAGES: i32 = 10;
+/// The first of them.
+pub(super) const UNLINKED_STAGE: f64 = 0.125;
+
+/// An overlap of the start below this is left to the search of a limit, which may begin with it.
+pub(super) const SLIGHT_OVERLAP: f64 = 1e-6;
+/// Sizes of the perturbations with which a start that overlaps is freed; the first is the start itself.
+pub(super) const FREEING_PERTURBATIONS: [f64; 4] = [0.0, 0.03, 0.1, 0.3];
+
+/// Minor radius with which the search for the thickest wire begins, as a share of the design's: thin, so that elements find
+/// their places.
+pub(super) const THIN_WIRE: f64 = 0.2;
+
+/// The options with everything that is fixed: what a record needs to repeat a run.
+#[derive(Clone, Debug, Serialize)]
+pub struct ExactParameters {
+    #[serde(flatten)]
+    options: ExactOptions,
+    gap_tolerance: f64,
+    residual_tolerance: f64,
+    feasible_within: f64,
+    bound_attained_within: f64,
+    same_value_within: f64,
+    perturbations: [f64; 6],
+    straight_perturbation: f64,
+    more_starts: usize,
+    rounds: usize,
+    restarts: usize,
+    larger_cell_restarts: usize,
+    restart_size: f64,
+    bound_retry_gap: f64,
+    bound_retries: u64,
+    bound_retry_size: f64,
+    own_image_force: f64,
+    cell_perturbation: f64,
+    cell_starts: usize,
+    free_slack: f64,
+    range_rounds: usize,
+    lateral_step: f64,
+    lateral_starts: usize,
+    lateral_rounds: usize,
+    unlinked_stage: f64,
+    unlinked_stages: i32,
+    slight_overlap: f64,
+    freeing_perturbations: [f64; 4],
+}
+
+impl ExactOptions {
+    /// All parameters and tolerances of a run.
+    pub fn parameters(&self) -> ExactParameters {
+        ExactParameters {
+            options: self.clone(),
+            gap_tolerance: GAP_TOLERANCE,
+            residual_tolerance: RESIDUAL_TOLERANCE,
+            feasible_within: FEASIBLE,
+            bound_attained_within: ATTAINED,
+            same_value_within: SAME_VALUE,
+            perturbations: PERTURBATIONS,
+            straight_perturbation: STRAIGHT,
+            more_starts: MORE_STARTS,
+            rounds: ROUNDS,
+            restarts: RESTARTS,
+            larger_cell_restarts: LARGER_CELL_RESTARTS,
+            restart_size: RESTART_SIZE,
+            bound_retry_gap: BOUND_RETRY_GAP,
+            bound_retries: BOUND_RETRIES,
+            bound_retry_size: BOUND_RETRY_SIZE,
+            own_image_force: OWN_IMAGE_FORCE,
+            cell_perturbation: CELL_PERTURBATION,
+            cell_starts: CELL_STARTS,
+            free_slack: FREE_SLACK,
+            range_rounds: RANGE_ROUNDS,
+            lateral_step: LATERAL_STEP,
+            lateral_starts: LATERAL_STARTS,
+            lateral_rounds: LATERAL_ROUNDS,
+            unlinked_stage: UNLINKED_STAGE,
+            unlinked_stages: UNLINKED_STAGES,
+            slight_overlap: SLIGHT_OVERLAP,
+            freeing_perturbations: FREEING_PERTURBATIONS,
+        }
+    }
+}

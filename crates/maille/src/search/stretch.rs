@@ -1,0 +1,410 @@
+//! Limits of stretches by the exact method: l1 is maximised subject to every gap ≥ 0, the result is certified, and compared with
+//! a proven bound.
+//!
+//! What a certificate claims: the state is feasible to rounding, its links are those of the start and were never
+//! crossed on the way, and no small motion raises l1, to second order. What it does not claim: that no distant state
+//! is better (only an attained bound proves that), nor that a path without overlap leads there from the start.
+//!
+//! **Compression.** The least l1 is the same program with −l1 maximised. Rings can fold in many ways, and a larger cell can fold
+//! where a smaller one cannot, so all cells are searched. No bound from below is known, and a still larger cell can fold further:
+//! such a limit is `local` at best.
+
+pub use super::options::ExactOptions;
+use super::{
+    local::LocalSolution,
+    multistart::{
+        Entered, LargerCells, Multistart, SearchResult, Start, Target, own_image_force, perturbed_starts, verdict,
+    },
+    options::{ATTAINED, CELL_STARTS, LATERAL_ROUNDS, LATERAL_STARTS, LATERAL_STEP, MORE_STARTS, SAME_VALUE},
+    overlap::{Overlapping, beyond_repair},
+    stretch_lattices::StretchLattices,
+};
+use crate::{
+    answer::{Answer, CellTrend},
+    bound::{Bound, ChainBound, ImageBound, LinkBound, NearImages, best_bound_across},
+    lattice::{Across, direction},
+    model::Model,
+    program::{LatticeFamily, SheetProgram},
+    record::Status,
+    solver::sqp::{SqpOptions, maximize},
+    state::State,
+    symmetry::{Image, Operation, between, operations, same_direction},
+    topology::{links_kept, smallest_gap},
+};
+use std::{
+    ops::Range,
+    sync::{
+        OnceLock,
+        atomic::{AtomicBool, Ordering},
+    },
+};
+
+/// Finds limits of one sheet by the exact method.
+pub struct ExactMethod<'a> {
+    pub(super) models: &'a [Model],
+    pub(super) options: ExactOptions,
+    pub(super) chain: ChainBound,
+    pub(super) link: LinkBound,
+    /// Found where a limit is not reached.
+    image: OnceLock<ImageBound>,
+    /// Symmetries of the design that keep the first cell.
+    operations: Vec<Operation>,
+    /// Where no search can begin.
+    overlapping: Option<Overlapping>,
+}
+
+/// The stretch whose limit is sought.
+#[derive(Clone, Copy)]
+pub(super) struct Stretch {
+    pub direction_deg: f64,
+    /// Where it is held.
+    pub l2: f64,
+    pub across: Across,
+    /// 1 where l1 is maximised, −1 where it is minimised.
+    pub sign: f64,
+}
+
+impl Stretch {
+    pub fn lattices(&self, model: &Model) -> StretchLattices {
+        StretchLattices::new(model, self.direction_deg, self.across, self.sign)
+    }
+}
+
+impl Target for Stretch {
+    fn family(&self, model: &Model) -> LatticeFamily {
+        self.lattices(model).pull(self.l2)
+    }
+
+    /// First l2 is brought to its value with l1 free.
+    fn enter(&self, model: &Model, at: Start, cancel: &AtomicBool) -> Entered {
+        let lattices = self.lattices(model);
+        if at.l2 == self.l2 || self.across.lateral_free {
+            let p = lattices.parameters(&at);
+            return Entered { at: Some((at.state, p)), iterations: 0 };
+        }
+        let pull = lattices.approach(&at, self.l2);
+        let program = SheetProgram::new(model, &pull);
+        let enough = (self.l2 - at.l2).abs() - 1e-9;
+        let start = program.posed(at.state, vec![at.l1, 0.0]);
+        let options = SqpOptions { enough, ..SqpOptions::default() };
+        let end = maximize(&program, start, Vec::new(), &options, cancel);
+        let reached = end.point.p[1] >= enough - 1e-9 && end.violation <= 1e-6;
+        let at = reached.then(|| {
+            let at = Start { l1: end.point.p[0], state: end.point.state, l2: self.l2, shear: at.shear };
+            let p = lattices.parameters(&at);
+            (at.state, p)
+        });
+        Entered { at, iterations: end.iterations as u64 }
+    }
+
+    fn start(&self, solution: &LocalSolution) -> Start {
+        let mut free = solution.p[1..].iter().copied();
+        let l2 = if self.across.lateral_free { free.next().unwrap_or(self.l2) } else { self.l2 };
+        let shear = free.next().unwrap_or(0.0);
+        Start { state: solution.state.clone(), l1: self.sign * solution.p[0], l2, shear }
+    }
+}
+
+/// The best of each cell, for the next l2.
+type Neighbours = Vec<Option<Start>>;
+
+impl<'a> ExactMethod<'a> {
+    /// Prepares the bounds. `models` are the same design compiled for cells of growing size: the first is solved, the
+    /// others where it asks for more (see [`Self::limits`]). After `cancel` limits come back as interrupted.
+    ///
+    /// # Panics
+    /// If there is no model.
+    pub fn new(models: &'a [Model], options: ExactOptions, cancel: &AtomicBool) -> Self {
+        let chain = ChainBound::new(&models[0]);
+        // A larger cell's program is convex and symmetric under the shifts of the design's own cell: the mean of a solution over
+        // them is one too, so that the own cell has the same bound.
+        let link = LinkBound::new(&models[0].primitive(), &chain);
+        let overlapping = beyond_repair(&models[0], options.seed, cancel);
+        let operations = operations(&models[0]);
+        ExactMethod { models, options, chain, link, image: OnceLock::new(), operations, overlapping }
+    }
+
+    /// The limits along one direction, in the order of `l2`. Solved outwards from l2 = 0, each from its neighbour's states.
+    ///
+    /// Where an element presses on its own image, or a lateral compression is not reached, and of every least l1, larger cells
+    /// are solved, too, from the smaller cell's state; the best limit counts, and the answer says which cell gave it.
+    /// `finished` gets each limit with its index in `l2`; after `cancel` the rest comes back as interrupted.
+    pub fn limits(&self, direction_deg: f64, l2: &[f64], cancel: &AtomicBool, finished: &mut dyn FnMut(usize, Answer)) {
+        let ExactOptions { across, compression, .. } = self.options;
+        let stretch = |l2: f64| Stretch { direction_deg, l2, across, sign: if compression { -1.0 } else { 1.0 } };
+        let mut order: Vec<usize> = (0..l2.len()).collect();
+        order.sort_by(|&a, &b| l2[a].abs().total_cmp(&l2[b].abs()).then(l2[a].total_cmp(&l2[b])));
+        let mut sides: [Neighbours; 2] = [vec![None; self.models.len()], vec![None; self.models.len()]];
+        if !compression && !l2.contains(&0.0) {
+            let (_, at_zero) = self.limit(&stretch(0.0), &sides[0], cancel);
+            sides = [at_zero.clone(), at_zero];
+        }
+        for k in order {
+            let (answer, found) = self.limit(&stretch(l2[k]), &sides[usize::from(l2[k] > 0.0)], cancel);
+            for (side, belongs) in sides.iter_mut().zip([l2[k] <= 0.0, l2[k] >= 0.0]) {
+                for (known, new) in side.iter_mut().zip(&found).filter(|(_, new)| belongs && new.is_some()) {
+                    known.clone_from(new);
+                }
+            }
+            finished(k, answer);
+        }
+    }
+
+    /// One limit; with the states of the cells at it, from which the next one goes on.
+    fn limit(&self, stretch: &Stretch, neighbours: &Neighbours, cancel: &AtomicBool) -> (Answer, Neighbours) {
+        let least = stretch.sign < 0.0;
+        let Stretch { direction_deg, l2, across, .. } = *stretch;
+        let none = || vec![None; self.models.len()];
+        let bound = best_bound_across(&self.chain, Some(&self.link), direction_deg, l2, across);
+        let unreachable = matches!(bound, Bound::L2Unreachable { .. });
+        // The bounds are of the largest l1; of the least one they tell only that no state has this l2.
+        let proved = |answer: Answer| if least && !unreachable { answer } else { answer.bounded_by(&bound) };
+        let ended =
+            |status: Status, note: Option<String>| (proved(Answer { note, ..self.without_state(status) }), none());
+        if cancel.load(Ordering::Relaxed) {
+            return ended(Status::Interrupted, None);
+        }
+        if unreachable {
+            return ended(Status::L2Unreachable, None);
+        }
+        if let Some(overlapping) = &self.overlapping {
+            return ended(Status::InfeasibleStart, Some(overlapping.message()));
+        }
+        let neighbour = neighbours[0].clone();
+        let upper_bound = match bound {
+            Bound::Finite { l1, .. } if !least => l1,
+            Bound::Unbounded if !least => return self.unlinked(stretch, neighbour, cancel),
+            _ => f64::INFINITY,
+        };
+        let search = self.search(stretch, upper_bound, cancel);
+        let first = if least {
+            let starts = neighbour.iter().cloned().chain(self.fresh(0..self.options.starts)).collect();
+            search.run(&self.models[0], starts)
+        } else {
+            self.first_cell(&search, neighbour.clone())
+        };
+        let near =
+            (first.best.is_none() && !least && !across.any()).then(|| self.too_near(stretch, upper_bound)).flatten();
+        let first = match (&first.best, &near, least) {
+            (None, None, false) => self.more(&search, first),
+            _ => first,
+        };
+        let rule = LargerCells {
+            every: least,
+            // With the width free a solve is long, and folds are found from the smaller cell's state.
+            own_starts: match (least, across.any()) {
+                (true, _) => self.options.starts,
+                (false, true) => 0,
+                (false, false) => self.options.starts.min(CELL_STARTS),
+            },
+            // Under lateral compression a larger cell can fold where this one cannot.
+            where_none: l2 < 0.0,
+            fallback: (!least).then(|| neighbour.unwrap_or_else(|| Start::written(self.models[0].start.clone()))),
+            neighbours: if least { neighbours } else { &[] },
+        };
+        let found = search.larger_cells(self.models, first, &rule);
+        if cancel.load(Ordering::Relaxed) {
+            return ended(Status::Interrupted, None);
+        }
+        if let (None, Some(near)) = (&found.result.best, &near) {
+            let name = &self.models[0].elements[near.element].name;
+            let [p, q] = near.shift;
+            let note = format!(
+                "in this cell element `{name}` and its image at ({p}, {q}) would be {:.3} R apart, which cannot be less than {:.3} R",
+                near.distance, near.least
+            );
+            return ended(Status::L2Unreachable, Some(note));
+        }
+        let kept = if least || found.by_cell.len() > 1 { found.by_cell } else { Vec::new() };
+        // What was maximised is −l1 where the least is sought.
+        let value = |t: CellTrend| CellTrend { value: t.value.map(|value| stretch.sign * value), ..t };
+        let answer = proved(self.judge(found.cell, stretch, upper_bound, found.result, cancel));
+        let by_cell = kept.into_iter().map(value).collect();
+        (Answer { by_cell, ..answer }, found.starts)
+    }
+
+    /// The search of the first cell for a largest l1: from the neighbour's state, then from perturbed states of the design and of
+    /// its images.
+    fn first_cell(&self, search: &Multistart<'_, Stretch>, neighbour: Option<Start>) -> SearchResult {
+        let stretch = search.target;
+        let mut starts: Vec<Start> = neighbour.into_iter().collect();
+        let fresh = self.options.starts.saturating_sub(starts.len());
+        let (wide, runs, iterations) = self.lateral_starts(search);
+        starts.extend(wide);
+        starts.extend(self.fresh(0..fresh));
+        starts.extend(self.of_images(stretch.direction_deg, 0..fresh));
+        let mut found = search.run(&self.models[0], starts);
+        (found.runs, found.iterations) = (found.runs + runs, found.iterations + iterations);
+        self.refine_width(search, &mut found);
+        found
+    }
+
+    /// Further starts of the first cell, where none reached what is held.
+    fn more(&self, search: &Multistart<'_, Stretch>, before: SearchResult) -> SearchResult {
+        let fresh = self.options.starts;
+        let mut found = search.run(&self.models[0], self.fresh(fresh..fresh + MORE_STARTS).collect());
+        (found.runs, found.iterations) = (found.runs + before.runs, found.iterations + before.iterations);
+        found
+    }
+
+    pub(super) fn search<'s>(
+        &self,
+        target: &'s Stretch,
+        upper_bound: f64,
+        cancel: &'s AtomicBool,
+    ) -> Multistart<'s, Stretch> {
+        Multistart { target, upper_bound, seed: self.options.seed, cancel }
+    }
+
+    /// Perturbed states of the design in the first cell.
+    pub(super) fn fresh(&self, numbers: Range<usize>) -> impl Iterator<Item = Start> + use<'a> {
+        perturbed_starts(&self.models[0], self.options.seed, numbers)
+    }
+
+    /// Own images that would be too near in the first cell, whatever l1 up to its bound.
+    fn too_near(&self, stretch: &Stretch, upper_bound: f64) -> Option<NearImages> {
+        let model = &self.models[0];
+        let [a1, a2] = stretch.lattices(model).lattice(upper_bound, stretch.l2, 0.0);
+        let state = State { poses: Vec::new(), a1, a2 };
+        self.image.get_or_init(|| ImageBound::new(model)).too_near(model, &state)
+    }
+
+    /// An answer with the start for its state.
+    pub(super) fn without_state(&self, status: Status) -> Answer {
+        let model = &self.models[0];
+        let links_ok = (status == Status::L2NotReached).then(|| links_kept(model, &model.start));
+        Answer { n_starts: Some(0), n_distinct: Some(0), links_ok, ..Answer::new(model, status) }
+    }
+
+    /// With l2 free: the states at the largest of the limits with l2 held, found outwards from 0; with the local maximisations and
+    /// quadratic programs that they took.
+    fn lateral_starts(&self, search: &Multistart<'_, Stretch>) -> (Vec<Start>, u64, u64) {
+        let (mut found, mut runs, mut iterations) = (Vec::new(), 0, 0);
+        if !search.target.across.lateral_free {
+            return (found, runs, iterations);
+        }
+        for step in [LATERAL_STEP, -LATERAL_STEP] {
+            let mut from: Vec<Start> = self.fresh(0..1).collect();
+            for k in i32::from(step < 0.0).. {
+                let held = Stretch { l2: f64::from(k) * step, across: Across::HELD, ..*search.target };
+                if held.l2 <= -1.0 || search.cancel.load(Ordering::Relaxed) {
+                    break;
+                }
+                let Bound::Finite { l1, .. } = self.chain.limit(held.direction_deg, held.l2) else { break };
+                let here = self.search(&held, l1, search.cancel).run(&self.models[0], from);
+                (runs, iterations) = (runs + here.runs, iterations + here.iterations);
+                let Some(best) = &here.best else { break };
+                let start = held.start(best);
+                from = vec![start.clone()];
+                found.push(start);
+            }
+        }
+        found.sort_by(|a, b| b.l1.total_cmp(&a.l1));
+        found.truncate(LATERAL_STARTS);
+        (found, runs, iterations)
+    }
+
+    /// With l2 free: the limit with l2 held where it was found, and on from there with l2 free, as long as that gives more.
+    fn refine_width(&self, search: &Multistart<'_, Stretch>, found: &mut SearchResult) {
+        let (model, stretch) = (&self.models[0], search.target);
+        for _ in 0..LATERAL_ROUNDS {
+            let attained = found.attains(search.upper_bound);
+            let Some(best) = found.best.as_ref().filter(|_| stretch.across.lateral_free && !attained) else { return };
+            let at = stretch.start(best);
+            let across = Across { lateral_free: false, ..stretch.across };
+            let held = Stretch { l2: at.l2, across, ..*stretch };
+            let starts = std::iter::once(at).chain(self.fresh(0..self.options.starts)).collect();
+            let here = self.search(&held, f64::INFINITY, search.cancel).run(model, starts);
+            (found.runs, found.iterations) = (found.runs + here.runs, found.iterations + here.iterations);
+            let better = here.best.filter(|solution| solution.value() > best.value() + SAME_VALUE);
+            let Some(from) = better.map(|solution| held.start(&solution)) else { return };
+            let again = search.run(model, vec![from]);
+            let improves = again.improves_on(found);
+            found.merge(again);
+            if !improves {
+                return;
+            }
+        }
+    }
+
+    /// Status and figures of the best solution.
+    pub(super) fn judge(
+        &self,
+        cell: usize,
+        stretch: &Stretch,
+        upper_bound: f64,
+        found: SearchResult,
+        cancel: &AtomicBool,
+    ) -> Answer {
+        let counted = |answer: Answer| Answer {
+            n_starts: Some(found.runs),
+            n_distinct: Some(found.distinct.len() as u64),
+            runs: found.runs,
+            iterations: found.iterations,
+            ..answer
+        };
+        let Some(best) = found.best else {
+            let note = Some("no start reached this l2 without overlap; nothing is proved".to_owned());
+            return counted(Answer { note, ..self.without_state(Status::L2NotReached) });
+        };
+        let model = &self.models[cell];
+        let Stretch { l2, across, direction_deg, sign } = *stretch;
+        let lattices = stretch.lattices(model);
+        let gradient = lattices.gradient(&best.p, l2);
+        let along = direction(direction_deg);
+        let (status, reached) = (verdict(&best, upper_bound), sign * best.value());
+        let above = best.value() > upper_bound + ATTAINED;
+        let note =
+            above.then(|| format!("l1 = {reached} lies above its proven bound {upper_bound}: one of them is wrong"));
+        let mut answer = counted(Answer {
+            value: Some(along.dot(&(gradient * along)) - 1.0),
+            gradient,
+            residual: Some((-best.certificate.smallest_gap).max(0.0)),
+            note,
+            ..Answer::new(model, status)
+        });
+        if across.any() && best.certified {
+            let (free, more) = lattices.ranges(model, &best, l2, cancel);
+            let at = lattices.free_of(&best.p, l2);
+            answer.free = Some(lattices.attainable(free, (&self.chain, &self.link), direction_deg, reached, at));
+            answer.iterations += more;
+        }
+        answer.with_solution(model, best)
+    }
+
+    /// Starts of the first cell that stand for those of the directions that are images of this one: the images of the same
+    /// perturbed states. So a limit is searched from as many states as if each direction of its orbit were solved by itself.
+    fn of_images(&self, direction_deg: f64, starts: Range<usize>) -> Vec<Start> {
+        let model = &self.models[0];
+        let mut seen = vec![direction_deg.rem_euclid(180.0)];
+        let mut out = Vec::new();
+        for operation in &self.operations {
+            let to_deg = operation.direction_deg(direction_deg);
+            if seen.iter().any(|&known| same_direction(known, to_deg)) {
+                continue;
+            }
+            seen.push(to_deg);
+            let back = between(&self.operations, to_deg, direction_deg).next();
+            if let Some(image) = back.and_then(|operation| Image::new(operation, model, model)) {
+                out.extend(self.fresh(starts.clone()).map(|start| Start::written(image.state(&start.state))));
+            }
+        }
+        out
+    }
+}
+
+impl Answer {
+    /// The same with a solution: its state, certificate and contacts, and its smallest gap.
+    pub(super) fn with_solution(self, model: &Model, solution: LocalSolution) -> Self {
+        let LocalSolution { state, certificate, contacts, links_ok, .. } = solution;
+        Answer {
+            gap: smallest_gap(model, &state).map(|(gap, _)| gap),
+            links_ok: Some(links_ok),
+            own_image_force: Some(own_image_force(model, &contacts)),
+            certificate: Some(certificate),
+            contacts,
+            state,
+            ..self
+        }
+    }
+}

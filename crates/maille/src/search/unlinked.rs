@@ -1,0 +1,103 @@
+//! Directions that no chain of links binds.
+//!
+//! A sheet whose cells are not linked along a pull mostly comes apart: it is pulled until a state is found from which l1 can grow
+//! for ever, which proves that the limit is [`Status::Unbounded`]. But elements can hold each other without a link, a ring in a cage
+//! of rings, say: then there is a limit as any other, only without a bound.
+
+use super::{
+    multistart::{Entered, Start, Target},
+    options::{UNLINKED_STAGE, UNLINKED_STAGES},
+    stretch::{ExactMethod, Stretch},
+};
+use crate::{
+    answer::Answer,
+    model::Model,
+    program::SheetProgram,
+    record::Status,
+    solver::{
+        certificate::GAP_TOLERANCE,
+        sqp::{SqpOptions, maximize},
+    },
+    state::State,
+    topology::{self, apart::comes_apart},
+};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// A sheet that has come apart: a state and its parameters.
+struct Separated {
+    state: State,
+    p: Vec<f64>,
+}
+
+impl ExactMethod<'_> {
+    /// The limit of a stretch that no chain of links binds; with the state of one that is found.
+    pub(super) fn unlinked(
+        &self,
+        stretch: &Stretch,
+        neighbour: Option<Start>,
+        cancel: &AtomicBool,
+    ) -> (Answer, Vec<Option<Start>>) {
+        let model = &self.models[0];
+        let none = vec![None; self.models.len()];
+        let starts: Vec<Start> = neighbour.into_iter().chain(self.fresh(0..self.options.starts)).collect();
+        let (mut runs, mut iterations) = (0, 0);
+        for start in starts.clone() {
+            let (apart, more) = pull_apart(model, stretch, start, cancel);
+            (runs, iterations) = (runs + 1, iterations + more);
+            if cancel.load(Ordering::Relaxed) {
+                return (self.without_state(Status::Interrupted), none);
+            }
+            if let Some(Separated { state, p }) = apart {
+                let gradient = stretch.lattices(model).gradient(&p, stretch.l2);
+                let note = Some(format!("no chain of links; at l1 = {:.3} nothing is left that could hold it", p[0]));
+                let nothing = self.without_state(Status::Unbounded);
+                return (Answer { state, gradient, runs, iterations, note, ..nothing }, none);
+            }
+        }
+        let search = self.search(stretch, f64::INFINITY, cancel);
+        let mut found = search.run(model, starts);
+        if cancel.load(Ordering::Relaxed) {
+            return (self.without_state(Status::Interrupted), none);
+        }
+        (found.runs, found.iterations) = (found.runs + runs, found.iterations + iterations);
+        let mut reached = none.clone();
+        reached[0] = found.best.as_ref().map(|best| stretch.start(best));
+        let answer = self.judge(0, stretch, f64::INFINITY, found, cancel);
+        match answer.status {
+            Status::Local => {
+                let note = Some("held by contacts without a chain of links: there is no bound".into());
+                (Answer { note, ..answer }, reached)
+            }
+            // No limit, only where the search was stopped.
+            Status::Uncertified if answer.contacts.is_empty() => {
+                let note = Some("no chain of links, and no contact held it where the search was stopped".into());
+                let Answer { runs, iterations, .. } = answer;
+                (Answer { runs, iterations, note, ..self.without_state(Status::Uncertified) }, none)
+            }
+            _ => (answer, reached),
+        }
+    }
+}
+
+/// Pulls in stages to a state from which the pull can go on for ever, if it gets there; with the quadratic programs that it took.
+fn pull_apart(model: &Model, stretch: &Stretch, from: Start, cancel: &AtomicBool) -> (Option<Separated>, u64) {
+    let Entered { at, mut iterations } = stretch.enter(model, from, cancel);
+    let Some((state, p)) = at else { return (None, iterations) };
+    let pull = stretch.family(model);
+    let program = SheetProgram::new(model, &pull);
+    let mut x = program.posed(state, p);
+    let mut known = Vec::new();
+    for stage in 0..UNLINKED_STAGES {
+        let enough = x.p[0] + UNLINKED_STAGE * 2.0_f64.powi(stage);
+        let end = maximize(&program, x, known, &SqpOptions { enough, ..SqpOptions::default() }, cancel);
+        iterations += end.iterations as u64;
+        if end.point.p[0] <= enough || end.violation > GAP_TOLERANCE {
+            return (None, iterations);
+        }
+        (x, known) = (end.point, end.multipliers);
+        if comes_apart(model, &x.state, stretch.direction_deg) && topology::links_kept(model, &x.state) {
+            return (Some(Separated { state: x.state, p: x.p }), iterations);
+        }
+    }
+    (None, iterations)
+}

@@ -1,0 +1,280 @@
+//! The closed surface of all in-plane strains that a sheet can have: rays from the written lattice in the space of Green
+//! strains (E_xx, E_yy, E_xy), each as far as it goes.
+//!
+//! Each ray is a query of [`crate::search::strain`] with one parameter. Its first start goes straight from the design's state: where
+//! it is stopped is the first exit. The farthest certified state of all starts, its neighbours' states among them, is the
+//! vertex. Where the two differ the ray has left and entered the set again, or the straight way is blocked.
+//!
+//! A ray starts from the states of the two rays that it was put between, and may end in a worse fold than a neighbour found. So
+//! when no edge is left to divide, states are handed on along the edges at which the surface bends more than it should, until no ray gains by it.
+
+use super::icosphere::{Bent, Sphere};
+use crate::{
+    model::Model,
+    question::{Sense, StrainQuery},
+    record::Status,
+    search::strain::{StrainMethod, StrainOptions},
+    state::{Pose, State},
+};
+use maille_geometry::Vec3;
+use nalgebra::{Matrix2, Quaternion, UnitQuaternion};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::atomic::{AtomicBool, Ordering},
+};
+
+/// How fine the surface is, and how each ray is searched.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BoundaryOptions {
+    /// Rays are added until the surface between them is expected within this of its triangles.
+    pub tolerance: f64,
+    /// Vertices at most.
+    pub most: usize,
+    /// Starts of each ray beside its neighbours' states.
+    pub starts: usize,
+    /// Seed of the shaking.
+    pub seed: u64,
+}
+
+impl Default for BoundaryOptions {
+    fn default() -> Self {
+        BoundaryOptions { tolerance: 1e-3, most: 5000, starts: 2, seed: 1 }
+    }
+}
+
+/// A ray and where it ends. Lengths in units of the reference radius.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BoundaryVertex {
+    /// Unit vector (E_xx, E_yy, E_xy).
+    pub direction: [f64; 3],
+    /// `global`, `local`, `uncertified`, or `l2-not-reached` where nothing was found.
+    pub status: Status,
+    /// Distance of the farthest state.
+    pub distance: Option<f64>,
+    /// Distance of the first exit.
+    pub first: Option<f64>,
+    /// Proven bound of the distance.
+    pub bound: Option<f64>,
+    /// Distinct certified distances that the starts led to.
+    pub n_distinct: u64,
+    /// Lattice vectors of the state.
+    pub lattice: [[f64; 3]; 2],
+    /// Position and quaternion (w, x, y, z) of each element.
+    pub poses: Vec<[f64; 7]>,
+}
+
+impl BoundaryVertex {
+    /// (E_xx, E_yy, E_xy) at the distance `at`.
+    pub fn point(&self, at: f64) -> [f64; 3] {
+        self.direction.map(|x| x * at)
+    }
+
+    fn state(&self) -> State {
+        let pose = |&[x, y, z, w, i, j, k]: &[f64; 7]| Pose {
+            position: Vec3::new(x, y, z),
+            rotation: UnitQuaternion::new_normalize(Quaternion::new(w, i, j, k)),
+        };
+        let [a1, a2] = self.lattice.map(Vec3::from);
+        State { poses: self.poses.iter().map(pose).collect(), a1, a2 }
+    }
+}
+
+/// The surface.
+#[derive(Clone, Debug)]
+pub struct Boundary {
+    /// Its vertices; fewer than the triangles name where the search was stopped.
+    pub vertices: Vec<BoundaryVertex>,
+    /// Corners, counter-clockwise from outside.
+    pub triangles: Vec<[usize; 3]>,
+    /// Largest expected distance between the surface and its triangles.
+    pub arch: f64,
+    /// Edges beyond the tolerance that were long enough to be divided, had there been room for more vertices.
+    pub open: usize,
+    /// Edges beyond the tolerance that are too short to be divided: there the distance jumps.
+    pub jumps: usize,
+    /// Whether all rays were solved.
+    pub complete: bool,
+}
+
+/// Divisions of the icosahedron before the surface decides: 162 rays.
+const FIRST: usize = 2;
+
+/// A ray that is to be solved.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Ray {
+    /// Unit vector (E_xx, E_yy, E_xy).
+    pub direction: [f64; 3],
+    /// Vertices whose states are starts.
+    pub from: Vec<BoundaryVertex>,
+}
+
+/// Solves rays of which none needs another: gets them, and whether they are new, and gives their ends in order, `None` after a stop.
+pub type SolveRays<'a> = &'a mut dyn FnMut(&[Ray], bool) -> Vec<Option<BoundaryVertex>>;
+
+/// Solves rays, each for itself.
+pub struct RaySolver<'a>(StrainMethod<'a>);
+
+impl<'a> RaySolver<'a> {
+    /// For rays of one surface.
+    pub fn new(model: &'a Model, options: &BoundaryOptions) -> Self {
+        let options = StrainOptions { starts: options.starts, seed: options.seed, sense: Sense::Largest };
+        RaySolver(StrainMethod::new(std::slice::from_ref(model), options))
+    }
+
+    /// Where the ray ends; `None` after `cancel`.
+    pub fn solve(&self, ray: &Ray, cancel: &AtomicBool) -> Option<BoundaryVertex> {
+        let from: Vec<State> = ray.from.iter().map(BoundaryVertex::state).collect();
+        solve_ray(&self.0, ray.direction.into(), &from, cancel)
+    }
+}
+
+/// Finds the surface on the current thread pool; the result does not depend on the number of threads. `known` are vertices of
+/// an earlier run, perhaps of another tolerance: a ray depends on its direction alone, and on the rays between which it was
+/// put. `found` gets each new one, `planned` the number of rays of a pass before it begins.
+pub fn boundary(
+    model: &Model,
+    options: &BoundaryOptions,
+    known: &[BoundaryVertex],
+    cancel: &AtomicBool,
+    planned: &mut dyn FnMut(usize),
+    found: &(dyn Fn(&BoundaryVertex) + Sync),
+) -> Boundary {
+    let solver = RaySolver::new(model, options);
+    let mut solve = |rays: &[Ray], new: bool| -> Vec<Option<BoundaryVertex>> {
+        let one = |ray: &Ray| -> Option<BoundaryVertex> {
+            let vertex = solver.solve(ray, cancel)?;
+            if new {
+                found(&vertex);
+            }
+            Some(vertex)
+        };
+        rays.par_iter().with_max_len(1).map(one).collect()
+    };
+    boundary_by(options, known, cancel, planned, &mut solve)
+}
+
+/// The same with rays solved elsewhere: `solve` gets those of a pass; those that are not new are tried again from their neighbours'
+/// states.
+pub fn boundary_by(
+    options: &BoundaryOptions,
+    known: &[BoundaryVertex],
+    cancel: &AtomicBool,
+    planned: &mut dyn FnMut(usize),
+    solve: SolveRays<'_>,
+) -> Boundary {
+    let bits = |direction: [f64; 3]| direction.map(f64::to_bits);
+    let known: BTreeMap<[u64; 3], &BoundaryVertex> = known.iter().map(|v| (bits(v.direction), v)).collect();
+    let mut sphere = Sphere::new(FIRST);
+    let mut vertices: Vec<BoundaryVertex> = Vec::new();
+    loop {
+        let open = vertices.len()..sphere.directions.len();
+        let count = open.len();
+        let known = |k: &usize| known.get(&bits(sphere.directions[*k].into())).copied();
+        let rays = open.clone().filter(|k| known(k).is_none()).map(|k| {
+            let parents = sphere.parents[k].into_iter().filter_map(|parent| vertices.get(parent));
+            let from = parents.filter(|p| p.distance.is_some()).cloned().collect();
+            Ray { direction: sphere.directions[k].into(), from }
+        });
+        let rays: Vec<Ray> = rays.collect();
+        planned(rays.len());
+        let mut solved = solve(&rays, true).into_iter();
+        let mut end = |k: usize| known(&k).cloned().or_else(|| solved.next().flatten());
+        let ends: Vec<Option<BoundaryVertex>> = open.map(&mut end).collect();
+        vertices.extend(ends.into_iter().map_while(|vertex| vertex));
+        let complete = vertices.len() == sphere.directions.len();
+        let wide = |vertices: &[BoundaryVertex]| -> Vec<Bent> {
+            let bends = if complete { sphere.bent(&points(vertices), options.tolerance) } else { Vec::new() };
+            bends.into_iter().filter(|bent| bent.wide).collect()
+        };
+        let room = options.most.saturating_sub(vertices.len());
+        let mut divided = wide(&vertices);
+        if complete && (divided.is_empty() || room == 0) {
+            hand_on(&sphere, options.tolerance, &mut vertices, solve);
+            divided = wide(&vertices);
+        }
+        // Stopped while states were handed on: the next run does that again.
+        let complete = complete && !cancel.load(Ordering::Relaxed);
+        if !complete || divided.is_empty() || room == 0 || count == 0 {
+            let bent = if complete { sphere.bent(&points(&vertices), 0.0) } else { Vec::new() };
+            let arch = bent.first().map_or(if complete { 0.0 } else { f64::NAN }, |worst| worst.arch);
+            let beyond = |wide: bool| bent.iter().filter(|b| b.arch > options.tolerance && b.wide == wide).count();
+            let (open, jumps) = (beyond(true), beyond(false));
+            return Boundary { vertices, triangles: sphere.triangles, arch, open, jumps, complete };
+        }
+        let marked: Vec<[usize; 2]> = divided.into_iter().take(room).map(|bent| bent.edge).collect();
+        sphere.divide(&marked);
+    }
+}
+
+fn points(vertices: &[BoundaryVertex]) -> Vec<Option<Vec3>> {
+    vertices.iter().map(|v| Some(v.point(v.distance?).into())).collect()
+}
+
+/// Rounds in which states are handed on, at most.
+const ROUNDS: usize = 40;
+/// A ray has gained if it goes further by more than this.
+const GAIN: f64 = 1e-7;
+
+/// Rays at bent edges, solved once more from the state at the other end.
+fn hand_on(sphere: &Sphere, tolerance: f64, vertices: &mut [BoundaryVertex], solve: SolveRays<'_>) {
+    // A state is tried once on a ray.
+    let mut tried: BTreeSet<(usize, usize, u64)> = BTreeSet::new();
+    for _ in 0..ROUNDS {
+        let mut tasks: BTreeMap<usize, Ray> = BTreeMap::new();
+        for Bent { edge: [a, b], .. } in sphere.bent(&points(vertices), tolerance) {
+            for (k, other) in [(a, b), (b, a)] {
+                let Some(distance) = vertices[other].distance else { continue };
+                if tried.insert((k, other, distance.to_bits())) {
+                    let ray = || Ray { direction: sphere.directions[k].into(), from: Vec::new() };
+                    tasks.entry(k).or_insert_with(ray).from.push(vertices[other].clone());
+                }
+            }
+        }
+        let (places, rays): (Vec<usize>, Vec<Ray>) = tasks.into_iter().unzip();
+        let mut gained = false;
+        for (k, new) in places.into_iter().zip(solve(&rays, false)) {
+            let (old, Some(new)) = (&vertices[k], new) else { continue };
+            let certified = matches!(new.status, Status::Global | Status::Local);
+            let farther = new.distance.is_some_and(|d| old.distance.is_some_and(|old| d > old + GAIN));
+            if certified && farther {
+                let n_distinct = new.n_distinct.max(old.n_distinct);
+                vertices[k] = BoundaryVertex { first: old.first, n_distinct, ..new };
+                gained = true;
+            }
+        }
+        if !gained {
+            return;
+        }
+    }
+}
+
+/// One ray; `None` after `cancel`.
+fn solve_ray(
+    method: &StrainMethod<'_>,
+    direction: Vec3,
+    from: &[State],
+    cancel: &AtomicBool,
+) -> Option<BoundaryVertex> {
+    let along = Matrix2::new(direction.x, direction.z, direction.z, direction.y);
+    let query = StrainQuery { held: Matrix2::zeros(), free: vec![along] };
+    let answer = method.solve(&query, from, cancel);
+    if cancel.load(Ordering::Relaxed) || answer.status == Status::Interrupted {
+        return None;
+    }
+    let pose = |pose: &Pose| {
+        let (p, q) = (pose.position, pose.rotation.quaternion());
+        [p.x, p.y, p.z, q.w, q.i, q.j, q.k]
+    };
+    Some(BoundaryVertex {
+        direction: direction.into(),
+        status: answer.status,
+        distance: answer.value,
+        first: answer.first,
+        bound: answer.bound.filter(|bound| bound.is_finite()),
+        n_distinct: answer.n_distinct.unwrap_or(0),
+        lattice: [answer.state.a1, answer.state.a2].map(Into::into),
+        poses: answer.state.poses.iter().map(pose).collect(),
+    })
+}
