@@ -7,13 +7,11 @@ use crate::{
     source::read_record,
 };
 use maille::{
-    lattice::Cell,
     model::Model,
     record::{LimitRow, Status},
-    survey::{Finished, Method, Task, characterize},
+    survey::{Finished, MapQuestion, Task, characterize},
 };
 use miette::{Report, Result};
-use serde_json::Value;
 use std::{
     path::PathBuf,
     process::ExitCode,
@@ -41,8 +39,7 @@ pub struct Args {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let record = read_record(&records::folder(&args.record))?;
-    let parameters = &record.run.parameters;
-    let cells: Vec<Cell> = numbers(parameters, "cells")?;
+    let MapQuestion { method, cells, l2, .. } = record.run.question()?;
     let design = &record.run.design;
     let models: Vec<Model> = cells
         .iter()
@@ -50,17 +47,6 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             Model::compile(design, *cell).map_err(|p| damaged(format!("the record's design cannot be used: {}", p[0])))
         })
         .collect::<Result<_>>()?;
-    let options = parameters["options"].clone();
-    let unread = |name: &str, e: serde_json::Error| damaged(format!("{name} in run.json: {e}"));
-    let method = match parameters["method"].as_str() {
-        Some("exact") => Method::Exact(serde_json::from_value(options).map_err(|e| unread("options", e))?),
-        Some("energy") => Method::Energy(serde_json::from_value(options).map_err(|e| unread("options", e))?),
-        other => {
-            let other = other.unwrap_or("none");
-            return Err(damaged(format!("run.json names the method \"{other}\"; exact and energy are known")));
-        }
-    };
-    let l2: Vec<f64> = serde_json::from_value(parameters["l2"].clone()).map_err(|e| unread("l2", e))?;
     let rows: Vec<&LimitRow> = match args.at {
         Some(at) => record.rows.iter().filter(|r| at.fits(r.direction_deg, r.l2)).collect(),
         None => record.rows.iter().filter(|r| r.l1.is_none()).collect(),
@@ -109,14 +95,6 @@ fn damaged(problem: String) -> Report {
         problem,
         "the file is damaged or was edited: restore it, or compute the record again with --overwrite",
     )
-}
-
-fn numbers(parameters: &Value, name: &str) -> Result<Vec<Cell>> {
-    let list = parameters[name].as_array().ok_or_else(|| damaged(format!("run.json has no {name}")))?;
-    let texts = list.iter().map(|cell| cell.as_str().unwrap_or_default());
-    texts
-        .map(|t| t.parse().map_err(|e: maille::error::InvalidInput| damaged(format!("run.json: {}", e.problem))))
-        .collect()
 }
 
 fn close(a: Option<f64>, b: Option<f64>) -> bool {

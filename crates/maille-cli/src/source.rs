@@ -262,13 +262,12 @@ impl SourceArgs {
         line += &at.l2.map_or(String::new(), |l2| format!(" --l2 {l2}"));
         let of_record = record.and_then(|r| r.run.design.minor_radius).filter(|_| self.design.is_none());
         line += &self.minor_radius.or(of_record).map_or(String::new(), |r| format!(" --minor-radius {r}"));
-        let parameter = |name: &str| record.and_then(|r| r.run.parameters.get(name));
-        if let Some(method) = parameter("method").and_then(|v| v.as_str()) {
-            line += &format!(" --method {method}");
-        }
-        // Several cells are those of the default, auto.
-        if let Some([cell]) = parameter("cells").and_then(|v| v.as_array()).map(Vec::as_slice) {
-            line += &format!(" --cell {}", quoted(cell.as_str().unwrap_or("1x1")));
+        if let Some(question) = record.and_then(|r| r.run.question().ok()) {
+            line += &format!(" --method {}", question.method.name());
+            // Several cells are those of the default, auto.
+            if let [cell] = question.cells[..] {
+                line += &format!(" --cell {}", quoted(&cell.to_string()));
+            }
         }
         line + &format!(" --out {}", quoted(&folder.display().to_string()))
     }

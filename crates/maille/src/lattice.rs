@@ -11,7 +11,8 @@ pub type Shift = [i32; 2];
 
 /// A cell of the design's lattice: rows of integers (m11, m12; m21, m22) with
 /// a1' = m11 a1 + m12 a2 and a2' = m21 a1 + m22 a2. Its elements are |det| copies of the primitive cell's.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(into = "String", try_from = "String")]
 pub struct Cell {
     rows: [[i32; 2]; 2],
 }
@@ -110,6 +111,20 @@ impl fmt::Display for Cell {
             [[m, 0], [0, n]] if m > 0 && n > 0 => write!(f, "{m}x{n}"),
             [[a, b], [c, d]] => write!(f, "{a},{b};{c},{d}"),
         }
+    }
+}
+
+impl From<Cell> for String {
+    fn from(cell: Cell) -> Self {
+        cell.to_string()
+    }
+}
+
+impl TryFrom<String> for Cell {
+    type Error = InvalidInput;
+
+    fn try_from(text: String) -> Result<Self, Self::Error> {
+        text.parse()
     }
 }
 

@@ -3,6 +3,7 @@
 use super::error::RecordError;
 use maille::design::Design;
 use maille::record::{LimitRow, RECORD_SCHEMA};
+use maille::survey::MapQuestion;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
@@ -43,6 +44,17 @@ impl RunRecord {
             counters: Counters::default(),
             files: BTreeMap::new(),
         }
+    }
+}
+
+impl RunRecord {
+    /// What was asked.
+    ///
+    /// # Errors
+    /// Where `parameters` do not say it: the file was not written by this program.
+    pub fn question(&self) -> Result<MapQuestion, RecordError> {
+        serde_json::from_value(self.parameters.clone())
+            .map_err(|e| RecordError::malformed("run.json", 1, format!("parameters: {e}")))
     }
 }
 

@@ -6,7 +6,7 @@ use maille::design::Design;
 use maille::lattice::Cell;
 use maille::model::Model;
 use maille::record::{LimitRow, StateRecord};
-use maille::survey::{CellChoice, Finished, Method, Task, chains, characterize, tasks};
+use maille::survey::{CellChoice, Finished, MapQuestion, Method, Task, chains, characterize, tasks};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -55,16 +55,18 @@ impl Map {
     /// Opens the record, with what an earlier run has left there. `models` are the design compiled for
     /// [`Self::cells`].
     pub fn open(&self, design: &Design, models: Vec<Model>) -> Result<OpenMap, RecordError> {
-        let parameters = json!({
-            "method": self.method.name(),
-            "cells": models.iter().map(|model| model.cell.to_string()).collect::<Vec<_>>(),
-            "directions_deg": self.directions_deg,
-            "l2": self.l2,
-            "options": match &self.method {
-                Method::Exact(options) => json!(options.parameters()),
-                Method::Energy(options) => json!(options.parameters(&models[0])),
-            },
-        });
+        let question = MapQuestion {
+            method: self.method.clone(),
+            cells: models.iter().map(|model| model.cell).collect(),
+            directions_deg: self.directions_deg.clone(),
+            l2: self.l2.clone(),
+        };
+        let mut parameters = json!(question);
+        // With all that is fixed, so that the record says how it was found.
+        parameters["options"] = match &self.method {
+            Method::Exact(options) => json!(options.parameters()),
+            Method::Energy(options) => json!(options.parameters(&models[0])),
+        };
         let all = tasks(&self.directions_deg, &self.l2);
         let mut rows: Vec<Option<(LimitRow, StateRecord)>> = vec![None; all.len()];
         let mut folder = None;

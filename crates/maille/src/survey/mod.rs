@@ -16,6 +16,7 @@ use crate::{
     symmetry::{Operation, Orbit, mirrored, operations, orbits},
 };
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use std::{
     borrow::Cow,
     sync::atomic::{AtomicBool, Ordering},
@@ -23,7 +24,8 @@ use std::{
 };
 
 /// How limits are found.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "method", content = "options", rename_all = "kebab-case")]
 pub enum Method {
     /// The thesis's energy method.
     Energy(EnergyOptions),
@@ -81,6 +83,20 @@ impl CellChoice {
             }
         }
     }
+}
+
+/// What a map asks: the limit along every direction with every l2.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MapQuestion {
+    /// How limits are found.
+    #[serde(flatten)]
+    pub method: Method,
+    /// The cells that may be solved, the first one always.
+    pub cells: Vec<Cell>,
+    /// Directions of the pull, degrees counter-clockwise from x.
+    pub directions_deg: Vec<f64>,
+    /// Stretch − 1 held across it.
+    pub l2: Vec<f64>,
 }
 
 /// One limit to find.
