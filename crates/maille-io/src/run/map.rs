@@ -121,8 +121,8 @@ impl OpenMap {
     }
 
     /// The chains of the map, the least that can be asked for alone: the limits along one direction, in the order in
-    /// which they go on from each other, with those of its images. The record of a map of these directions alone has the
-    /// same rows, bit for bit.
+    /// which they go on from each other, with those of its images. The record of a map of these directions alone has
+    /// the same rows, bit for bit.
     pub fn chains(&self) -> impl Iterator<Item = Chain> {
         let chain = |directions_deg: Vec<f64>| {
             let inputs = json!({ "program_version": VERSION, "parameters": self.parameters_of(&directions_deg) });
@@ -149,8 +149,8 @@ impl OpenMap {
         Record { run: RunRecord { counters, ..RunRecord::new(&self.design, &parameters, VERSION) }, rows, states }
     }
 
-    /// Takes a limit that was found elsewhere; says whether it was one of the map that was left. With a folder, it is on
-    /// the disk when this returns.
+    /// Takes a limit that was found elsewhere; says whether it was one of the map that was left. With a folder, it is
+    /// on the disk when this returns.
     pub fn keep(&mut self, row: LimitRow, state: StateRecord) -> Result<bool, RecordError> {
         match place(&self.all, &row).filter(|k| self.collected.rows[*k].is_none()) {
             Some(k) => self.collected.keep(k, Finished { row, state }).map(|()| true),
