@@ -258,10 +258,7 @@ mod tests {
         let (line, problem) =
             only("state.rs", "//! State.\n\nuse crate::{\n    model::Model,\n    relaxation::SheetEnergy,\n};\n");
         assert_eq!(line, 5);
-        assert!(
-            problem.starts_with("state uses relaxation, which stands after it: error ← design ←"),
-            "{problem}"
-        );
+        assert!(problem.starts_with("state uses relaxation, which stands after it: error ← design ←"), "{problem}");
         assert_eq!(only("program/gap_kernel.rs", "fn f() -> crate::search::Search {}").0, 1);
         assert_eq!(only("design.rs", "use super::lattice::Cell;").0, 1);
         assert_eq!(only("design.rs", "\nmod tests {\n use super::super::lattice::Cell;\n}").0, 3);

@@ -11,8 +11,9 @@
 
 use super::{
     local::LocalSolution,
-    multistart::{Entered, Multistart, Start, Target, perturbed_starts, verdict},
+    multistart::{Entered, Multistart, Target, verdict},
     options::THIN_WIRE,
+    starts::{Start, perturbed_starts},
 };
 use crate::{
     answer::Answer,

@@ -2,8 +2,8 @@
 //! holds.
 
 use super::{
-    multistart::perturbed,
     options::{FEASIBLE, RESTART_SIZE, ROUNDS},
+    starts::perturbed,
 };
 use crate::{
     model::Model,

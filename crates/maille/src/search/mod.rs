@@ -1,6 +1,6 @@
 //! The exact method: answers by local maximisation from many starts, certified and compared with proven bounds.
 //!
-//! `local` is one maximisation, `multistart` the search from many starts and in larger cells, and the other files say what is
+//! `starts` are states to begin with, `local` is one maximisation, `multistart` the search from many starts and in larger cells, and the other files say what is
 //! maximised and from where: `stretch` (with `stretch_lattices`, and `unlinked` where no chain of links binds), `strain`, `extreme`
 //! (wire and clearance). `overlap` frees a start that overlaps. Every tolerance is in `options`.
 
@@ -9,6 +9,7 @@ mod local;
 mod multistart;
 mod options;
 mod overlap;
+mod starts;
 pub mod strain;
 pub mod stretch;
 mod stretch_lattices;

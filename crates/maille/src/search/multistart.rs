@@ -8,42 +8,20 @@ use super::{
     local::{LocalSolution, local_maximize},
     options::{
         ATTAINED, BOUND_RETRIES, BOUND_RETRY_GAP, BOUND_RETRY_SIZE, CELL_PERTURBATION, LARGER_CELL_RESTARTS,
-        OWN_IMAGE_FORCE, PERTURBATIONS, RESTARTS, SAME_VALUE,
+        OWN_IMAGE_FORCE, RESTARTS, SAME_VALUE,
     },
+    starts::{Start, perturbed, perturbed_starts, rng, tiled},
 };
 use crate::{
     answer::CellTrend,
     lattice::Cell,
     model::Model,
-    program::{LatticeFamily, SheetProgram},
+    program::{Contact, LatticeFamily, SheetProgram},
     record::Status,
-    state::{Pose, State},
-    topology::crossing::{Motion, StepBound},
+    state::State,
 };
-use maille_geometry::Vec3;
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
-use std::{
-    ops::Range,
-    sync::atomic::{AtomicBool, Ordering},
-};
-
-/// A state from which a search begins, with the strains of its lattice where it is stretched along a direction.
-#[derive(Clone)]
-pub(super) struct Start {
-    pub state: State,
-    pub l1: f64,
-    pub l2: f64,
-    pub shear: f64,
-}
-
-impl Start {
-    /// A state with the written lattice.
-    pub fn written(state: State) -> Self {
-        Start { state, l1: 0.0, l2: 0.0, shear: 0.0 }
-    }
-}
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A start that was brought to what is held.
 pub(super) struct Entered {
@@ -282,47 +260,9 @@ pub(super) fn verdict(solution: &LocalSolution, upper_bound: f64) -> Status {
     }
 }
 
-/// The random numbers of one start, kept apart from those of all others by its seed.
-pub(super) fn rng(seed: u64) -> ChaCha8Rng {
-    ChaCha8Rng::seed_from_u64(seed)
-}
-
-/// Starts of a cell: the design's state, every element moved and turned at random, but no circle across another.
-pub(super) fn perturbed_starts(model: &Model, seed: u64, numbers: Range<usize>) -> impl Iterator<Item = Start> {
-    numbers.map(move |k| {
-        let mut stream = rng(seed.wrapping_mul(0x9e37_79b9).wrapping_add(k as u64));
-        Start::written(perturbed(model, &model.start, PERTURBATIONS[k % PERTURBATIONS.len()], &mut stream))
-    })
-}
-
-/// `state` with its elements moved and turned by up to `size`, in R and radians; less where circles could meet.
-pub(super) fn perturbed(model: &Model, state: &State, size: f64, rng: &mut ChaCha8Rng) -> State {
-    let mut vector = || Vec3::from_fn(|_, _| size * rng.random_range(-1.0..1.0));
-    let elements = state.poses.iter().map(|_| (vector(), vector())).collect();
-    let motion = Motion { elements, lattice: [Vec3::zeros(); 2], carried: false };
-    let fraction = StepBound::new(model, state).largest_fraction(model, &motion, f64::INFINITY);
-    let moved = state
-        .poses
-        .iter()
-        .zip(&motion.elements)
-        .map(|(p, (shift, turn))| p.moved(&(shift * fraction), &(turn * fraction)));
-    State { poses: moved.collect(), ..state.clone() }
-}
-
 /// Largest force between an element and its own image.
-pub(super) fn own_image_force(model: &Model, contacts: &[crate::program::Contact]) -> f64 {
+pub(super) fn own_image_force(model: &Model, contacts: &[Contact]) -> f64 {
     let element = |ring: usize| model.rings[ring].element;
     let own = contacts.iter().filter(|c| element(c.pair.ring_a) == element(c.pair.ring_b));
     own.map(|c| c.force).fold(0.0, f64::max)
-}
-
-/// A primitive cell's state repeated over the cell of `model`.
-pub(super) fn tiled(model: &Model, state: &State) -> State {
-    let copies = model.cell.cosets();
-    let poses = copies.iter().flat_map(|&coset| {
-        let shift = state.translation(coset);
-        state.poses.iter().map(move |pose| Pose { position: pose.position + shift, ..*pose })
-    });
-    let [a1, a2] = model.cell.vectors(state.a1, state.a2);
-    State { poses: poses.collect(), a1, a2 }
 }

@@ -8,8 +8,9 @@
 
 use super::{
     extreme::{Extreme, Sought},
-    multistart::{Target, perturbed, rng},
+    multistart::Target,
     options::{FREEING_PERTURBATIONS, SLIGHT_OVERLAP},
+    starts::{perturbed, rng},
 };
 use crate::{
     model::Model,

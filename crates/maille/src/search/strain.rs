@@ -8,8 +8,9 @@
 
 use super::{
     local::LocalSolution,
-    multistart::{Entered, LargerCells, Multistart, Start, Target, perturbed, perturbed_starts, rng, verdict},
+    multistart::{Entered, LargerCells, Multistart, Target, verdict},
     options::{CELL_STARTS, FREE_SLACK, STRAIGHT},
+    starts::{Start, perturbed, perturbed_starts, rng},
     stretch_lattices::farthest,
 };
 use crate::{

@@ -12,11 +12,10 @@
 pub use super::options::ExactOptions;
 use super::{
     local::LocalSolution,
-    multistart::{
-        Entered, LargerCells, Multistart, SearchResult, Start, Target, own_image_force, perturbed_starts, verdict,
-    },
+    multistart::{Entered, LargerCells, Multistart, SearchResult, Target, own_image_force, verdict},
     options::{ATTAINED, CELL_STARTS, LATERAL_ROUNDS, LATERAL_STARTS, LATERAL_STEP, MORE_STARTS, SAME_VALUE},
     overlap::{Overlapping, beyond_repair},
+    starts::{Start, perturbed_starts},
     stretch_lattices::StretchLattices,
 };
 use crate::{

@@ -6,8 +6,8 @@
 
 use super::{
     local::LocalSolution,
-    multistart::Start,
     options::{FEASIBLE, FREE_SLACK, RANGE_ROUNDS},
+    starts::Start,
 };
 use crate::{
     answer::FreeRanges,

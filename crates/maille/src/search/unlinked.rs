@@ -5,8 +5,9 @@
 //! of rings, say: then there is a limit as any other, only without a bound.
 
 use super::{
-    multistart::{Entered, Start, Target},
+    multistart::{Entered, Target},
     options::{UNLINKED_STAGE, UNLINKED_STAGES},
+    starts::Start,
     stretch::{ExactMethod, Stretch},
 };
 use crate::{

@@ -1,6 +1,6 @@
 //! A limit as a row and a state of a record. Nothing is computed here but units.
 
-use super::{Finished, Method, Task};
+use super::request::{Finished, Method, Task};
 use crate::{
     answer::{Answer, CellTrend, FreeRanges},
     bound::DualForce,

@@ -1,0 +1,144 @@
+//! Maps: limits over directions and lateral strains, as rows and states of a record.
+
+use super::{
+    image::image,
+    request::{Finished, Method, Task, tasks},
+    row::Asked,
+};
+use crate::{
+    answer::Answer,
+    model::Model,
+    record::Status,
+    relaxation::limit::EnergyMethod,
+    search::{ExactOptions, stretch::ExactMethod},
+    symmetry::{Operation, Orbit, mirrored, operations, orbits},
+};
+use rayon::prelude::*;
+use std::{
+    borrow::Cow,
+    sync::atomic::{AtomicBool, Ordering},
+    time::Instant,
+};
+
+/// The directions of a map that are solved as one: those that the symmetries of the design make images of each other. `model` is
+/// the first of the map's cells, whose translations the symmetries keep. A row of an image is the row of the
+/// direction that is solved, with the image of its state.
+///
+/// The energy method repeats the thesis and checks the exact one, so it uses no symmetry: each direction is solved by itself.
+pub fn chains(model: &Model, method: &Method, directions_deg: &[f64]) -> Vec<Orbit> {
+    symmetric_chains(model, method, directions_deg).1
+}
+
+fn symmetric_chains(model: &Model, method: &Method, directions_deg: &[f64]) -> (Vec<Operation>, Vec<Orbit>) {
+    match method {
+        Method::Energy(_) => {
+            let alone =
+                |&direction_deg: &f64| Orbit { representative_deg: direction_deg, directions_deg: vec![direction_deg] };
+            (Vec::new(), directions_deg.iter().map(alone).collect())
+        }
+        Method::Exact(_) => {
+            let operations = operations(model);
+            let orbits = orbits(&operations, directions_deg);
+            (operations, orbits)
+        }
+    }
+}
+
+/// Finds the limits of a map on the current thread pool and hands each over as it is finished, in any order.
+///
+/// `models` are the design compiled for the cell to solve and, for the exact method, larger ones that it may go on to.
+/// `wanted` tells which tasks are still open. The energy method starts every limit from the design's state alone; the
+/// exact one goes along one direction of each of the [`chains`] outwards from l2 = 0, and repeats all of it where one of the limits
+/// is open. So rows do not depend on the number of threads, nor on where an earlier run was stopped, nor on which images of a
+/// direction are asked for. After `cancel` the limits under way come back as interrupted or not at all.
+pub fn characterize(
+    models: &[Model],
+    minor_radius: Option<f64>,
+    method: &Method,
+    directions_deg: &[f64],
+    l2: &[f64],
+    wanted: &(dyn Fn(Task) -> bool + Sync),
+    cancel: &AtomicBool,
+    finished: &(dyn Fn(Finished) + Sync),
+) {
+    match method {
+        Method::Energy(options) => {
+            let energy = EnergyMethod::new(&models[0], options.clone(), cancel);
+            let open: Vec<Task> = tasks(directions_deg, l2).into_iter().filter(|t| wanted(*t)).collect();
+            open.par_iter().with_max_len(1).for_each(|task| {
+                if !cancel.load(Ordering::Relaxed) {
+                    let begun = Instant::now();
+                    let answer = energy.limit(task.direction_deg, task.l2, cancel);
+                    let asked = Asked { task, method, minor_radius, image_of_deg: None };
+                    finished(asked.finished(&models[0], &answer, begun.elapsed().as_secs_f64()));
+                }
+            });
+        }
+        Method::Exact(options) => {
+            let exact = ExactMethod::new(models, options.clone(), cancel);
+            let (operations, chains) = symmetric_chains(&models[0], method, directions_deg);
+            chains.par_iter().with_max_len(1).for_each(|chain| {
+                let solved_deg = chain.representative_deg;
+                let open = |k: usize| {
+                    let task = move |&direction_deg: &f64| Task { direction_deg, l2: l2[k] };
+                    chain.directions_deg.iter().map(task).filter(|task| wanted(*task))
+                };
+                if cancel.load(Ordering::Relaxed) || !(0..l2.len()).any(|k| open(k).next().is_some()) {
+                    return;
+                }
+                let mut begun = Instant::now();
+                exact.limits(solved_deg, l2, cancel, &mut |k, answer| {
+                    let answer = both_shears(answer, &operations, solved_deg);
+                    for task in open(k) {
+                        let image_of_deg = (task.direction_deg != solved_deg).then_some(solved_deg);
+                        let asked = Asked { task: &task, method, minor_radius, image_of_deg };
+                        let wall_s = begun.elapsed().as_secs_f64();
+                        finished(match image_of_deg {
+                            Some(solved_deg) => {
+                                let (model, answer) =
+                                    image(&operations, models, &answer, solved_deg, task.direction_deg);
+                                asked.finished(&model, &answer, wall_s)
+                            }
+                            None => {
+                                let model = models.iter().find(|model| model.cell == answer.cell).unwrap_or(&models[0]);
+                                asked.finished(model, &answer, wall_s)
+                            }
+                        });
+                        begun = Instant::now();
+                    }
+                });
+            });
+        }
+    }
+}
+
+/// A limit along a direction that a symmetry of the design maps to itself mirrored: the states with −γ are there, too.
+fn both_shears(mut answer: Answer, operations: &[Operation], direction_deg: f64) -> Answer {
+    if let Some(free) = answer.free.as_mut().filter(|_| mirrored(operations, direction_deg)) {
+        let most = free.shear[1].max(-free.shear[0]);
+        free.shear = [-most, most];
+    }
+    answer
+}
+
+/// The limit of one stretch, found as a map finds it, with the model of its cell: along the representative of the direction's orbit,
+/// and mapped from there.
+pub(crate) fn one<'a>(
+    models: &'a [Model],
+    options: &ExactOptions,
+    direction_deg: f64,
+    l2: f64,
+    cancel: &AtomicBool,
+) -> (Cow<'a, Model>, Answer) {
+    let method = Method::Exact(options.clone());
+    let (operations, chains) = symmetric_chains(&models[0], &method, &[direction_deg]);
+    let solved_deg = chains[0].representative_deg;
+    let mut answer = Answer::new(&models[0], Status::Interrupted);
+    ExactMethod::new(models, options.clone(), cancel).limits(solved_deg, &[l2], cancel, &mut |_, found| answer = found);
+    let answer = both_shears(answer, &operations, solved_deg);
+    if solved_deg != direction_deg {
+        return image(&operations, models, &answer, solved_deg, direction_deg);
+    }
+    let model = models.iter().find(|model| model.cell == answer.cell).unwrap_or(&models[0]);
+    (Cow::Borrowed(model), answer)
+}
