@@ -240,6 +240,12 @@ pub fn direction(direction_deg: f64) -> Vector2<f64> {
     }
 }
 
+/// D along a direction, and D⊥ to its left.
+pub fn axes(direction_deg: f64) -> (Vector2<f64>, Vector2<f64>) {
+    let along = direction(direction_deg);
+    (along, Vector2::new(-along.y, along.x))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -2,10 +2,10 @@
 
 use crate::{
     error::InvalidInput,
-    lattice::{Across, direction},
+    lattice::{Across, axes},
     program::metric::factor,
 };
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::Matrix2;
 use serde::{Deserialize, Serialize};
 
 /// One question: something of a sheet as large or as small as it can be.
@@ -269,12 +269,6 @@ impl Strain {
         let (a, b) = [(x, x), (y, y), (x, y)][self as usize];
         a.dot(&(e * b))
     }
-}
-
-/// The axes of the strains.
-fn axes(direction_deg: f64) -> (Vector2<f64>, Vector2<f64>) {
-    let x = direction(direction_deg);
-    (x, Vector2::new(-x.y, x.x))
 }
 
 impl StrainQuery {

@@ -7,7 +7,7 @@ use maille::{
     model::Model,
     program::{LatticeFamily, Parameter, SheetProgram},
     solver::{
-        rows::{Derivatives, Loads, Multiplier},
+        constraints::{Derivatives, Loads, Multiplier},
         sqp::Program,
     },
 };

@@ -10,7 +10,7 @@ use maille::{
     model::Model,
     relaxation::{Configuration, ContactOptions, MinimaMethod, SheetEnergy, barrier::ContactLaw},
     solver::newton::Objective,
-    topology::{links_kept, side::SideSigns, smallest_gap},
+    topology::{links_kept, side_signs::SideSigns, smallest_gap},
 };
 
 /// The gyroscope of 1.3 with one neighbour, no lattice.

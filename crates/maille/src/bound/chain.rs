@@ -18,23 +18,12 @@
 //! **Cells.** In a supercell the cycles of the primitive cell appear repeated, with x unchanged, and each of its cycles is
 //! a closed walk of the primitive cell: K, and with it the bound, is the same for every cell and basis of the sheet.
 
-use super::{Bound, BoundKind, axes};
+use super::outcome::{BindingChain, Bound, BoundKind};
 use crate::{
-    lattice::{ACROSS, Shift},
+    lattice::{ACROSS, Shift, axes},
     model::Model,
 };
 use nalgebra::Vector2;
-
-/// A chain of links that joins a ring with its own image.
-#[derive(Clone, Debug, PartialEq)]
-pub struct BindingChain {
-    /// The image's shift v, in lattice vectors of the model's cell.
-    pub vector: Shift,
-    /// The chain's length d(v), in units of the reference radius.
-    pub length: f64,
-    /// The rings along the chain with their shifts, from (ring, 0) to (the same ring, v).
-    pub rings: Vec<(usize, Shift)>,
-}
 
 /// A chain that no other chain makes superfluous: a vertex of K.
 #[derive(Clone, Debug)]

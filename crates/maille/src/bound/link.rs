@@ -30,27 +30,17 @@
 //! with the largest stretch that the chains allow.
 
 use super::{
-    BindingChain, Bound, ChainBound, axes,
+    chain::ChainBound,
+    outcome::{BindingChain, Bound, DualForce},
     tie::{self, Tie, TieKind},
 };
 use crate::{
-    lattice::{Across, Shift},
+    lattice::{Across, axes},
     model::Model,
     solver::cone::{Cone, ConeProgram, eigenvalues, pack},
 };
 use maille_geometry::Vec3;
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix4, Vector2};
-
-/// The force y of one tie.
-#[derive(Clone, Debug, PartialEq)]
-pub struct DualForce {
-    /// What the tie is made of.
-    pub kind: TieKind,
-    /// Its rings with their cells, see [`TieKind`]: in the cell of the model that the bound is of.
-    pub rings: Vec<(usize, Shift)>,
-    /// y, for a unit pull and lengths in reference radii.
-    pub force: Vec3,
-}
 
 /// What the link bound found for one direction and one l2.
 #[derive(Clone, Debug, PartialEq)]

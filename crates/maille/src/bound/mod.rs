@@ -23,96 +23,17 @@ mod chain;
 mod image;
 mod link;
 mod metric;
+mod outcome;
 mod tie;
 
-pub use chain::{BindingChain, ChainBound};
+pub use chain::ChainBound;
 pub use image::{ImageBound, NearImages};
-pub use link::{DualForce, LinkBound, LinkSolution};
+pub use link::{LinkBound, LinkSolution};
 pub use metric::{MetricBound, metric_bound};
+pub use outcome::{BindingChain, Bound, BoundKind, DualForce};
 pub use tie::{TieKind, crossing_pairs_length};
 
 use crate::lattice::Across;
-use nalgebra::Vector2;
-use std::fmt;
-
-/// Which bound is meant.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum BoundKind {
-    /// Chains of links, [`ChainBound`].
-    Chain,
-    /// The convex program over all links, [`LinkBound`].
-    Link,
-}
-
-impl fmt::Display for BoundKind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            BoundKind::Chain => "chain",
-            BoundKind::Link => "link",
-        })
-    }
-}
-
-/// What a bound says of one direction and one l2.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Bound {
-    /// No state has a larger l1.
-    Finite {
-        /// The bound.
-        l1: f64,
-        /// The bound that gives it.
-        kind: BoundKind,
-        /// The chain that binds, from the chain bound: also where the link bound is lower.
-        chain: Option<BindingChain>,
-        /// The forces that prove it, where one chain does not.
-        dual: Vec<DualForce>,
-    },
-    /// No state with l1 > −1 has this l2 in this direction.
-    L2Unreachable {
-        /// The bound that proves it.
-        kind: BoundKind,
-        /// The chain that is too short, where one is.
-        chain: Option<BindingChain>,
-        /// The forces that prove it, where one chain does not.
-        dual: Vec<DualForce>,
-    },
-    /// No chain of links joins lattice vectors along the direction: there is no bound, and only contacts without a link can hold it.
-    Unbounded,
-}
-
-impl Bound {
-    /// The bound of l1, where there is one.
-    pub fn l1(&self) -> Option<f64> {
-        match self {
-            Bound::Finite { l1, .. } => Some(*l1),
-            _ => None,
-        }
-    }
-
-    /// The bound that speaks.
-    pub fn kind(&self) -> Option<BoundKind> {
-        match self {
-            Bound::Finite { kind, .. } | Bound::L2Unreachable { kind, .. } => Some(*kind),
-            Bound::Unbounded => None,
-        }
-    }
-
-    /// The binding chain.
-    pub fn chain(&self) -> Option<&BindingChain> {
-        match self {
-            Bound::Finite { chain, .. } | Bound::L2Unreachable { chain, .. } => chain.as_ref(),
-            Bound::Unbounded => None,
-        }
-    }
-
-    /// The forces that prove it, where one chain does not.
-    pub fn dual(&self) -> &[DualForce] {
-        match self {
-            Bound::Finite { dual, .. } | Bound::L2Unreachable { dual, .. } => dual,
-            Bound::Unbounded => &[],
-        }
-    }
-}
 
 /// The link bound counts as lower than the chain bound from this difference on; below it they are the same number.
 const SAME: f64 = 1e-10;
@@ -159,10 +80,4 @@ pub fn best_bound_across(
         return Bound::L2Unreachable { kind, chain: None, dual: solution.dual };
     }
     Bound::Finite { l1: solution.l1, kind, chain: None, dual: solution.dual }
-}
-
-/// D and D⊥ in the sheet's plane.
-fn axes(direction_deg: f64) -> (Vector2<f64>, Vector2<f64>) {
-    let along = crate::lattice::direction(direction_deg);
-    (along, Vector2::new(-along.y, along.x))
 }

@@ -11,8 +11,8 @@ use super::{
     pair::{height_angles_rad, pair_key, pair_of_key},
 };
 use crate::{
-    solver::rows::{Multiplier, Row},
-    topology::{self, near::NearPair},
+    solver::constraints::{Multiplier, Row},
+    topology::{self, near_pairs::NearPair},
 };
 use maille_geometry::Vec3;
 use std::collections::BTreeSet;

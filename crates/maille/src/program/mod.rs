@@ -20,14 +20,14 @@ use crate::{
     model::Model,
     solver::{
         certificate::CARRIED,
-        rows::{Derivatives, Loads, Multiplier, Row},
+        constraints::{Derivatives, Loads, Multiplier, Row},
         sqp::Program,
     },
     state::State,
     topology::{
         RingPair,
-        crossing::{MARGIN, Motion, StepBound},
-        near::{NearPair, near_pairs},
+        near_pairs::{NearPair, near_pairs},
+        step_bound::{MARGIN, Motion, StepBound},
     },
 };
 use maille_geometry::{Vec3, point_circle_distance};

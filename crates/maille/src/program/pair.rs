@@ -3,8 +3,8 @@
 use super::{Posed, SheetProgram, metric::Factored};
 use crate::{
     program::gap_kernel::{Grad, Hess, PairFrame, RootMotion},
-    solver::rows::{Derivatives, Row},
-    topology::{RingPair, near::NearPair},
+    solver::constraints::{Derivatives, Row},
+    topology::{RingPair, near_pairs::NearPair},
 };
 use maille_geometry::Vec3;
 

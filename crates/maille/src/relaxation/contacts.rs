@@ -10,7 +10,7 @@ use crate::{
     program::gap_kernel::{Grad, Hess, Jet, PairFrame, RootMotion, symmetric},
     solver::curvature::Curvature,
     state::State,
-    topology::{RingPair, broad::in_chunks, close_pairs},
+    topology::{RingPair, broad_phase::in_chunks, close_pairs},
 };
 use maille_geometry::{
     Approach, Approaches, Circle, MAX_MINIMA, Vec3, circle_distance_approaches, circle_distance_minima_polynomial,

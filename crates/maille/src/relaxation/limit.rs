@@ -18,7 +18,7 @@ use crate::{
         shifted::{Reading, shifted_newton},
     },
     state::State,
-    topology::{self, apart::comes_apart, side::SideSigns},
+    topology::{self, separation::comes_apart, side_signs::SideSigns},
 };
 use nalgebra::Matrix2;
 use serde::{Deserialize, Serialize};

@@ -7,7 +7,7 @@ use crate::{
     model::Model,
     solver::curvature::Curvature,
     state::{Pose, State},
-    topology::broad::in_chunks,
+    topology::broad_phase::in_chunks,
 };
 use maille_geometry::Vec3;
 use nalgebra::{Matrix3, Matrix4, Vector4};

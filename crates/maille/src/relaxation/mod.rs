@@ -18,8 +18,8 @@ use crate::{
     },
     state::State,
     topology::{
-        crossing::{Motion, StepBound},
-        side::SideSigns,
+        side_signs::SideSigns,
+        step_bound::{Motion, StepBound},
     },
 };
 use faer::Mat;

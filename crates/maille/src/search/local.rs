@@ -13,8 +13,8 @@ use crate::{
     },
     solver::{
         certificate::{Certificate, measure_curvature, measure_gaps},
-        kkt::polish,
-        rows::{Derivatives, Multiplier, violation},
+        constraints::{Derivatives, Multiplier, violation},
+        polish::polish,
         sqp::{Program, SqpOptions, maximize},
     },
     state::State,

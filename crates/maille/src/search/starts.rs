@@ -4,7 +4,7 @@ use super::options::PERTURBATIONS;
 use crate::{
     model::Model,
     state::{Pose, State},
-    topology::crossing::{Motion, StepBound},
+    topology::step_bound::{Motion, StepBound},
 };
 use maille_geometry::Vec3;
 use rand::{RngExt, SeedableRng};

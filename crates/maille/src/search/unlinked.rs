@@ -20,7 +20,7 @@ use crate::{
         sqp::{SqpOptions, maximize},
     },
     state::State,
-    topology::{self, apart::comes_apart},
+    topology::{self, separation::comes_apart},
 };
 use std::sync::atomic::{AtomicBool, Ordering};
 

@@ -4,10 +4,10 @@
 //! second order where −Σ μ ∇²g is positive on the directions that keep the loaded rows.
 
 use super::{
+    constraints::{Derivatives, Loads, Multiplier, Row, lagrangian_hessian},
+    kkt_system::{gram, least_squares_multipliers},
     qp::{self, QuadraticProgram, SparseRows},
-    reduced::curvature,
-    rows::{Derivatives, Loads, Multiplier, Row, lagrangian_hessian},
-    saddle::{gram, least_squares_multipliers},
+    reduced_hessian::curvature,
     sqp::Program,
 };
 

@@ -7,9 +7,9 @@
 //! what the program's guard allows, so that what the guard protects (the topology) is kept on every path.
 
 use super::{
-    convex::convexified,
+    constraints::{Derivatives, Loads, Multiplier, Row, lagrangian_hessian, violation},
+    convexify::convexified,
     qp::{self, QuadraticProgram, SparseRows},
-    rows::{Derivatives, Loads, Multiplier, Row, lagrangian_hessian, violation},
     symmetric::Symmetric,
 };
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -1,10 +1,10 @@
 //! Which rings are near, which are linked, and in which directions chains of links bind the sheet.
 
-pub mod apart;
-pub(crate) mod broad;
-pub mod crossing;
-pub mod near;
-pub mod side;
+pub(crate) mod broad_phase;
+pub mod near_pairs;
+pub mod separation;
+pub mod side_signs;
+pub mod step_bound;
 
 use crate::{lattice::Shift, model::Model, state::State};
 use maille_geometry::{circle_distance_minima, linking_number};
@@ -36,9 +36,9 @@ pub struct Link {
 pub fn close_pairs(model: &Model, state: &State, margin: f64) -> Vec<RingPair> {
     let thickest = model.rings.iter().map(|r| r.minor_radius).fold(0.0, f64::max);
     let arms: Vec<_> = (0..model.rings.len()).map(|ring| state.arm(model, ring)).collect();
-    let neighbours = broad::neighbours(model, state, thickest, margin);
+    let neighbours = broad_phase::neighbours(model, state, thickest, margin);
     let elements: Vec<usize> = (0..model.elements.len()).collect();
-    broad::in_chunks(&elements, |some| {
+    broad_phase::in_chunks(&elements, |some| {
         let mut out = Vec::new();
         for &i in some {
             for &(j, shift) in &neighbours[i] {

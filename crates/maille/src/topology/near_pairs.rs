@@ -1,6 +1,6 @@
 //! The near pairs of one state with what is known of their distance: each is examined once, and only if asked.
 
-use super::{RingPair, broad::in_chunks, close_pairs};
+use super::{RingPair, broad_phase::in_chunks, close_pairs};
 use crate::{model::Model, state::State};
 use maille_geometry::{Circle, Minimum, circle_distance_lower_bound, circle_distance_minima};
 use std::cell::OnceCell;

@@ -1,6 +1,6 @@
 //! The Hessian of the model made positive.
 
-use super::{cholesky::Cholesky, eigen::least_eigenvalue, rows::Row, symmetric::Symmetric};
+use super::{cholesky::Cholesky, constraints::Row, eigen::least_eigenvalue, symmetric::Symmetric};
 
 /// Shares of [`raised`]'s diagonal that are tried one after the other; with the last one the matrix is positive.
 const SHARES: [f64; 6] = [0.0, 0.0625, 0.125, 0.25, 0.5, 1.0];

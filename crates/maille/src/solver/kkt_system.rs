@@ -5,7 +5,7 @@
 //! Each time a motion of curvature λ keeps δ₁/(λ + δ₁) of its error; what neither H nor A sees is never moved, and
 //! multipliers stay combinations of the rows. One Cholesky factorisation of H + δ₁ + AᵀA/δ₂ serves all.
 
-use super::{cholesky::Cholesky, rows::Row, symmetric::Symmetric};
+use super::{cholesky::Cholesky, constraints::Row, symmetric::Symmetric};
 
 /// δ₂.
 const DUAL: f64 = 1e-6;

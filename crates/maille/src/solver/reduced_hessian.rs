@@ -5,7 +5,7 @@
 //! keep the rows see H alone, others are stiff. By the minimax principle no eigenvalue of M lies above the one of H on the null
 //! space that it stands for; it lies lower by |dμ|²/ρ, where dμ is what the multipliers change along the unit motion.
 
-use super::{cholesky::pattern, eigen::symmetric_eigen, rows::Row, symmetric::Symmetric};
+use super::{cholesky::pattern, constraints::Row, eigen::symmetric_eigen, symmetric::Symmetric};
 use faer::{
     Mat, Par, Side, Spec,
     dyn_stack::{MemBuffer, MemStack},

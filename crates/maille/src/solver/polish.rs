@@ -6,8 +6,8 @@ use super::{
     certificate::{
         BAND, Certificate, GAP_TOLERANCE, RESIDUAL_TOLERANCE, certify, labelled, matched, measure_curvature,
     },
-    rows::{Derivatives, Loads, Multiplier, Row, lagrangian_hessian, violation},
-    saddle,
+    constraints::{Derivatives, Loads, Multiplier, Row, lagrangian_hessian, violation},
+    kkt_system,
     sqp::{Program, SqpEnd, elastic_program, stiff_where_loaded},
 };
 
@@ -201,6 +201,6 @@ fn newton_step(c: &[f64], rows: &[Row], known: &[f64]) -> Option<(Vec<f64>, Vec<
     // Motions that hardly matter get huge steps from tiny residuals: hold them as much as it takes.
     HOLDS
         .iter()
-        .filter_map(|&hold| saddle::solve(&h, rows, c, hold))
+        .filter_map(|&hold| kkt_system::solve(&h, rows, c, hold))
         .find(|(step, _)| step.iter().all(|d| d.abs() <= MOST_STEP))
 }

@@ -5,7 +5,7 @@
 //! distance the circles cannot meet, so the isotopy class of the whole sheet is kept, which linking numbers alone do
 //! not ensure for elements of several rings.
 
-use super::near::{NearPair, near_pairs};
+use super::near_pairs::{NearPair, near_pairs};
 use crate::{
     model::{Element, Model},
     state::{Pose, State},
