@@ -68,3 +68,8 @@ pub use question::{Goal, Question, Sense, Strain};
 pub use record::Status;
 pub use sheet::Sheet;
 pub use survey::CellChoice;
+
+/// The README's example is run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
