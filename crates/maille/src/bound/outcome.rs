@@ -30,9 +30,9 @@ pub struct DualForce {
 /// Which bound is meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum BoundKind {
-    /// Chains of links, [`ChainBound`].
+    /// Chains of links, [`super::ChainBound`].
     Chain,
-    /// The convex program over all links, [`LinkBound`].
+    /// The convex program over all links, [`super::LinkBound`].
     Link,
 }
 

@@ -1,7 +1,7 @@
 //! The thesis's side signs (§4.3.3): on which side of the other rings of its element a neighbour passes through a ring.
 //!
 //! A rule of the thesis, for comparison. It is no invariant: a sign can flip while nothing is crossed. What keeps the
-//! topology is the step bound ([`super::crossing`]).
+//! topology is the step bound ([`super::step_bound`]).
 
 use super::links;
 use crate::{lattice::Shift, model::Model, state::State, topology::RingPair};
