@@ -24,7 +24,7 @@ pub struct Answer {
     pub first: Option<f64>,
     /// Proven bound of the value: no state lies beyond it.
     pub bound: Option<f64>,
-    /// Where the bound comes from; `None` for strains, whose bound is that of the chains.
+    /// Where the bound of a stretch comes from; `None` for other goals.
     pub bound_kind: Option<BoundKind>,
     /// The chain of links that binds in the bound.
     pub chain: Option<BindingChain>,

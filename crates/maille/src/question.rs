@@ -117,15 +117,16 @@ impl Question {
 
     /// The same stretch with the width held at 1 + l2 times the written one. Other goals stay as they are.
     pub fn with_lateral(mut self, lateral: f64) -> Self {
-        if let Goal::Stretch { l2, .. } = &mut self.goal {
-            *l2 = lateral;
+        if let Goal::Stretch { l2, across, .. } = &mut self.goal {
+            (*l2, across.lateral_free) = (lateral, false);
         }
         self
     }
 
     /// The same stretch with the width, or the shear, or both left to the sheet. Other goals stay as they are.
     pub fn with_free(mut self, free: Across) -> Self {
-        if let Goal::Stretch { across, .. } = &mut self.goal {
+        if let Goal::Stretch { l2, across, .. } = &mut self.goal {
+            *l2 = if free.lateral_free { 0.0 } else { *l2 };
             *across = free;
         }
         self
@@ -136,7 +137,8 @@ impl Question {
         Question { sense: Sense::Least, ..self }
     }
 
-    /// The number of starts: the one that was asked for, or 4 for a stretch, 2 for a ray, 8 for all else.
+    /// The number of starts: the one that was asked for, or 4 for a stretch, 2 for a ray, 8 for all else. A
+    /// strain that a stretch answers is searched as that.
     pub fn starts(&self) -> usize {
         self.starts.unwrap_or(match self.goal {
             Goal::Stretch { .. } => 4,
@@ -149,7 +151,7 @@ impl Question {
     ///
     /// # Errors
     /// Without starts; for a number that is not finite, an l2 of −1 or less, a strain that is named twice, strains that no
-    /// lattice has, a ray without direction, and for the least wire or clearance, which nothing bounds.
+    /// lattice has, a ray whose direction is no unit vector, and for the least wire or clearance, which nothing bounds.
     pub fn check(&self) -> Result<(), InvalidInput> {
         if self.starts == Some(0) {
             return Err(InvalidInput::new("starts", "0 starts find nothing", "give 1 or more"));
@@ -173,8 +175,10 @@ impl Question {
             }
             Goal::Ray { direction } => {
                 direction.iter().try_for_each(|x| finite("direction", *x))?;
-                if direction.iter().all(|x| *x == 0.0) {
-                    return Err(InvalidInput::new("direction", "a ray without direction", "give a unit vector"));
+                let length = direction.iter().map(|x| x * x).sum::<f64>().sqrt();
+                if (length - 1.0).abs() > 1e-9 {
+                    let problem = format!("a direction of length {length}");
+                    return Err(InvalidInput::new("direction", problem, "give a unit vector"));
                 }
             }
             Goal::Wire { .. } | Goal::Clearance { .. } if self.sense == Sense::Least => {

@@ -8,6 +8,7 @@ use crate::{
     model::Model,
     program::{Contact, metric::factor},
     question::{Goal, Question, Sense},
+    record::Status,
     search::{
         ExactOptions,
         extreme::{Extreme, ExtremeOptions, extreme},
@@ -18,7 +19,10 @@ use crate::{
 };
 use maille_geometry::Vec3;
 use nalgebra::{Matrix2, Rotation3, UnitQuaternion};
-use std::{borrow::Cow, sync::atomic::AtomicBool};
+use std::{
+    borrow::Cow,
+    sync::atomic::{AtomicBool, Ordering},
+};
 
 /// A design, compiled for cells of growing size.
 #[derive(Clone, Debug)]
@@ -99,7 +103,9 @@ impl Sheet {
             return Ok(method.solve(&query, &[], cancel));
         }
         let answer = as_strain(answer);
-        Ok(if answer.is_limit() { method.with_ranges(&query, answer, cancel) } else { answer })
+        let answer = if answer.is_limit() { method.with_ranges(&query, answer, cancel) } else { answer };
+        let interrupted = cancel.load(Ordering::Relaxed);
+        Ok(if interrupted { Answer::new(self.model(), Status::Interrupted) } else { answer })
     }
 }
 
@@ -134,6 +140,7 @@ fn as_strain(answer: Answer) -> Answer {
         value: answer.value.map(green),
         bound: answer.bound.map(green),
         bound_kind: None,
+        dual: Vec::new(),
         contacts: answer.contacts.iter().map(contact).collect(),
         own_image_force: answer.own_image_force.map(|force| force * (1.0 + l1)),
         free: None,

@@ -170,7 +170,7 @@ pub fn extreme(model: &Model, what: Extreme, options: &ExtremeOptions, cancel: &
     };
     let Some(best) = found.best else {
         let status = if interrupted { Status::Interrupted } else { Status::NotConverged };
-        return counted(Answer { links_ok: Some(false), ..Answer::new(model, status) });
+        return counted(Answer::new(model, status));
     };
     let status = if interrupted { Status::Interrupted } else { verdict(&best, f64::INFINITY) };
     let value = Some(if what == Extreme::ThickestWire { 1.0 + best.value() } else { best.value() });

@@ -13,12 +13,13 @@ use super::{
     starts::{Start, perturbed, perturbed_starts, rng, tiled},
 };
 use crate::{
-    answer::CellTrend,
+    answer::{Answer, CellTrend},
     lattice::Cell,
     model::Model,
     program::{Contact, LatticeFamily, SheetProgram},
     record::Status,
     state::State,
+    topology::smallest_gap,
 };
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -257,6 +258,22 @@ pub(super) fn verdict(solution: &LocalSolution, upper_bound: f64) -> Status {
         (true, true) => Status::Global,
         (true, false) => Status::Local,
         (false, _) => Status::Uncertified,
+    }
+}
+
+impl Answer {
+    /// The same with a solution: its state, certificate and contacts, and its smallest gap.
+    pub(super) fn with_solution(self, model: &Model, solution: LocalSolution) -> Self {
+        let LocalSolution { state, certificate, contacts, links_ok, .. } = solution;
+        Answer {
+            gap: smallest_gap(model, &state).map(|(gap, _)| gap),
+            links_ok: Some(links_ok),
+            own_image_force: Some(own_image_force(model, &contacts)),
+            certificate: Some(certificate),
+            contacts,
+            state,
+            ..self
+        }
     }
 }
 

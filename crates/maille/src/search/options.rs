@@ -1,4 +1,5 @@
-//! What a search takes from its user, and every tolerance that it takes by itself. All of them go into the record.
+//! What a search takes from its user, and the tolerances that it takes by itself, as they go into the record. Those of the solver are
+//! in `crate::solver`.
 //!
 //! Lengths are in reference radii R, angles in radians, values in the unit of what is sought (strain, or R for a clearance).
 
@@ -11,7 +12,9 @@ use serde::{Deserialize, Serialize};
 /// What a user chooses of the exact method.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ExactOptions {
-    /// Starts of a limit whose bound is not attained: the neighbouring limit's state, then perturbed design states.
+    /// Starts of a limit whose bound is not attained: the neighbouring limit's state, then perturbed design states. Images of
+    /// these under the symmetries of the design, and with the width free states of held widths, come in addition; a least l1 and
+    /// a pull that no chain binds take the neighbour's state in addition, too.
     pub starts: usize,
     /// Seed of the perturbations.
     pub seed: u64,
@@ -123,6 +126,7 @@ pub struct ExactParameters {
     unlinked_stages: i32,
     slight_overlap: f64,
     freeing_perturbations: [f64; 4],
+    thin_wire: f64,
 }
 
 impl ExactOptions {
@@ -157,6 +161,7 @@ impl ExactOptions {
             unlinked_stages: UNLINKED_STAGES,
             slight_overlap: SLIGHT_OVERLAP,
             freeing_perturbations: FREEING_PERTURBATIONS,
+            thin_wire: THIN_WIRE,
         }
     }
 }

@@ -123,7 +123,7 @@ impl<'a> StrainMethod<'a> {
             MetricBound::Nothing => None,
         };
         let least = self.options.sense == Sense::Least;
-        // A least strain can always be beaten in a larger cell, whatever the chains say of it.
+        // A least strain is never called global: larger cells can fold further.
         let upper_bound = bound.filter(|_| !least).unwrap_or(f64::INFINITY);
         let StrainOptions { starts, seed, .. } = self.options;
         let search = Multistart { target: query, upper_bound, seed, cancel };
@@ -158,7 +158,14 @@ impl<'a> StrainMethod<'a> {
         let answer = counted(Answer { value, first, ..Answer::new(model, status) }).with_solution(model, best);
         let gradient = answer.state.deformation_gradient(model);
         let answer = Answer { gradient, ..answer };
-        if answer.is_limit() { self.with_ranges(query, answer, cancel) } else { answer }
+        if !answer.is_limit() {
+            return answer;
+        }
+        let answer = self.with_ranges(query, answer, cancel);
+        match cancel.load(Ordering::Relaxed) {
+            true => none(Status::Interrupted),
+            false => answer,
+        }
     }
 
     /// The answer with the ranges of the strains that are free, see [`Answer::ranges`].

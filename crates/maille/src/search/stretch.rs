@@ -9,11 +9,12 @@
 //! where a smaller one cannot, so all cells are searched. No bound from below is known, and a still larger cell can fold further:
 //! such a limit is `local` at best.
 
-pub use super::options::ExactOptions;
 use super::{
     local::LocalSolution,
-    multistart::{Entered, LargerCells, Multistart, SearchResult, Target, own_image_force, verdict},
-    options::{ATTAINED, CELL_STARTS, LATERAL_ROUNDS, LATERAL_STARTS, LATERAL_STEP, MORE_STARTS, SAME_VALUE},
+    multistart::{Entered, LargerCells, Multistart, SearchResult, Target, verdict},
+    options::{
+        ATTAINED, CELL_STARTS, ExactOptions, LATERAL_ROUNDS, LATERAL_STARTS, LATERAL_STEP, MORE_STARTS, SAME_VALUE,
+    },
     overlap::{Overlapping, beyond_repair},
     starts::{Start, perturbed_starts},
     stretch_lattices::StretchLattices,
@@ -28,7 +29,7 @@ use crate::{
     solver::sqp::{SqpOptions, maximize},
     state::State,
     symmetry::{Image, Operation, between, operations, same_direction},
-    topology::{links_kept, smallest_gap},
+    topology::links_kept,
 };
 use std::{
     ops::Range,
@@ -218,6 +219,10 @@ impl<'a> ExactMethod<'a> {
         // What was maximised is −l1 where the least is sought.
         let value = |t: CellTrend| CellTrend { value: t.value.map(|value| stretch.sign * value), ..t };
         let answer = proved(self.judge(found.cell, stretch, upper_bound, found.result, cancel));
+        // Ranges of what is free are solved for after the search: without them the answer is not whole.
+        if cancel.load(Ordering::Relaxed) {
+            return ended(Status::Interrupted, None);
+        }
         let by_cell = kept.into_iter().map(value).collect();
         (Answer { by_cell, ..answer }, found.starts)
     }
@@ -343,7 +348,8 @@ impl<'a> ExactMethod<'a> {
             ..answer
         };
         let Some(best) = found.best else {
-            let note = Some("no start reached this l2 without overlap; nothing is proved".to_owned());
+            let what = if stretch.across.lateral_free { "a state" } else { "this l2" };
+            let note = Some(format!("no start reached {what} without overlap; nothing is proved"));
             return counted(Answer { note, ..self.without_state(Status::L2NotReached) });
         };
         let model = &self.models[cell];
@@ -352,7 +358,7 @@ impl<'a> ExactMethod<'a> {
         let gradient = lattices.gradient(&best.p, l2);
         let along = direction(direction_deg);
         let (status, reached) = (verdict(&best, upper_bound), sign * best.value());
-        let above = best.value() > upper_bound + ATTAINED;
+        let above = best.certified && best.value() > upper_bound + ATTAINED;
         let note =
             above.then(|| format!("l1 = {reached} lies above its proven bound {upper_bound}: one of them is wrong"));
         let mut answer = counted(Answer {
@@ -389,21 +395,5 @@ impl<'a> ExactMethod<'a> {
             }
         }
         out
-    }
-}
-
-impl Answer {
-    /// The same with a solution: its state, certificate and contacts, and its smallest gap.
-    pub(super) fn with_solution(self, model: &Model, solution: LocalSolution) -> Self {
-        let LocalSolution { state, certificate, contacts, links_ok, .. } = solution;
-        Answer {
-            gap: smallest_gap(model, &state).map(|(gap, _)| gap),
-            links_ok: Some(links_ok),
-            own_image_force: Some(own_image_force(model, &contacts)),
-            certificate: Some(certificate),
-            contacts,
-            state,
-            ..self
-        }
     }
 }

@@ -96,7 +96,7 @@ impl StretchLattices {
         [(d, d), (side, side), (d, side)].map(|(to, of)| self.reference.map(|a| to * of.dot(&a)))
     }
 
-    /// l1 maximised, or −l1; l2 held at its value or free, from −1 on, γ held at 0 or free.
+    /// l1 maximised, or −l1; l2 held at its value or free, γ held at 0 or free.
     pub fn pull(&self, l2: f64) -> LatticeFamily {
         let [along, lateral, shear] = self.rates();
         let parameter = |rate, weight| Parameter { rate, weight, ..Parameter::default() };

@@ -64,6 +64,9 @@ impl ExactMethod<'_> {
         let mut reached = none.clone();
         reached[0] = found.best.as_ref().map(|best| stretch.start(best));
         let answer = self.judge(0, stretch, f64::INFINITY, found, cancel);
+        if cancel.load(Ordering::Relaxed) {
+            return (self.without_state(Status::Interrupted), none);
+        }
         match answer.status {
             Status::Local => {
                 let note = Some("held by contacts without a chain of links: there is no bound".into());

@@ -1,6 +1,6 @@
 //! Surveys: many questions to one sheet on the current thread pool, as maps and as the surface of all strains.
 
-pub mod icosphere;
+mod icosphere;
 mod image;
 mod map;
 mod request;

@@ -1,4 +1,5 @@
-//! A limit as a row and a state of a record. Nothing is computed here but units.
+//! A limit as a row and a state of a record. Nothing is searched or measured here: figures of the answer are
+//! written in the file's unit.
 
 use super::request::{Finished, Method, Task};
 use crate::{
