@@ -50,11 +50,11 @@ pub struct SqpOptions {
     pub penalty: f64,
     /// Iterations at most.
     pub max_iterations: usize,
-    /// Stop when the model promises less than this.
+    /// Stop when the model predicts less than this.
     pub tolerance: f64,
     /// Stop as soon as the violation is below 1e-13 and the value above this.
     pub enough: f64,
-    /// Pause when a full step is shorter than this and promises less than a hundredth of it: time to try the polish.
+    /// Pause when a full step is shorter than this and predicts less than a hundredth of it: time to try the polish.
     pub pause_at: f64,
 }
 
@@ -139,13 +139,14 @@ pub(super) fn elastic_program(
     reached.iter().zip(&solution.multipliers).for_each(|(&k, mu)| multipliers[k] = *mu);
     (solution.x[..n].to_vec(), multipliers, solution.x[n].max(0.0))
 }
+
 /// A correction reaches at most this many times the violation that it corrects.
 const FURTHEST: f64 = 100.0;
 /// Least curvature of the convexified model: it follows the step's size between these. Far from the limit it keeps
 /// free motions from being spent on tiny gains (which would carry contacts to the edge where their minima merge).
-const LEAST_FLOOR: f64 = 1e-4;
-/// See [`LEAST_FLOOR`].
-const MOST_FLOOR: f64 = 0.1;
+const LEAST_SHIFT: f64 = 1e-4;
+/// See [`LEAST_SHIFT`].
+const MOST_SHIFT: f64 = 0.1;
 
 /// Maximises `program` from `start`; `known` are multipliers of an earlier iteration, if there was one.
 pub fn maximize<P: Program>(
@@ -161,11 +162,11 @@ pub fn maximize<P: Program>(
     let mut radius = options.first_radius;
     let mut penalty = options.penalty;
     let band = |radius: f64| 0.1 + 2.0 * radius;
-    let mut floor = MOST_FLOOR;
+    let mut curvature_shift = MOST_SHIFT;
     let mut end = SqpEnd { point: start, multipliers: known, iterations: 0, settled: false, violation: f64::INFINITY };
-    let mut reach = band(radius);
+    let mut activation_band = band(radius);
     let mut loads = Loads::new(&end.multipliers);
-    let mut rows = program.rows(&end.point, reach, Derivatives::Second(&loads));
+    let mut rows = program.rows(&end.point, activation_band, Derivatives::Second(&loads));
     end.violation = violation(&rows);
     while end.iterations < options.max_iterations && !cancel.load(Ordering::Relaxed) {
         if end.violation < 1e-13 && program.value(&end.point) >= options.enough {
@@ -173,74 +174,80 @@ pub fn maximize<P: Program>(
             break;
         }
         end.iterations += 1;
+        // Quadratic model: the Hessian of the Lagrangian, made positive definite; the constraints linearised, elastic.
         let known: Vec<f64> = rows.iter().map(|row| loads.of(row)).collect();
-        let h = convexified(lagrangian_hessian(n, &rows, &known, &[]), &rows, &known, floor);
-        let (step, multipliers, left) = elastic_program(&rows, &h, &descent, penalty, radius);
+        let h = convexified(lagrangian_hessian(n, &rows, &known, &[]), &rows, &known, curvature_shift);
+        let (step, multipliers, elastic_residual) = elastic_program(&rows, &h, &descent, penalty, radius);
         let keep = |multipliers: &[f64]| -> Vec<Multiplier> {
             let pairs = rows.iter().zip(multipliers).filter(|(_, mu)| **mu > 1e-9);
             pairs.map(|(r, &value)| Multiplier { key: r.key, angle: r.angle, minimum: r.minimum, value }).collect()
         };
         let size = step.iter().fold(0.0f64, |a, s| a.max(s.abs()));
-        let promised = dot(&c, &step) + penalty * (end.violation - left);
+        let predicted = dot(&c, &step) + penalty * (end.violation - elastic_residual);
         end.multipliers = keep(&multipliers);
         loads = Loads::new(&end.multipliers);
-        floor = size.clamp(LEAST_FLOOR, MOST_FLOOR);
+        curvature_shift = size.clamp(LEAST_SHIFT, MOST_SHIFT);
         penalty = penalty.max(2.0 * multipliers.iter().sum::<f64>().min(1e4));
-        if promised < options.tolerance || size < 1e-12 {
+        // Converged: the model predicts no gain of the merit −value + ν violation.
+        if predicted < options.tolerance || size < 1e-12 {
             end.settled = true;
             break;
         }
-        if size < options.pause_at && promised < 1e-2 * options.pause_at {
+        if size < options.pause_at && predicted < 1e-2 * options.pause_at {
             break;
         }
+        // The step is cut back so that no two core circles can cross.
         let guard = program.guard(&end.point);
         let fraction = program.largest_step(&end.point, &guard, &step);
         let step: Vec<f64> = step.iter().map(|s| s * fraction).collect();
         let merit = -program.value(&end.point) + penalty * end.violation;
-        let judge = |point: &P::Point| {
+        let merit_at = |point: &P::Point| {
             let violation = violation(&program.rows(point, 0.0, Derivatives::None));
             (-program.value(point) + penalty * violation, violation)
         };
+        // Actual reduction of the merit at the trial point, against the predicted one.
         let mut trial = program.moved(&end.point, &step);
-        let (mut reached, mut worst) = judge(&trial);
-        let wanted = promised * fraction;
-        let mut bent = vec![0.0; n];
-        h.add_times(1.0, &step, &mut bent);
+        let (mut trial_merit, mut trial_violation) = merit_at(&trial);
+        let predicted_decrease = predicted * fraction;
+        let mut hessian_step = vec![0.0; n];
+        h.add_times(1.0, &step, &mut hessian_step);
         // What the curved rows take away again, by the model.
-        let expected = wanted - 0.5 * dot(&bent, &step);
-        if merit - reached < 0.5 * wanted && worst > 0.0 {
+        let model_decrease = predicted_decrease - 0.5 * dot(&hessian_step, &step);
+        // Second-order correction: the trial point violates curved constraints that the model had as straight ones.
+        if merit - trial_merit < 0.5 * predicted_decrease && trial_violation > 0.0 {
             let there = program.rows(&trial, band(radius).min(0.2), Derivatives::First);
             let none = vec![0.0; n];
             let metric = stiff_where_loaded(n, &rows, &multipliers);
             let (correction, _, _) =
-                elastic_program(&there, &metric, &none, 1e3 * radius, radius.min(FURTHEST * worst));
+                elastic_program(&there, &metric, &none, 1e3 * radius, radius.min(FURTHEST * trial_violation));
             let guard = program.guard(&trial);
             let fraction = program.largest_step(&trial, &guard, &correction);
             let correction: Vec<f64> = correction.iter().map(|s| s * fraction).collect();
             let corrected = program.moved(&trial, &correction);
-            let (better, left) = judge(&corrected);
-            if better < reached {
-                (trial, reached, worst) = (corrected, better, left);
+            let (better, left) = merit_at(&corrected);
+            if better < trial_merit {
+                (trial, trial_merit, trial_violation) = (corrected, better, left);
             }
         }
-        let ratio = (merit - reached) / expected.max(0.1 * wanted);
-        if ratio > 0.05 || (promised < 1e-9 && merit - reached > -1e-14) {
+        // Accept or reject by the ratio of actual to predicted reduction, and adapt the trust region.
+        let ratio = (merit - trial_merit) / model_decrease.max(0.1 * predicted_decrease);
+        if ratio > 0.05 || (predicted < 1e-9 && merit - trial_merit > -1e-14) {
             end.point = trial;
-            end.violation = worst;
+            end.violation = trial_violation;
             if ratio > 0.7 && size > 0.9 * radius {
                 radius = (2.0 * radius).min(options.most_radius);
             } else if ratio < 0.3 {
                 radius *= 0.5;
             }
-            reach = band(radius);
-            rows = program.rows(&end.point, reach, Derivatives::Second(&loads));
+            activation_band = band(radius);
+            rows = program.rows(&end.point, activation_band, Derivatives::Second(&loads));
         } else {
             radius = 0.3 * radius.min(size);
             if radius < 1e-13 {
                 break;
             }
             // The same rows with the Hessians of those that are loaded now.
-            rows = program.rows(&end.point, reach, Derivatives::Second(&loads));
+            rows = program.rows(&end.point, activation_band, Derivatives::Second(&loads));
         }
     }
     end
