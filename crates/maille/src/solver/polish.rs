@@ -75,8 +75,10 @@ fn polished<P: Program>(
     let mut taken: Option<(f64, Vec<Multiplier>)> = None;
     let mut idle = 0;
     while budget > 0 && idle < MOST_IDLE {
+        // Newton on the optimality conditions of the active set.
         idle = if newton(program, &mut x, &mut active, &mut budget) { 0 } else { idle + 1 };
         let mut certificate = certify(program, &x, &active);
+        // Where only overlaps are left, they are removed by a least-norm step, at the cost of a hair of the value.
         for _ in 0..CLEARINGS {
             if !certificate.lacks_only_room() {
                 break;
@@ -114,7 +116,7 @@ fn polished<P: Program>(
         if done {
             break;
         }
-        // Take in what is violated, or let the most negative multiplier go.
+        // Change of the active set: take in what is violated, or let the most negative multiplier go.
         let before = active.len();
         let rows = program.rows(&x, BAND, Derivatives::None);
         let loads = Loads::new(&active);

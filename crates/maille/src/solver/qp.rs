@@ -118,9 +118,10 @@ pub fn solve(program: &QuadraticProgram<'_>) -> QpSolution {
             cone.z[side] = 1e-2 * scale / cone.s[side].max(1e-1);
         }
     }
+    // The best iterate so far is the answer: rounding can spoil the last ones.
     let mut best = QpSolution { x: x.clone(), multipliers: vec![0.0; m], residual: f64::INFINITY, iterations: 0 };
     let (mut dual, mut primal) = (vec![0.0; n], vec![0.0; m]);
-    let (matrix, positions) = room(program);
+    let (matrix, positions) = normal_pattern(program);
     let mut system = Cholesky::new(matrix);
     let mut direction = Direction { x: vec![0.0; n], s: vec![0.0; sides], z: vec![0.0; sides] };
     let mut target = vec![0.0; sides];
@@ -147,7 +148,7 @@ pub fn solve(program: &QuadraticProgram<'_>) -> QpSolution {
             break;
         }
         cone.inverse.iter_mut().zip(&cone.s).for_each(|(inverse, s)| *inverse = 1.0 / s);
-        // H + Aᵀ diag(z/s) A + diag(box).
+        // Normal matrix H + Aᵀ diag(z/s) A + diag(box), and its Cholesky factor.
         let matrix = system.matrix_mut();
         matrix.set(program.hessian);
         let mut at = &positions[..];
@@ -162,9 +163,11 @@ pub fn solve(program: &QuadraticProgram<'_>) -> QpSolution {
         if !system.factor() {
             break;
         }
+        // Predictor: the affine direction, towards complementarity 0.
         target.fill(0.0);
         direction.find(program, &mut system, &cone, (&dual, &primal), &target);
         let (primal_step, dual_step) = (to_boundary(&cone.s, &direction.s), to_boundary(&cone.z, &direction.z));
+        // Mehrotra's centring: the cube of the gap that the predictor leaves, with its second-order term.
         let after = |k: usize| (cone.s[k] + primal_step * direction.s[k]) * (cone.z[k] + dual_step * direction.z[k]);
         let predicted = (0..sides).map(after).sum::<f64>() / sides as f64;
         let centering = (predicted / gap).powi(3) * gap;
@@ -191,8 +194,8 @@ pub fn solve(program: &QuadraticProgram<'_>) -> QpSolution {
     best
 }
 
-/// A matrix with room for H + AᵀA, and the places of the rows' entries in it.
-fn room(program: &QuadraticProgram<'_>) -> (Symmetric, Vec<usize>) {
+/// A matrix with the pattern of H + AᵀA, and the places of the rows' entries in it.
+fn normal_pattern(program: &QuadraticProgram<'_>) -> (Symmetric, Vec<usize>) {
     let n = program.linear.len();
     let columns = |k: usize| program.rows.row(k).0;
     let cliques = (0..program.lower.len()).map(columns);
