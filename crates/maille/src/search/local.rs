@@ -99,7 +99,7 @@ struct Rounds<'a> {
     model: &'a Model,
     cancel: &'a AtomicBool,
     iterations: u64,
-    /// Certified at the cost of a hair of the value, for want of better.
+    /// Certified at a small cost in the value, if nothing better is found.
     last_resort: Option<Solve>,
 }
 

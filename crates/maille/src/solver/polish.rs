@@ -78,7 +78,7 @@ fn polished<P: Program>(
         // Newton on the optimality conditions of the active set.
         idle = if newton(program, &mut x, &mut active, &mut budget) { 0 } else { idle + 1 };
         let mut certificate = certify(program, &x, &active);
-        // Where only overlaps are left, they are removed by a least-norm step, at the cost of a hair of the value.
+        // Where only overlaps are left, they are removed by a least-norm step, at a small cost in the value.
         for _ in 0..CLEARINGS {
             if !certificate.lacks_only_room() {
                 break;
