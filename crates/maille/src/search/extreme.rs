@@ -159,21 +159,15 @@ pub fn extreme(model: &Model, what: Extreme, options: &ExtremeOptions, cancel: &
     let target = Sought { what, lattice_free: options.lattice_free };
     let search = Multistart { target: &target, upper_bound: f64::INFINITY, seed: options.seed, cancel };
     let straight = std::iter::once(Start::written(model.start.clone()));
-    let found = search.run(model, straight.chain(perturbed_starts(model, options.seed, 1..options.starts)).collect());
+    let mut found =
+        search.run(model, straight.chain(perturbed_starts(model, options.seed, 1..options.starts)).collect());
     let interrupted = cancel.load(Ordering::Relaxed);
-    let counted = |answer: Answer| Answer {
-        n_starts: Some(found.runs),
-        n_distinct: Some(found.distinct.len() as u64),
-        runs: found.runs,
-        iterations: found.iterations,
-        ..answer
-    };
-    let Some(best) = found.best else {
+    let Some(best) = found.best.take() else {
         let status = if interrupted { Status::Interrupted } else { Status::NotConverged };
-        return counted(Answer::new(model, status));
+        return found.counted(Answer::new(model, status));
     };
     let status = if interrupted { Status::Interrupted } else { verdict(&best, f64::INFINITY) };
     let value = Some(if what == Extreme::ThickestWire { 1.0 + best.value() } else { best.value() });
     let gradient = best.state.deformation_gradient(model);
-    counted(Answer { value, gradient, ..Answer::new(model, status) }).with_solution(model, best)
+    found.counted(Answer { value, gradient, ..Answer::new(model, status) }).with_solution(model, best)
 }

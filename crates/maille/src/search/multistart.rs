@@ -203,6 +203,17 @@ impl SearchResult {
         CellTrend { cell, value, n_starts: self.runs, n_distinct: self.distinct.len() as u64 }
     }
 
+    /// The answer with what the search took.
+    pub fn counted(&self, answer: Answer) -> Answer {
+        Answer {
+            n_starts: Some(self.runs),
+            n_distinct: Some(self.distinct.len() as u64),
+            runs: self.runs,
+            iterations: self.iterations,
+            ..answer
+        }
+    }
+
     /// Whether it has a better solution than `other`: certified first, and more than the same.
     pub fn improves_on(&self, other: &SearchResult) -> bool {
         match (&self.best, &other.best) {

@@ -136,19 +136,14 @@ impl<'a> StrainMethod<'a> {
         let rule = LargerCells { every: least, own_starts, where_none: false, fallback, neighbours: &[] };
         let found = search.larger_cells(self.models, first, &rule);
         let by_cell = found.by_cell.into_iter().map(|t| CellTrend { value: t.value.map(|p| sign * p), ..t }).collect();
-        let counted = |answer: Answer| Answer {
-            bound: bound.map(|bound| sign * bound),
-            n_starts: Some(found.result.runs),
-            n_distinct: Some(found.result.distinct.len() as u64),
-            runs: found.result.runs,
-            iterations: found.result.iterations,
-            by_cell,
-            ..answer
-        };
+        let mut result = found.result;
+        let best = result.best.take();
+        let counted =
+            |answer: Answer| Answer { bound: bound.map(|bound| sign * bound), by_cell, ..result.counted(answer) };
         if cancel.load(Ordering::Relaxed) {
             return counted(none(Status::Interrupted));
         }
-        let Some(best) = found.result.best else { return counted(none(Status::L2NotReached)) };
+        let Some(best) = best else { return counted(none(Status::L2NotReached)) };
         let model = &self.models[found.cell];
         let status = verdict(&best, upper_bound);
         // Without a bound, and where no contact pushes back: this is no limit, only where the search was stopped.

@@ -337,20 +337,13 @@ impl<'a> ExactMethod<'a> {
         cell: usize,
         stretch: &Stretch,
         upper_bound: f64,
-        found: SearchResult,
+        mut found: SearchResult,
         cancel: &AtomicBool,
     ) -> Answer {
-        let counted = |answer: Answer| Answer {
-            n_starts: Some(found.runs),
-            n_distinct: Some(found.distinct.len() as u64),
-            runs: found.runs,
-            iterations: found.iterations,
-            ..answer
-        };
-        let Some(best) = found.best else {
+        let Some(best) = found.best.take() else {
             let what = if stretch.across.lateral_free { "a state" } else { "this l2" };
             let note = Some(format!("no start reached {what} without overlap; nothing is proved"));
-            return counted(Answer { note, ..self.without_state(Status::L2NotReached) });
+            return found.counted(Answer { note, ..self.without_state(Status::L2NotReached) });
         };
         let model = &self.models[cell];
         let Stretch { l2, across, direction_deg, sign } = *stretch;
@@ -361,7 +354,7 @@ impl<'a> ExactMethod<'a> {
         let above = best.certified && best.value() > upper_bound + ATTAINED;
         let note =
             above.then(|| format!("l1 = {reached} lies above its proven bound {upper_bound}: one of them is wrong"));
-        let mut answer = counted(Answer {
+        let mut answer = found.counted(Answer {
             value: Some(along.dot(&(gradient * along)) - 1.0),
             gradient,
             residual: Some((-best.certificate.smallest_gap).max(0.0)),
