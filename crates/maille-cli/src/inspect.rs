@@ -12,7 +12,7 @@ use crate::{
 use maille::{
     bound::{ChainBound, LinkBound, best_bound},
     design::Source,
-    lattice::{Cell, Shift},
+    lattice::{Cell, Direction, Shift},
     model::Model,
     topology,
 };
@@ -235,7 +235,7 @@ fn bounds(model: &Model) -> (Vec<Chain>, Vec<Bound>) {
         rings: binding.rings.iter().map(|(ring, shift)| model.ring_label(*ring, *shift)).collect(),
     });
     let bounds = BOUND_DIRECTIONS.map(|direction_deg| {
-        let bound = best_bound(&chain, Some(&link), direction_deg, 0.0);
+        let bound = best_bound(&chain, Some(&link), Direction::of_degrees(direction_deg), 0.0);
         Bound { direction_deg, l2: 0.0, l1: bound.l1(), kind: bound.kind().map(|k| k.to_string()) }
     });
     (chains.collect(), bounds.into())

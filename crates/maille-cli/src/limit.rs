@@ -149,7 +149,7 @@ const UNIQUE: f64 = 2e-3;
 fn print(answer: &StrainAnswer<'_>, wall_s: f64) {
     let found = answer.found;
     let most = answer.question.sense.name();
-    let turned = match answer.direction_deg {
+    let turned = match answer.direction.degrees() {
         0.0 => String::new(),
         angle => format!(" with x along {angle}\u{b0}"),
     };

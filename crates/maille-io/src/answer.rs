@@ -3,6 +3,7 @@
 use maille::{
     answer::{Answer, CellTrend},
     design::Design,
+    lattice::Direction,
     model::Model,
     question::{Goal, Question, Strain},
     record::{Status, pose_records},
@@ -23,7 +24,7 @@ pub struct StrainAnswer<'a> {
     /// Strains that were left to the sheet.
     pub free: &'a [Strain],
     /// Direction of the strains' x axis.
-    pub direction_deg: f64,
+    pub direction: Direction,
     /// The design, compiled for the cell of the answer.
     pub model: &'a Model,
     /// What was found.
@@ -34,7 +35,8 @@ impl<'a> StrainAnswer<'a> {
     /// The answer to a question on a strain; `None` of other goals.
     pub fn new(design: &'a str, question: &'a Question, model: &'a Model, found: &'a Answer) -> Option<Self> {
         let Goal::Strain { component, direction_deg, free, .. } = &question.goal else { return None };
-        Some(StrainAnswer { design, question, goal: *component, free, direction_deg: *direction_deg, model, found })
+        let direction = Direction::of_degrees(*direction_deg);
+        Some(StrainAnswer { design, question, goal: *component, free, direction, model, found })
     }
 
     /// The status in words of strains.
@@ -62,7 +64,7 @@ impl<'a> StrainAnswer<'a> {
 
     /// A strain of the state.
     pub fn strain(&self, strain: Strain) -> f64 {
-        strain.of(&self.found.green_strain(), self.direction_deg)
+        strain.of(&self.found.green_strain(), self.direction)
     }
 
     /// l1 of lines along a normal strain that was sought: λ = √(1 + 2 E), l1 = λ − 1.
@@ -96,7 +98,7 @@ impl<'a> StrainAnswer<'a> {
             "strains": Strain::ALL.map(strain).into_iter().collect::<Map<_, _>>(),
             "cell": self.model.cell.to_string(),
             "by_cell": found.by_cell.iter().map(cell).collect::<Vec<_>>(),
-            "direction_deg": self.direction_deg,
+            "direction_deg": self.direction.degrees(),
             "l1": self.stretch(),
             "a1": solved.then(|| length(self.model, found.state.a1)),
             "a2": solved.then(|| length(self.model, found.state.a2)),

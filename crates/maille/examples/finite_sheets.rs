@@ -4,7 +4,7 @@
 
 use maille::{
     answer::Answer,
-    lattice::Cell,
+    lattice::{Cell, Direction},
     model::Model,
     record::Status,
     relaxation::{
@@ -55,7 +55,8 @@ fn main() {
         let model = Model::compile(&design, Cell::PRIMITIVE).expect("it compiles");
         // The finite sheets' width is free: of the periodic limits the largest over l2 is the one to compare with.
         let method = EnergyMethod::new(&model, EnergyOptions::default(), &cancel);
-        let limits = (-4..=8).map(|k| (f64::from(k) * 0.025, method.limit(0.0, f64::from(k) * 0.025, &cancel)));
+        let limits = (-4..=8)
+            .map(|k| (f64::from(k) * 0.025, method.limit(Direction::of_degrees(0.0), f64::from(k) * 0.025, &cancel)));
         let found: Vec<_> = limits.filter(|(_, limit)| limit.status == Status::ThresholdReached).collect();
         let of = |(l2, limit): &(f64, Answer)| (limit.gradient[(0, 0)] - 1.0, *l2, limit.iterations);
         let at_rest = found.iter().map(of).filter(|(_, l2, _)| *l2 == 0.0);

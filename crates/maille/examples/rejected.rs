@@ -5,7 +5,7 @@
 
 use maille::{
     design::{Design, RingSpec},
-    lattice::Cell,
+    lattice::{Cell, Direction},
     model::Model,
     record::Status,
     relaxation::{
@@ -13,7 +13,7 @@ use maille::{
         barrier::ContactLaw,
         limit::{EnergyMethod, EnergyOptions, Minimiser},
         load::Loads,
-        target::{Protocol, Target, target_gradient},
+        target::{Protocol, Target},
     },
     solver::{
         curvature::Decomposed,
@@ -66,7 +66,8 @@ fn shifts() {
         for (minimiser_name, minimiser) in minimisers {
             let begun = Instant::now();
             let options = EnergyOptions { minimiser, ..usual() };
-            let found = EnergyMethod::new(&model, options, &NO_CANCEL).limit(direction, l2, &NO_CANCEL);
+            let found =
+                EnergyMethod::new(&model, options, &NO_CANCEL).limit(Direction::of_degrees(direction), l2, &NO_CANCEL);
             let wall = begun.elapsed().as_secs_f64();
             let (sin, cos) = direction.to_radians().sin_cos();
             let d = nalgebra::Vector2::new(cos, sin);
@@ -110,7 +111,8 @@ fn beyond() {
     for (name, options) in both_laws() {
         let contacts = options.contacts(&model);
         for l1 in [0.5, 0.7, 1.0, 1.5, 2.0] {
-            let target = Target::new(&model, Protocol::Strain, target_gradient(0.0, l1, 0.0), 1.0, 100.0);
+            let target =
+                Target::new(&model, Protocol::Strain, Direction::of_degrees(0.0).gradient(l1, 0.0, 0.0), 1.0, 100.0);
             let energy = SheetEnergy { target: Some(&target), ..SheetEnergy::new(&model, &contacts) };
             let start = Configuration::start(model.start.clone());
             let end = minimize(&energy, start, &options.newton(), &NO_CANCEL, &mut |_, _, _| {});
@@ -141,7 +143,11 @@ fn laws() {
         let (mut limits, mut stalled, mut iterations, mut errors) = (0, 0, 0, Vec::new());
         for (design_name, direction, exact) in cases {
             let model = Model::compile(&design(design_name), Cell::PRIMITIVE).expect("it compiles");
-            let found = EnergyMethod::new(&model, options.clone(), &NO_CANCEL).limit(direction, 0.0, &NO_CANCEL);
+            let found = EnergyMethod::new(&model, options.clone(), &NO_CANCEL).limit(
+                Direction::of_degrees(direction),
+                0.0,
+                &NO_CANCEL,
+            );
             iterations += found.iterations;
             match found.status {
                 Status::ThresholdReached => {
@@ -175,7 +181,8 @@ fn descent() {
     for (name, direction, l1) in within.into_iter().chain(missed) {
         let model = Model::compile(&design(name), Cell::PRIMITIVE).expect("it compiles");
         let contacts = options.contacts(&model);
-        let target = Target::new(&model, Protocol::Strain, target_gradient(direction, l1, 0.0), 1.0, 100.0);
+        let target =
+            Target::new(&model, Protocol::Strain, Direction::of_degrees(direction).gradient(l1, 0.0, 0.0), 1.0, 100.0);
         let energy = SheetEnergy { target: Some(&target), ..SheetEnergy::new(&model, &contacts) };
         for newton in [true, false] {
             let begun = Instant::now();

@@ -2,7 +2,7 @@
 
 use crate::error::InvalidInput;
 use maille_geometry::Vec3;
-use nalgebra::Vector2;
+use nalgebra::{Matrix2, Vector2};
 use serde::{Deserialize, Serialize};
 use std::{fmt, str::FromStr};
 
@@ -228,22 +228,53 @@ pub fn short_basis(a1: Vec3, a2: Vec3) -> Cell {
 /// direction in degrees (up to 360°, turned into radians: 1.4e-15) and of two products.
 pub const ACROSS: f64 = 16.0 * f64::EPSILON;
 
-/// The unit vector at `direction_deg`, exact at multiples of 90°.
-pub fn direction(direction_deg: f64) -> Vector2<f64> {
-    let turn = direction_deg.rem_euclid(360.0);
-    match turn {
-        0.0 => Vector2::new(1.0, 0.0),
-        90.0 => Vector2::new(0.0, 1.0),
-        180.0 => Vector2::new(-1.0, 0.0),
-        270.0 => Vector2::new(0.0, -1.0),
-        _ => Vector2::new(turn.to_radians().cos(), turn.to_radians().sin()),
-    }
+/// A direction in the plane of the sheet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Direction {
+    degrees: f64,
+    along: Vector2<f64>,
 }
 
-/// D along a direction, and D⊥ to its left.
-pub fn axes(direction_deg: f64) -> (Vector2<f64>, Vector2<f64>) {
-    let along = direction(direction_deg);
-    (along, Vector2::new(-along.y, along.x))
+impl Direction {
+    /// At an angle counter-clockwise from x, exact at multiples of 90°.
+    pub fn of_degrees(degrees: f64) -> Self {
+        let turn = degrees.rem_euclid(360.0);
+        let along = match turn {
+            0.0 => Vector2::new(1.0, 0.0),
+            90.0 => Vector2::new(0.0, 1.0),
+            180.0 => Vector2::new(-1.0, 0.0),
+            270.0 => Vector2::new(0.0, -1.0),
+            _ => Vector2::new(turn.to_radians().cos(), turn.to_radians().sin()),
+        };
+        Direction { degrees, along }
+    }
+
+    /// The angle, as it was given.
+    pub fn degrees(self) -> f64 {
+        self.degrees
+    }
+
+    /// D, its unit vector.
+    pub fn along(self) -> Vector2<f64> {
+        self.along
+    }
+
+    /// D⊥, the unit vector to its left.
+    pub fn across(self) -> Vector2<f64> {
+        Vector2::new(-self.along.y, self.along.x)
+    }
+
+    /// The direction of D⊥.
+    pub fn left(self) -> Direction {
+        Direction::of_degrees(self.degrees + 90.0)
+    }
+
+    /// F of a stretch, see [`Across`].
+    pub fn gradient(self, l1: f64, l2: f64, shear: f64) -> Matrix2<f64> {
+        let (d, across) = (self.along(), self.across());
+        let held = d * d.transpose() * (1.0 + l1) + across * across.transpose() * (1.0 + l2);
+        if shear == 0.0 { held } else { held + d * across.transpose() * shear }
+    }
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use crate::{
     error::InvalidInput,
-    lattice::{Across, axes},
+    lattice::{Across, Direction},
     program::metric::factor,
 };
 use nalgebra::Matrix2;
@@ -196,7 +196,8 @@ impl Question {
     pub fn strain_query(&self) -> Result<Option<StrainQuery>, InvalidInput> {
         match &self.goal {
             Goal::Strain { component, direction_deg, fix, free } => {
-                StrainQuery::of(*component, self.sense.sign(), fix, free, *direction_deg).map(Some)
+                let x = Direction::of_degrees(*direction_deg);
+                StrainQuery::of(*component, self.sense.sign(), fix, free, x).map(Some)
             }
             Goal::Ray { direction: [xx, yy, xy] } => {
                 let along = Matrix2::new(*xx, *xy, *xy, *yy) * self.sense.sign();
@@ -257,9 +258,9 @@ impl Strain {
         ["exx", "eyy", "exy"][self as usize]
     }
 
-    /// E where this component is 1 and the others are 0, with x along `direction_deg`.
-    pub fn unit(self, direction_deg: f64) -> Matrix2<f64> {
-        let (x, y) = axes(direction_deg);
+    /// E where this component is 1 and the others are 0, with x along a direction.
+    pub fn unit(self, direction: Direction) -> Matrix2<f64> {
+        let (x, y) = (direction.along(), direction.across());
         match self {
             Strain::Exx => x * x.transpose(),
             Strain::Eyy => y * y.transpose(),
@@ -267,9 +268,9 @@ impl Strain {
         }
     }
 
-    /// This component of E, with x along `direction_deg`.
-    pub fn of(self, e: &Matrix2<f64>, direction_deg: f64) -> f64 {
-        let (x, y) = axes(direction_deg);
+    /// This component of E, with x along a direction.
+    pub fn of(self, e: &Matrix2<f64>, direction: Direction) -> f64 {
+        let (x, y) = (direction.along(), direction.across());
         let (a, b) = [(x, x), (y, y), (x, y)][self as usize];
         a.dot(&(e * b))
     }
@@ -277,13 +278,13 @@ impl Strain {
 
 impl StrainQuery {
     /// The largest (`sign` 1) or least (−1) value of `goal`, with the strains of `fix` held, those of `free` left to the sheet,
-    /// and the others held at 0, x along `direction_deg`. Refused where a strain is named twice or no lattice has what is held.
+    /// and the others held at 0, x along `direction`. Refused where a strain is named twice or no lattice has what is held.
     pub fn of(
         goal: Strain,
         sign: f64,
         fix: &[(Strain, f64)],
         free: &[Strain],
-        direction_deg: f64,
+        direction: Direction,
     ) -> Result<Self, InvalidInput> {
         let mut named = vec![goal];
         for strain in fix.iter().map(|(strain, _)| *strain).chain(free.iter().copied()) {
@@ -294,12 +295,12 @@ impl StrainQuery {
             }
             named.push(strain);
         }
-        let held = fix.iter().map(|(strain, value)| strain.unit(direction_deg) * *value).sum::<Matrix2<f64>>();
+        let held = fix.iter().map(|(strain, value)| strain.unit(direction) * *value).sum::<Matrix2<f64>>();
         if factor(&(Matrix2::identity() + held * 2.0)).is_none() {
             let help = "a strain of -0.5 is a length of 0; take larger values, or a smaller exy";
             return Err(InvalidInput::new("fix", "no lattice has the strains that are held", help));
         }
-        let rest = free.iter().map(|strain| strain.unit(direction_deg));
-        Ok(StrainQuery { held, free: std::iter::once(goal.unit(direction_deg) * sign).chain(rest).collect() })
+        let rest = free.iter().map(|strain| strain.unit(direction));
+        Ok(StrainQuery { held, free: std::iter::once(goal.unit(direction) * sign).chain(rest).collect() })
     }
 }

@@ -20,7 +20,7 @@
 //! file has it not.
 
 use crate::{
-    lattice::{Cell, Shift, direction},
+    lattice::{Cell, Direction, Shift},
     model::Model,
     state::{Pose, State},
     topology::RingPair,
@@ -144,7 +144,7 @@ fn automorphisms(own: &Model) -> Vec<([[i32; 2]; 2], Matrix2<f64>, f64)> {
                 (angle_deg * STEPS_PER_DEGREE).round() / STEPS_PER_DEGREE
             };
             let angle_deg = angle_deg.rem_euclid(360.0);
-            let d = direction(angle_deg);
+            let d = Direction::of_degrees(angle_deg).along();
             let sign = f64::from(det);
             let plane = Matrix2::new(d.x, -sign * d.y, d.y, sign * d.x);
             out.extend(in_basis(short, first, second).map(|integers| (integers, plane, angle_deg)));

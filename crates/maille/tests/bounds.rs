@@ -3,9 +3,8 @@
 use maille::{
     bound::{Bound, BoundKind, ChainBound, LinkBound, best_bound, crossing_pairs_length},
     design::Design,
-    lattice::direction,
+    lattice::Direction,
     model::Model,
-    relaxation::target::target_gradient,
     state::State,
     topology,
 };
@@ -52,7 +51,7 @@ fn known_limits_attain_the_bound() {
     ];
     for (name, r, degrees, l2, l1) in known {
         let (chain, link) = bounds(name, r, "1x1");
-        let Bound::Finite { l1: bound, kind, chain: path, .. } = chain.limit(degrees, l2) else {
+        let Bound::Finite { l1: bound, kind, chain: path, .. } = chain.limit(Direction::of_degrees(degrees), l2) else {
             panic!("{name} {degrees}")
         };
         assert!((bound - l1).abs() < 1e-8, "{name} r = {r}, {degrees}°, l2 = {l2}: {bound} for {l1}");
@@ -60,13 +59,13 @@ fn known_limits_attain_the_bound() {
         let path = path.unwrap();
         let (first, last) = (path.rings[0], *path.rings.last().unwrap());
         assert_eq!((first.0, [0, 0], path.vector), (last.0, first.1, last.1));
-        let proved = link.limit(degrees, l2);
+        let proved = link.limit(Direction::of_degrees(degrees), l2);
         assert!((proved.l1 - bound).abs() < 1e-10, "{name} {degrees}° {l2}: {} for {bound}", proved.l1);
     }
-    let l1 = bounds("1.1", 0.1, "1x1").0.limit(0.0, 0.0).l1().unwrap();
+    let l1 = bounds("1.1", 0.1, "1x1").0.limit(Direction::of_degrees(0.0), 0.0).l1().unwrap();
     assert!((l1 - 0.44).abs() < 1e-15, "a closed form to the last digit: {l1}");
     // Here rings that are not linked get in the way first: the limit is 0.58405762.
-    let l1 = bounds("3.1", 0.1, "1x1").0.limit(30.0, -0.125).l1().unwrap();
+    let l1 = bounds("3.1", 0.1, "1x1").0.limit(Direction::of_degrees(30.0), -0.125).l1().unwrap();
     assert!((l1 - 0.58416908).abs() < 1e-8, "{l1}");
 }
 
@@ -106,8 +105,8 @@ fn link_bound_is_never_above_the_chain_bound() {
         for r in [0.05, 0.1] {
             let (chain, link) = bounds(name, r, "1x1");
             for (degrees, l2) in queries() {
-                let proved = link.limit(degrees, l2);
-                match chain.limit(degrees, l2) {
+                let proved = link.limit(Direction::of_degrees(degrees), l2);
+                match chain.limit(Direction::of_degrees(degrees), l2) {
                     Bound::Finite { l1, .. } => {
                         assert!(proved.l1 <= l1 + 1e-9, "{name} {r} {degrees} {l2}: {} above {l1}", proved.l1);
                         assert!(proved.l1 >= proved.primal_l1 - 1e-7, "{name} {r} {degrees} {l2}: {proved:?}");
@@ -115,7 +114,7 @@ fn link_bound_is_never_above_the_chain_bound() {
                         assert!(proved.l2_unreachable() || gap < 1e-7, "{name} {r} {degrees} {l2}: {gap:e}");
                     }
                     Bound::L2Unreachable { chain: path, .. } => {
-                        assert!(path.is_some() && l2 > chain.most_l2(degrees));
+                        assert!(path.is_some() && l2 > chain.most_l2(Direction::of_degrees(degrees)));
                         assert!(proved.l2_unreachable(), "{name} {r} {degrees} {l2}: {proved:?}");
                     }
                     Bound::Unbounded => panic!("{name} {degrees}"),
@@ -132,7 +131,10 @@ fn link_bound_improves_branched_and_doubled_weaves() {
         let (chain, link) = bounds(name, 0.1, "1x1");
         let better = queries()
             .filter(|&(degrees, l2)| {
-                matches!(best_bound(&chain, Some(&link), degrees, l2).kind(), Some(BoundKind::Link))
+                matches!(
+                    best_bound(&chain, Some(&link), Direction::of_degrees(degrees), l2).kind(),
+                    Some(BoundKind::Link)
+                )
             })
             .count();
         match name {
@@ -144,9 +146,13 @@ fn link_bound_improves_branched_and_doubled_weaves() {
     // Four rings of a doubled weave cross: 2 L for 2 (1 + 1 - 2r) along the threads, at any r/R up to 1/8.
     for r in [0.1, 0.05, 0.02] {
         let (chain, link) = bounds("5.1", r, "1x1");
-        let Bound::Finite { l1, .. } = best_bound(&chain, Some(&link), 0.0, 0.0) else { panic!() };
+        let Bound::Finite { l1, .. } = best_bound(&chain, Some(&link), Direction::of_degrees(0.0), 0.0) else {
+            panic!()
+        };
         assert!((l1 - (2.0 * crossing_pairs_length(1.0, r).unwrap() / 2.7 - 1.0)).abs() < 1e-10, "{l1}");
-        assert!((chain.limit(0.0, 0.0).l1().unwrap() - ((4.0 - 4.0 * r) / 2.7 - 1.0)).abs() < 1e-14);
+        assert!(
+            (chain.limit(Direction::of_degrees(0.0), 0.0).l1().unwrap() - ((4.0 - 4.0 * r) / 2.7 - 1.0)).abs() < 1e-14
+        );
     }
 }
 
@@ -164,14 +170,20 @@ fn bounds_are_the_same_for_every_cell_and_basis() {
         for cell in ["2x1", "3x2", "1,0;1,1", "1,2;-1,1", "1,0;7,1"] {
             let chain = ChainBound::new(&model(name, 0.1, cell));
             for (degrees, l2) in queries() {
-                let (a, b) = (primitive.0.limit(degrees, l2), chain.limit(degrees, l2));
+                let (a, b) = (
+                    primitive.0.limit(Direction::of_degrees(degrees), l2),
+                    chain.limit(Direction::of_degrees(degrees), l2),
+                );
                 assert!(same(&a, &b, 1e-12), "{name} {cell} {degrees} {l2}: {a:?} {b:?}");
             }
         }
         for cell in ["2x1", "1,0;7,1"] {
             let link = bounds(name, 0.1, cell).1;
             for (degrees, l2) in [(0.0, 0.0), (20.0, -0.125), (45.0, -0.25), (90.0, 0.0)] {
-                let (a, b) = (primitive.1.limit(degrees, l2).l1, link.limit(degrees, l2).l1);
+                let (a, b) = (
+                    primitive.1.limit(Direction::of_degrees(degrees), l2).l1,
+                    link.limit(Direction::of_degrees(degrees), l2).l1,
+                );
                 assert!((a - b).abs() < 1e-8, "{name} {cell} {degrees} {l2}: {a} {b}");
             }
         }
@@ -197,11 +209,11 @@ fn scale_changes_nothing_and_thinner_wire_allows_more() {
         let large = ChainBound::new(&Model::compile(&large, "1x1".parse().unwrap()).unwrap());
         let (thick, thin) = (bounds(name, 0.1, "1x1"), bounds(name, 0.05, "1x1"));
         for (degrees, l2) in queries() {
-            let bound = thick.0.limit(degrees, l2);
-            assert!(same(&bound, &large.limit(degrees, l2), 1e-13));
+            let bound = thick.0.limit(Direction::of_degrees(degrees), l2);
+            assert!(same(&bound, &large.limit(Direction::of_degrees(degrees), l2), 1e-13));
             if let Some(l1) = bound.l1() {
-                assert!(thin.0.limit(degrees, l2).l1().unwrap() > l1);
-                let proved = [&thick, &thin].map(|b| b.1.limit(degrees, l2).l1);
+                assert!(thin.0.limit(Direction::of_degrees(degrees), l2).l1().unwrap() > l1);
+                let proved = [&thick, &thin].map(|b| b.1.limit(Direction::of_degrees(degrees), l2).l1);
                 assert!(proved[1] > proved[0], "{name} {degrees} {l2}: {proved:?}");
             }
         }
@@ -214,7 +226,7 @@ fn widening_is_impossible_where_the_start_is_too_wide() {
     for name in ["1.2", "1.3-small", "3.2", "4.1"] {
         let (chain, link) = bounds(name, 0.1, "1x1");
         for k in 0..25 {
-            match best_bound(&chain, Some(&link), 7.5 * f64::from(k), 0.125) {
+            match best_bound(&chain, Some(&link), Direction::of_degrees(7.5 * f64::from(k)), 0.125) {
                 Bound::Finite { l1, .. } => assert!(l1 < 0.0, "{name}"),
                 Bound::L2Unreachable { chain, .. } => assert!(chain.is_some()),
                 Bound::Unbounded => panic!("{name}"),
@@ -234,14 +246,18 @@ fn threads_bind_along_themselves_only() {
     let link = LinkBound::new(&model, &chain);
     assert_eq!(chain.chains().count(), 1);
     assert!(same(
-        &chain.limit(0.0, 3.0),
+        &chain.limit(Direction::of_degrees(0.0), 3.0),
         &Bound::Finite { l1: 0.44, kind: BoundKind::Chain, chain: None, dual: Vec::new() },
         1e-15
     ));
-    assert_eq!(chain.limit(90.0, 0.0), Bound::Unbounded);
-    assert!(matches!(chain.limit(90.0, 0.45), Bound::L2Unreachable { .. }));
-    assert_eq!(link.limit(90.0, 0.0).l1, f64::INFINITY);
-    assert!((chain.limit(30.0, 0.0).l1().unwrap() - link.limit(30.0, 0.0).l1).abs() < 1e-9);
+    assert_eq!(chain.limit(Direction::of_degrees(90.0), 0.0), Bound::Unbounded);
+    assert!(matches!(chain.limit(Direction::of_degrees(90.0), 0.45), Bound::L2Unreachable { .. }));
+    assert_eq!(link.limit(Direction::of_degrees(90.0), 0.0).l1, f64::INFINITY);
+    assert!(
+        (chain.limit(Direction::of_degrees(30.0), 0.0).l1().unwrap() - link.limit(Direction::of_degrees(30.0), 0.0).l1)
+            .abs()
+            < 1e-9
+    );
 }
 
 /// Beside the direction across a chain the chain still bounds l1; across it, but for the rounding of the direction, it does not.
@@ -251,7 +267,7 @@ fn a_chain_binds_next_to_the_direction_across_it() {
     threads.elements.retain(|e| e.rings[0].normal != [1.0, 0.0, 0.0]);
     let chain = |threads: &Design| ChainBound::new(&Model::compile(threads, "1x1".parse().unwrap()).unwrap());
     for off_deg in [1e-3, 1e-6, 1e-8, -1e-8, 1e-10] {
-        let l1 = chain(&threads).limit(90.0 + off_deg, 0.0).l1().unwrap();
+        let l1 = chain(&threads).limit(Direction::of_degrees(90.0 + off_deg), 0.0).l1().unwrap();
         // v = 2.5 and d = 3.6; what 90° + off is in binary.
         let off_rad = ((90.0 + off_deg) - 90.0_f64).to_radians().abs();
         let used = 2.5 * off_rad.cos();
@@ -269,7 +285,7 @@ fn a_chain_binds_next_to_the_direction_across_it() {
             element.center = turned(element.center);
             element.rings.iter_mut().for_each(|ring| ring.normal = turned(ring.normal));
         }
-        assert_eq!(chain(&design).limit(degrees + 90.0, 0.0), Bound::Unbounded, "{degrees}");
+        assert_eq!(chain(&design).limit(Direction::of_degrees(degrees + 90.0), 0.0), Bound::Unbounded, "{degrees}");
     }
 }
 
@@ -281,9 +297,9 @@ fn states_stay_below_the_bound() {
         let model = model(name, 0.1, "1x1");
         let (chain, link) = bounds(name, 0.1, "1x1");
         for (degrees, l2) in [(0.0, 0.0), (37.0, -0.02)] {
-            let bound = best_bound(&chain, Some(&link), degrees, l2).l1().unwrap();
+            let bound = best_bound(&chain, Some(&link), Direction::of_degrees(degrees), l2).l1().unwrap();
             let stretched = |state: &State, l1: f64| {
-                let gradient = target_gradient(degrees, l1, l2);
+                let gradient = Direction::of_degrees(degrees).gradient(l1, l2, 0.0);
                 let map = |v: Vec3| {
                     let w: Vector2<f64> = gradient * v.xy();
                     Vec3::new(w.x, w.y, 0.0)
@@ -304,7 +320,7 @@ fn states_stay_below_the_bound() {
                     (state, l1, accepted) = (trial, rise, accepted + 1);
                 }
             }
-            let along = direction(degrees);
+            let along = Direction::of_degrees(degrees).along();
             let measured = (state.deformation_gradient(&model) * along).norm() - 1.0;
             assert!(measured <= bound, "{name} {degrees}°: {measured} above {bound}");
             // 2 has hardly any room to begin with.
@@ -328,7 +344,7 @@ fn the_own_cell_has_the_bound_of_a_larger_one() {
         let chain = ChainBound::new(&large);
         let [of_large, of_own] = [&large, &own].map(|m| LinkBound::new(m, &chain));
         for (direction_deg, l2) in [(0.0, 0.0), (15.0, -0.125), (40.0, 0.125)] {
-            let [a, b] = [&of_large, &of_own].map(|bound| bound.limit(direction_deg, l2).l1);
+            let [a, b] = [&of_large, &of_own].map(|bound| bound.limit(Direction::of_degrees(direction_deg), l2).l1);
             assert!((a - b).abs() < 1e-9 || a == b, "{name} {cell}: {a} {b}");
         }
     }

@@ -4,6 +4,7 @@ mod common;
 
 use common::model;
 use maille::{
+    lattice::Direction,
     record::Status,
     relaxation::limit::{EnergyMethod, EnergyOptions},
     topology::{neighbours, smallest_gap},
@@ -59,7 +60,7 @@ fn the_energy_method_runs_every_design(r: f64, closed: &[(&str, f64)]) {
     for (name, ..) in DESIGNS.into_iter().filter(|design| design.0 != "5.2-chapter6") {
         let model = model(name, r);
         let cancel = AtomicBool::new(false);
-        let limit = EnergyMethod::new(&model, coarse.clone(), &cancel).limit(0.0, 0.0, &cancel);
+        let limit = EnergyMethod::new(&model, coarse.clone(), &cancel).limit(Direction::of_degrees(0.0), 0.0, &cancel);
         let stretch = limit.gradient[(0, 0)];
         let exact = closed.iter().find(|c| c.0 == name);
         if let Some((_, exact)) = exact {

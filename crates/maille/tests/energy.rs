@@ -5,12 +5,12 @@ mod common;
 use common::{design, model, shaken};
 use maille::{
     design::Design,
-    lattice::Cell,
+    lattice::{Cell, Direction},
     model::Model,
     relaxation::{
         Configuration, ContactOptions, MinimaMethod, SheetEnergy,
         barrier::ContactLaw,
-        target::{Protocol, Target, target_gradient},
+        target::{Protocol, Target},
     },
     solver::newton::Objective,
     state::State,
@@ -47,7 +47,8 @@ fn for_random_states(check: impl Fn(&SheetEnergy<'_>, &Configuration, &str)) {
     {
         let model = thick(name, radius);
         for protocol in [Protocol::Strain, Protocol::Corners] {
-            let target = Target::new(&model, protocol, target_gradient(20.0, 0.3, -0.1), 1.0, 100.0);
+            let target =
+                Target::new(&model, protocol, Direction::of_degrees(20.0).gradient(0.3, -0.1, 0.0), 1.0, 100.0);
             let energy = SheetEnergy { target: Some(&target), ..SheetEnergy::new(&model, &contacts) };
             for seed in 0..3 {
                 let mut x = Configuration::start(shaken(&model, 0.05, seed));
@@ -115,7 +116,7 @@ fn analytic_hessian_matches_the_thesis_difference() {
 fn contact_energy_is_invariant_under_rigid_motion() {
     let model = thick("1.3-small", 0.16);
     let contacts = options();
-    let target = Target::new(&model, Protocol::Strain, target_gradient(0.0, 0.0, 0.0), 0.0, 0.0);
+    let target = Target::new(&model, Protocol::Strain, Direction::of_degrees(0.0).gradient(0.0, 0.0, 0.0), 0.0, 0.0);
     let energy = SheetEnergy { target: Some(&target), ..SheetEnergy::new(&model, &contacts) };
     let state = shaken(&model, 0.05, 4);
     let turn = UnitQuaternion::from_scaled_axis(Vec3::new(0.4, -1.0, 0.7));
@@ -148,7 +149,8 @@ fn the_step_bound_keeps_every_link() {
     for name in ["1.1", "2-oblong", "3.1", "1.3-small", "5.1"] {
         let model = model(name, if name == "5.1" { 0.05 } else { 0.1 });
         let contacts = options();
-        let target = Target::new(&model, Protocol::Strain, target_gradient(0.0, 0.0, 0.0), 1.0, 0.0);
+        let target =
+            Target::new(&model, Protocol::Strain, Direction::of_degrees(0.0).gradient(0.0, 0.0, 0.0), 1.0, 0.0);
         let energy = SheetEnergy { target: Some(&target), ..SheetEnergy::new(&model, &contacts) };
         let mut rng = ChaCha8Rng::seed_from_u64(9);
         let mut cut = 0;

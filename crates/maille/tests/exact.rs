@@ -5,7 +5,7 @@ mod common;
 use common::{design, map, model};
 use maille::{
     bound::ChainBound,
-    lattice::Cell,
+    lattice::{Cell, Direction},
     model::Model,
     record::{LimitRow, StateRecord, Status},
     search::ExactOptions,
@@ -213,7 +213,7 @@ fn impossible_and_unbounded_pulls() {
     let found = map(std::slice::from_ref(&chain), &[0.0, 90.0], &[0.0], &ExactOptions::default());
     assert_eq!(found[0].row.status, Status::Global);
     assert_eq!((found[1].row.status, found[1].row.l1), (Status::Unbounded, None));
-    assert!(ChainBound::new(&chain).limit(90.0, 0.0).l1().is_none());
+    assert!(ChainBound::new(&chain).limit(Direction::of_degrees(90.0), 0.0).l1().is_none());
 }
 
 /// Limits below zero are found where l1 = 0 is out of reach.

@@ -4,7 +4,7 @@ mod common;
 
 use common::{design, map, model};
 use maille::{
-    lattice::Cell,
+    lattice::{Cell, Direction},
     model::Model,
     record::Status,
     relaxation::{
@@ -265,7 +265,7 @@ fn steps_are_kept_where_they_are_asked_for() {
     let cancel = AtomicBool::new(false);
     let limit = |steps: bool| {
         let options = EnergyOptions { l1_step: 0.3, l1_resolution: 0.02, steps, ..EnergyOptions::default() };
-        EnergyMethod::new(&model, options, &cancel).limit(30.0, -0.25, &cancel)
+        EnergyMethod::new(&model, options, &cancel).limit(Direction::of_degrees(30.0), -0.25, &cancel)
     };
     let (kept, plain) = (limit(true), limit(false));
     assert!(plain.steps.is_empty());

@@ -2,7 +2,7 @@
 #![cfg(target_os = "linux")]
 
 use maille::{
-    lattice::Cell,
+    lattice::{Cell, Direction},
     model::Model,
     relaxation::{Configuration, SheetEnergy, limit::EnergyOptions},
     search::{ExactOptions, stretch::ExactMethod},
@@ -29,7 +29,12 @@ fn a_thousand_limits_leave_nothing_behind() {
         let method = ExactMethod::new(&models, ExactOptions::default(), &AtomicBool::new(false));
         for k in 0..24 {
             let mut count = |_, outcome: maille::answer::Answer| limits += usize::from(outcome.n_starts.is_some());
-            method.limits(7.5 * f64::from(k), &[-0.125, 0.0, 0.125], &AtomicBool::new(false), &mut count);
+            method.limits(
+                Direction::of_degrees(7.5 * f64::from(k)),
+                &[-0.125, 0.0, 0.125],
+                &AtomicBool::new(false),
+                &mut count,
+            );
         }
     };
     (0..3).for_each(|_| map());

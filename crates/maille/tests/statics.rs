@@ -5,7 +5,7 @@ mod common;
 
 use maille::{
     design::Design,
-    lattice::{Cell, direction},
+    lattice::{Cell, Direction},
     model::Model,
     record::Status,
     search::ExactOptions,
@@ -68,7 +68,7 @@ fn check_statics(design: &Design, limit: &Finished) {
             (vector(pose.position), turn * Vec3::from(ring.normal).normalize(), ring.major_radius / unit, wire)
         })
         .collect();
-    let d = direction(row.direction_deg);
+    let d = Direction::of_degrees(row.direction_deg).along();
     let d = Vec3::new(d.x, d.y, 0.0);
     let mut force = vec![Vec3::zeros(); rings.len()];
     let mut moment = vec![Vec3::zeros(); rings.len()];

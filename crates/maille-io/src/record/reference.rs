@@ -11,7 +11,7 @@
 //! direction at the limit. `docs/theory/reference.md` has the same with its consequences.
 
 use super::folder::Record;
-use maille::lattice::direction;
+use maille::lattice::Direction;
 use maille::record::LimitRow;
 use nalgebra::{Matrix2, Vector2};
 
@@ -84,7 +84,7 @@ impl Record {
 impl ReferenceCell {
     /// λ / (1 + l1) of a pull along this direction.
     fn factor(&self, direction_deg: f64) -> f64 {
-        1.0 / (self.gradient * direction(direction_deg)).norm()
+        1.0 / (self.gradient * Direction::of_degrees(direction_deg).along()).norm()
     }
 
     /// A row with l1 and its bound measured from this cell. Its other strains, l2 among them, stay as they are.
@@ -109,7 +109,7 @@ mod tests {
 
     /// A limit of 1.1, whose square has the side 2.5 R, with this gradient.
     fn limit(direction_deg: f64, l2: f64, f: [[f64; 2]; 2]) -> LimitRow {
-        let d = direction(direction_deg);
+        let d = Direction::of_degrees(direction_deg).along();
         let f = Matrix2::new(f[0][0], f[0][1], f[1][0], f[1][1]);
         let a = 2.5 * f;
         LimitRow {
@@ -172,7 +172,7 @@ mod tests {
     /// 1 / |A_ref A⁻¹ D|, from the recorded lattices alone.
     fn definition(cell: &ReferenceCell, row: &LimitRow) -> f64 {
         let back = cell.lattice * lattice(row).unwrap().try_inverse().unwrap();
-        1.0 / (back * direction(row.direction_deg)).norm()
+        1.0 / (back * Direction::of_degrees(row.direction_deg).along()).norm()
     }
 
     #[test]

@@ -20,7 +20,7 @@
 
 use super::outcome::{BindingChain, Bound, BoundKind};
 use crate::{
-    lattice::{ACROSS, Shift, axes},
+    lattice::{ACROSS, Direction, Shift},
     model::Model,
 };
 use nalgebra::Vector2;
@@ -93,9 +93,9 @@ impl ChainBound {
         least
     }
 
-    /// The bound of l1 along `direction_deg` with l2 held.
-    pub fn limit(&self, direction_deg: f64, l2: f64) -> Bound {
-        let (along, across) = axes(direction_deg);
+    /// The bound of l1 along a direction with l2 held.
+    pub fn limit(&self, direction: Direction, l2: f64) -> Bound {
+        let (along, across) = (direction.along(), direction.across());
         let mut best: Option<(f64, &Vertex)> = None;
         let mut worst: Option<(f64, &Vertex)> = None;
         for vertex in &self.vertices {
@@ -125,8 +125,8 @@ impl ChainBound {
     }
 
     /// The largest l2 that the chains allow with this direction, at any l1; infinite where none binds across it.
-    pub fn most_l2(&self, direction_deg: f64) -> f64 {
-        let (_, across) = axes(direction_deg);
+    pub fn most_l2(&self, direction: Direction) -> f64 {
+        let across = direction.across();
         self.vertices.iter().map(|v| 1.0 / v.x.dot(&across).abs() - 1.0).fold(f64::INFINITY, f64::min)
     }
 }

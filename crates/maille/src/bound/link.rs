@@ -35,7 +35,7 @@ use super::{
     tie::{self, Tie, TieKind},
 };
 use crate::{
-    lattice::{Across, axes},
+    lattice::{Across, Direction},
     model::Model,
     solver::cone::{Cone, ConeProgram, eigenvalues, pack},
 };
@@ -128,22 +128,21 @@ impl LinkBound {
         LinkBound { ties, n_elements: 0, turn: Vec::new(), template, chain: chain.clone() }
     }
 
-    /// The bound of l1 along `direction_deg` with l2 held.
-    pub fn limit(&self, direction_deg: f64, l2: f64) -> LinkSolution {
-        self.limit_across(direction_deg, l2, Across::HELD)
+    /// The bound of l1 along a direction with l2 held.
+    pub fn limit(&self, direction: Direction, l2: f64) -> LinkSolution {
+        self.limit_across(direction, l2, Across::HELD)
     }
 
-    /// The bound of l1 along `direction_deg`, with l2 and the shear held or free.
-    pub fn limit_across(&self, direction_deg: f64, l2: f64, free: Across) -> LinkSolution {
+    /// The bound of l1 along a direction, with l2 and the shear held or free.
+    pub fn limit_across(&self, direction: Direction, l2: f64, free: Across) -> LinkSolution {
         let nothing = LinkSolution { l1: f64::INFINITY, primal_l1: f64::INFINITY, dual: Vec::new(), iterations: 0 };
-        let largest_stretch = match self.chain.limit(direction_deg, l2) {
+        let largest_stretch = match self.chain.limit(direction, l2) {
             _ if free.any() => self.chain.largest_stretch(),
             Bound::Unbounded => return nothing,
             Bound::Finite { l1, .. } => (1.0 + l1).max(1.0 + l2),
             Bound::L2Unreachable { .. } => 1.0 + l2.max(0.0),
         };
-        let (along, across) = axes(direction_deg);
-        let (along, across) = (along.push(0.0), across.push(0.0));
+        let (along, across) = (direction.along().push(0.0), direction.across().push(0.0));
         let query = Query { bound: self, along, across, l2, free, largest_stretch };
         let mut program = self.template.clone();
         let held = program.cost.len();

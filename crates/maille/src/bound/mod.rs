@@ -33,18 +33,18 @@ pub use metric::{MetricBound, metric_bound};
 pub use outcome::{BindingChain, Bound, BoundKind, DualForce};
 pub use tie::{TieKind, crossing_pairs_length};
 
-use crate::lattice::Across;
+use crate::lattice::{Across, Direction};
 
 /// The link bound counts as lower than the chain bound from this difference on; below it they are the same number.
 const SAME: f64 = 1e-10;
 
 /// The lower of the two bounds; the link bound is solved only where it is asked for and the chain bound is finite.
-pub fn best_bound(chain: &ChainBound, link: Option<&LinkBound>, direction_deg: f64, l2: f64) -> Bound {
-    let first = chain.limit(direction_deg, l2);
+pub fn best_bound(chain: &ChainBound, link: Option<&LinkBound>, direction: Direction, l2: f64) -> Bound {
+    let first = chain.limit(direction, l2);
     let (Some(link), Bound::Finite { l1: chain_l1, chain: path, .. }) = (link, &first) else {
         return first;
     };
-    let solution = link.limit(direction_deg, l2);
+    let solution = link.limit(direction, l2);
     if solution.l2_unreachable() {
         Bound::L2Unreachable { kind: BoundKind::Link, chain: path.clone(), dual: solution.dual }
     } else if solution.l1 < chain_l1 - SAME {
@@ -58,21 +58,21 @@ pub fn best_bound(chain: &ChainBound, link: Option<&LinkBound>, direction_deg: f
 pub fn best_bound_across(
     chain: &ChainBound,
     link: Option<&LinkBound>,
-    direction_deg: f64,
+    direction: Direction,
     l2: f64,
     free: Across,
 ) -> Bound {
     if !free.any() {
-        return best_bound(chain, link, direction_deg, l2);
+        return best_bound(chain, link, direction, l2);
     }
-    let of_chains = LinkBound::of_chains(chain).limit_across(direction_deg, l2, free);
+    let of_chains = LinkBound::of_chains(chain).limit_across(direction, l2, free);
     if of_chains.l2_unreachable() {
         return Bound::L2Unreachable { kind: BoundKind::Chain, chain: None, dual: of_chains.dual };
     }
     if !of_chains.l1.is_finite() {
         return Bound::Unbounded;
     }
-    let (kind, solution) = match link.map(|link| link.limit_across(direction_deg, l2, free)) {
+    let (kind, solution) = match link.map(|link| link.limit_across(direction, l2, free)) {
         Some(solution) if solution.l1 < of_chains.l1 - SAME => (BoundKind::Link, solution),
         _ => (BoundKind::Chain, of_chains),
     };

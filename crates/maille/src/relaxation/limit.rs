@@ -3,14 +3,14 @@
 
 use crate::{
     answer::Answer,
-    lattice::direction,
+    lattice::Direction,
     model::Model,
     record::{Status, StepRecord},
     relaxation::{
         Configuration, ContactOptions, HessianMethod, MinimaMethod, SheetEnergy,
         barrier::ContactLaw,
         flat::FLAT_CURVATURE,
-        target::{Protocol, Target, target_gradient},
+        target::{Protocol, Target},
     },
     solver::{
         descent::steepest_descent,
@@ -258,11 +258,11 @@ impl<'a> EnergyMethod<'a> {
         (end, residual, measured)
     }
 
-    /// The limit of l1 along `direction_deg` with l2 held.
-    pub fn limit(&self, direction_deg: f64, l2: f64, cancel: &AtomicBool) -> Answer {
+    /// The limit of l1 along a direction with l2 held.
+    pub fn limit(&self, direction: Direction, l2: f64, cancel: &AtomicBool) -> Answer {
         let mut search =
-            Search { method: self, direction_deg, l2, cancel, iterations: 0, runs: 0, restless: 0, steps: Vec::new() };
-        let along = direction(direction_deg);
+            Search { method: self, direction, l2, cancel, iterations: 0, runs: 0, restless: 0, steps: Vec::new() };
+        let along = direction.along();
         let linked = topology::binds(self.model, [along.x, along.y]);
         if let Some(note) = &self.start_note {
             return search.end(Status::InfeasibleStart, None, Some(note.clone()));
@@ -284,7 +284,7 @@ struct Trial {
 
 struct Search<'a> {
     method: &'a EnergyMethod<'a>,
-    direction_deg: f64,
+    direction: Direction,
     l2: f64,
     cancel: &'a AtomicBool,
     iterations: u64,
@@ -315,7 +315,7 @@ impl Search<'_> {
         };
         let watch: &mut dyn FnMut(&Configuration, f64, usize) =
             if self.method.options.steps { &mut watch } else { &mut |_, _, _| {} };
-        let target = target_gradient(self.direction_deg, l1, self.l2);
+        let target = self.direction.gradient(l1, self.l2, 0.0);
         let (end, residual, gradient) = self.method.run(target, self.cancel, watch);
         self.iterations += end.iterations as u64;
         self.runs += 1;
@@ -362,7 +362,7 @@ impl Search<'_> {
                     topology::links_kept(model, state)
                         && topology::smallest_gap(model, state).is_none_or(|(gap, _)| gap >= 0.0)
                 };
-                if !linked && comes_apart(model, &trial.state, self.direction_deg) && whole(&trial.state) {
+                if !linked && comes_apart(model, &trial.state, self.direction) && whole(&trial.state) {
                     let note = format!("no chain of links; at l1 = {l1} nothing is left that could hold it");
                     return self.end(Status::Unbounded, Some(trial), Some(note));
                 }
@@ -412,7 +412,7 @@ impl Search<'_> {
             None => (self.method.start.clone(), Matrix2::identity(), None),
         };
         let model = self.method.model;
-        let along = direction(self.direction_deg);
+        let along = self.direction.along();
         let answer = Answer {
             state,
             gradient,

@@ -3,7 +3,7 @@
 //! Both protocols are sums of weighted squares of linear functions of four points: the first element's centre x1,
 //! the lattice vectors a1, a2, and the fourth corner's x4 − x1.
 
-use crate::{lattice::direction, model::Model, solver::curvature::Curvature, state::State};
+use crate::{model::Model, solver::curvature::Curvature, state::State};
 use maille_geometry::Vec3;
 use nalgebra::{Matrix2, Vector2};
 use serde::{Deserialize, Serialize};
@@ -17,13 +17,6 @@ pub enum Protocol {
     /// The thesis's: corner targets (eq. 5.1.1), E_b (eq. 4.1.6), threshold on the corners' distance. Its metric
     /// depends on the cell's shape, so sheared cells get biased limits.
     Corners,
-}
-
-/// F = (1 + l1) D Dᵀ + (1 + l2) D⊥ D⊥ᵀ for the unit vector D at `direction_deg`.
-pub fn target_gradient(direction_deg: f64, l1: f64, l2: f64) -> Matrix2<f64> {
-    let d = direction(direction_deg);
-    let across = Vector2::new(-d.y, d.x);
-    d * d.transpose() * (1.0 + l1) + across * across.transpose() * (1.0 + l2)
 }
 
 /// One weighted square |Σ c_n Y_n − t|², Y = (x1, a1, a2, x4 − x1).

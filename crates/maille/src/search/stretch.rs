@@ -22,7 +22,7 @@ use super::{
 use crate::{
     answer::{Answer, CellTrend},
     bound::{Bound, ChainBound, ImageBound, LinkBound, NearImages, best_bound_across},
-    lattice::{Across, direction},
+    lattice::{Across, Direction},
     model::Model,
     program::{LatticeFamily, SheetProgram},
     record::Status,
@@ -56,7 +56,7 @@ pub struct ExactMethod<'a> {
 /// The stretch whose limit is sought.
 #[derive(Clone, Copy)]
 pub(super) struct Stretch {
-    pub direction_deg: f64,
+    pub direction: Direction,
     /// Where it is held.
     pub l2: f64,
     pub across: Across,
@@ -66,7 +66,7 @@ pub(super) struct Stretch {
 
 impl Stretch {
     pub fn lattices(&self, model: &Model) -> StretchLattices {
-        StretchLattices::new(model, self.direction_deg, self.across, self.sign)
+        StretchLattices::new(model, self.direction, self.across, self.sign)
     }
 }
 
@@ -129,9 +129,15 @@ impl<'a> ExactMethod<'a> {
     /// Where an element presses on its own image, or a lateral compression is not reached, and of every least l1, larger cells
     /// are solved, too, from the smaller cell's state; the best limit counts, and the answer says which cell gave it.
     /// `finished` gets each limit with its index in `l2`; after `cancel` the rest comes back as interrupted.
-    pub fn limits(&self, direction_deg: f64, l2: &[f64], cancel: &AtomicBool, finished: &mut dyn FnMut(usize, Answer)) {
+    pub fn limits(
+        &self,
+        direction: Direction,
+        l2: &[f64],
+        cancel: &AtomicBool,
+        finished: &mut dyn FnMut(usize, Answer),
+    ) {
         let ExactOptions { across, compression, .. } = self.options;
-        let stretch = |l2: f64| Stretch { direction_deg, l2, across, sign: if compression { -1.0 } else { 1.0 } };
+        let stretch = |l2: f64| Stretch { direction, l2, across, sign: if compression { -1.0 } else { 1.0 } };
         let mut order: Vec<usize> = (0..l2.len()).collect();
         order.sort_by(|&a, &b| l2[a].abs().total_cmp(&l2[b].abs()).then(l2[a].total_cmp(&l2[b])));
         let mut sides: [Neighbours; 2] = [vec![None; self.models.len()], vec![None; self.models.len()]];
@@ -153,9 +159,9 @@ impl<'a> ExactMethod<'a> {
     /// One limit; with the states of the cells at it, from which the next one goes on.
     fn limit(&self, stretch: &Stretch, neighbours: &Neighbours, cancel: &AtomicBool) -> (Answer, Neighbours) {
         let least = stretch.sign < 0.0;
-        let Stretch { direction_deg, l2, across, .. } = *stretch;
+        let Stretch { direction, l2, across, .. } = *stretch;
         let none = || vec![None; self.models.len()];
-        let bound = best_bound_across(&self.chain, Some(&self.link), direction_deg, l2, across);
+        let bound = best_bound_across(&self.chain, Some(&self.link), direction, l2, across);
         let unreachable = matches!(bound, Bound::L2Unreachable { .. });
         // The bounds are of the largest l1; of the least one they tell only that no state has this l2.
         let proved = |answer: Answer| if least && !unreachable { answer } else { answer.bounded_by(&bound) };
@@ -236,7 +242,7 @@ impl<'a> ExactMethod<'a> {
         let (wide, runs, iterations) = self.lateral_starts(search);
         starts.extend(wide);
         starts.extend(self.fresh(0..fresh));
-        starts.extend(self.of_images(stretch.direction_deg, 0..fresh));
+        starts.extend(self.of_images(stretch.direction, 0..fresh));
         let mut found = search.run(&self.models[0], starts);
         (found.runs, found.iterations) = (found.runs + runs, found.iterations + iterations);
         self.refine_width(search, &mut found);
@@ -294,7 +300,7 @@ impl<'a> ExactMethod<'a> {
                 if held.l2 <= -1.0 || search.cancel.load(Ordering::Relaxed) {
                     break;
                 }
-                let Bound::Finite { l1, .. } = self.chain.limit(held.direction_deg, held.l2) else { break };
+                let Bound::Finite { l1, .. } = self.chain.limit(held.direction, held.l2) else { break };
                 let here = self.search(&held, l1, search.cancel).run(&self.models[0], from);
                 (runs, iterations) = (runs + here.runs, iterations + here.iterations);
                 let Some(best) = &here.best else { break };
@@ -346,10 +352,10 @@ impl<'a> ExactMethod<'a> {
             return found.counted(Answer { note, ..self.without_state(Status::L2NotReached) });
         };
         let model = &self.models[cell];
-        let Stretch { l2, across, direction_deg, sign } = *stretch;
+        let Stretch { l2, across, direction, sign } = *stretch;
         let lattices = stretch.lattices(model);
         let gradient = lattices.gradient(&best.p, l2);
-        let along = direction(direction_deg);
+        let along = direction.along();
         let (status, reached) = (verdict(&best, upper_bound), sign * best.value());
         let above = best.certified && best.value() > upper_bound + ATTAINED;
         let note =
@@ -364,7 +370,7 @@ impl<'a> ExactMethod<'a> {
         if across.any() && best.certified {
             let (free, more) = lattices.ranges(model, &best, l2, cancel);
             let at = lattices.free_of(&best.p, l2);
-            answer.free = Some(lattices.attainable(free, (&self.chain, &self.link), direction_deg, reached, at));
+            answer.free = Some(lattices.attainable(free, (&self.chain, &self.link), reached, at));
             answer.iterations += more;
         }
         answer.with_solution(model, best)
@@ -372,8 +378,8 @@ impl<'a> ExactMethod<'a> {
 
     /// Starts of the first cell that stand for those of the directions that are images of this one: the images of the same
     /// perturbed states. So a limit is searched from as many states as if each direction of its orbit were solved by itself.
-    fn of_images(&self, direction_deg: f64, starts: Range<usize>) -> Vec<Start> {
-        let model = &self.models[0];
+    fn of_images(&self, direction: Direction, starts: Range<usize>) -> Vec<Start> {
+        let (model, direction_deg) = (&self.models[0], direction.degrees());
         let mut seen = vec![direction_deg.rem_euclid(180.0)];
         let mut out = Vec::new();
         for operation in &self.operations {

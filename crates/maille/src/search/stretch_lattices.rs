@@ -12,7 +12,7 @@ use super::{
 use crate::{
     answer::FreeRanges,
     bound::{Bound, ChainBound, LinkBound, best_bound_across},
-    lattice::{Across, direction},
+    lattice::{Across, Direction},
     model::Model,
     program::{LatticeFamily, Parameter, SheetProgram},
     solver::sqp::{SqpOptions, maximize},
@@ -20,13 +20,13 @@ use crate::{
     topology,
 };
 use maille_geometry::Vec3;
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::Matrix2;
 use std::sync::atomic::AtomicBool;
 
 /// The lattices of a stretch along one direction.
 pub(super) struct StretchLattices {
     reference: [Vec3; 2],
-    along: Vec3,
+    direction: Direction,
     pub across: Across,
     /// 1 where l1 is maximised, −1 where it is minimised: the first parameter is this times l1.
     sign: f64,
@@ -54,33 +54,22 @@ pub(super) fn farthest(model: &Model, pull: &LatticeFamily, state: &State, cance
 
 impl StretchLattices {
     /// `sign` is 1 where l1 is maximised, −1 where it is minimised.
-    pub fn new(model: &Model, direction_deg: f64, across: Across, sign: f64) -> Self {
-        let d = direction(direction_deg);
-        StretchLattices { reference: [model.start.a1, model.start.a2], along: Vec3::new(d.x, d.y, 0.0), across, sign }
-    }
-
-    fn side(&self) -> Vec3 {
-        Vec3::new(-self.along.y, self.along.x, 0.0)
+    pub fn new(model: &Model, direction: Direction, across: Across, sign: f64) -> Self {
+        StretchLattices { reference: [model.start.a1, model.start.a2], direction, across, sign }
     }
 
     pub fn lattice(&self, l1: f64, l2: f64, shear: f64) -> [Vec3; 2] {
-        let f = self.strained(l1, l2, shear);
+        let f = self.direction.gradient(l1, l2, shear);
         self.reference.map(|a| {
             let v = f * a.xy();
             Vec3::new(v.x, v.y, 0.0)
         })
     }
 
-    fn strained(&self, l1: f64, l2: f64, shear: f64) -> Matrix2<f64> {
-        let (d, across): (Vector2<f64>, Vector2<f64>) = (self.along.xy(), self.side().xy());
-        let held = d * d.transpose() * (1.0 + l1) + across * across.transpose() * (1.0 + l2);
-        if shear == 0.0 { held } else { held + d * across.transpose() * shear }
-    }
-
     /// F at the parameters `p` of [`Self::pull`].
     pub fn gradient(&self, p: &[f64], l2: f64) -> Matrix2<f64> {
         let [l2, shear] = self.free_of(p, l2);
-        self.strained(self.sign * p[0], l2, shear)
+        self.direction.gradient(self.sign * p[0], l2, shear)
     }
 
     /// l2 and γ at the parameters `p`.
@@ -92,7 +81,7 @@ impl StretchLattices {
 
     /// Rates of the lattice with l1, l2 and γ.
     fn rates(&self) -> [[Vec3; 2]; 3] {
-        let (d, side) = (self.along, self.side());
+        let (d, side) = (self.direction.along().push(0.0), self.direction.across().push(0.0));
         [(d, d), (side, side), (d, side)].map(|(to, of)| self.reference.map(|a| to * of.dot(&a)))
     }
 
@@ -163,7 +152,6 @@ impl StretchLattices {
         &self,
         ranges: FreeRanges,
         (chain, link): (&ChainBound, &LinkBound),
-        direction_deg: f64,
         l1: f64,
         at: [f64; 2],
     ) -> FreeRanges {
@@ -171,7 +159,7 @@ impl StretchLattices {
         if self.across.lateral_free {
             let free =
                 if self.across.shear_free { Across { lateral_free: true, shear_free: true } } else { Across::HELD };
-            let most = match best_bound_across(chain, Some(link), direction_deg + 90.0, l1, free) {
+            let most = match best_bound_across(chain, Some(link), self.direction.left(), l1, free) {
                 Bound::Finite { l1: most, .. } => most,
                 // l1 is above what is proved by rounding: no more room than the limit's own.
                 Bound::L2Unreachable { .. } => at[0],
@@ -182,9 +170,10 @@ impl StretchLattices {
         if self.across.shear_free {
             let width = if self.across.lateral_free { 0.0 } else { 1.0 + at[0] };
             // A chain along D holds no shear.
-            let leaning = chain.directions().filter(|x| self.side().xy().dot(x).abs() > 1e-9 * x.norm());
+            let (d, across) = (self.direction.along(), self.direction.across());
+            let leaning = chain.directions().filter(|x| across.dot(x).abs() > 1e-9 * x.norm());
             for x in leaning {
-                let (along, side) = (self.along.xy().dot(&x) * (1.0 + l1), self.side().xy().dot(&x));
+                let (along, side) = (d.dot(&x) * (1.0 + l1), across.dot(&x));
                 let room = (1.0 - (width * side).powi(2)).max(0.0).sqrt();
                 let mut ends = [(-room - along) / side, (room - along) / side];
                 ends.sort_by(f64::total_cmp);

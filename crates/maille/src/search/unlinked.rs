@@ -99,7 +99,7 @@ fn pull_apart(model: &Model, stretch: &Stretch, from: Start, cancel: &AtomicBool
             return (None, iterations);
         }
         (x, known) = (end.point, end.multipliers);
-        if comes_apart(model, &x.state, stretch.direction_deg) && topology::links_kept(model, &x.state) {
+        if comes_apart(model, &x.state, stretch.direction) && topology::links_kept(model, &x.state) {
             return (Some(Separated { state: x.state, p: x.p }), iterations);
         }
     }

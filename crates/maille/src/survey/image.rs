@@ -3,7 +3,7 @@
 use crate::{
     answer::{Answer, CellTrend, FreeRanges},
     bound::{BindingChain, DualForce, TieKind},
-    lattice::{Cell, direction},
+    lattice::{Cell, Direction},
     model::Model,
     program::Contact,
     state::State,
@@ -45,7 +45,7 @@ pub(crate) fn image<'a>(
         let gradient = state.deformation_gradient(to);
         (state, gradient)
     };
-    let along = direction(direction_deg);
+    let along = Direction::of_degrees(direction_deg).along();
     let cell = |cell: Cell| operation.cell(cell).map_or(cell, |cell| known(cell).map_or(cell, |model| model.cell));
     // All that is written of a state passes here. The chain counts the rings of the first cell, ties those of the design's own.
     let answer = Answer {

@@ -7,6 +7,7 @@ use super::{
 };
 use crate::{
     answer::Answer,
+    lattice::Direction,
     model::Model,
     record::Status,
     relaxation::limit::EnergyMethod,
@@ -68,7 +69,7 @@ pub fn characterize(
             open.par_iter().with_max_len(1).for_each(|task| {
                 if !cancel.load(Ordering::Relaxed) {
                     let begun = Instant::now();
-                    let answer = energy.limit(task.direction_deg, task.l2, cancel);
+                    let answer = energy.limit(Direction::of_degrees(task.direction_deg), task.l2, cancel);
                     let asked = Asked { task, method, minor_radius, image_of_deg: None };
                     finished(asked.finished(&models[0], &answer, begun.elapsed().as_secs_f64()));
                 }
@@ -87,7 +88,7 @@ pub fn characterize(
                     return;
                 }
                 let mut begun = Instant::now();
-                exact.limits(solved_deg, l2, cancel, &mut |k, answer| {
+                exact.limits(Direction::of_degrees(solved_deg), l2, cancel, &mut |k, answer| {
                     let answer = both_shears(answer, &operations, solved_deg);
                     for task in open(k) {
                         let image_of_deg = (task.direction_deg != solved_deg).then_some(solved_deg);
@@ -134,7 +135,8 @@ pub(crate) fn one<'a>(
     let (operations, chains) = symmetric_chains(&models[0], &method, &[direction_deg]);
     let solved_deg = chains[0].representative_deg;
     let mut answer = Answer::new(&models[0], Status::Interrupted);
-    ExactMethod::new(models, options.clone(), cancel).limits(solved_deg, &[l2], cancel, &mut |_, found| answer = found);
+    let solved = Direction::of_degrees(solved_deg);
+    ExactMethod::new(models, options.clone(), cancel).limits(solved, &[l2], cancel, &mut |_, found| answer = found);
     let answer = both_shears(answer, &operations, solved_deg);
     if solved_deg != direction_deg {
         return image(&operations, models, &answer, solved_deg, direction_deg);
