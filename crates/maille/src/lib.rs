@@ -43,31 +43,40 @@
 //! The formulas and proofs are in the repository's `docs/theory`.
 
 pub mod answer;
-pub mod bound;
 pub mod design;
 pub mod error;
 pub mod lattice;
 pub mod model;
-pub mod program;
 pub mod question;
 pub mod record;
 pub mod relaxation;
 pub mod search;
 pub mod sheet;
-pub mod solver;
 pub mod state;
 pub mod survey;
+
+// The machinery: open to the other crates of the project, its tests and benches, but without any promise.
+#[doc(hidden)]
+pub mod bound;
+#[doc(hidden)]
+pub mod program;
+#[doc(hidden)]
+pub mod solver;
+#[doc(hidden)]
 pub mod symmetry;
+#[doc(hidden)]
 pub mod topology;
 
 pub use answer::Answer;
 pub use design::Design;
 pub use error::InvalidInput;
-pub use lattice::{Across, Cell};
+pub use lattice::{Across, Cell, Direction};
+pub use model::Model;
 pub use question::{Goal, Question, Sense, Strain};
 pub use record::Status;
 pub use sheet::Sheet;
-pub use survey::CellChoice;
+pub use state::State;
+pub use survey::{CellChoice, MapQuestion};
 
 /// The README's example is run as a test.
 #[cfg(doctest)]
