@@ -7,12 +7,11 @@ mod certify;
 mod circles;
 mod gallery;
 mod layers;
-mod modules;
 mod paths;
 mod program;
 mod repository;
-mod source;
 mod steps;
+mod uses;
 mod view;
 mod wheel;
 

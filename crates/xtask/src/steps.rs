@@ -1,6 +1,6 @@
 //! The steps of `ci`, each announced and timed.
 
-use crate::{bench, certify, circles, gallery, layers, paths, repository::Finding, view, wheel::Environment};
+use crate::{bench, certify, circles, gallery, layers, paths, program, repository::Finding, view, wheel::Environment};
 use std::{
     path::Path,
     process::{Command, Stdio},
@@ -82,10 +82,7 @@ pub fn paths(root: &Path) -> Result<(), Failed> {
 
 /// The gallery of the built-in designs, written anew.
 pub fn gallery(root: &Path, quick: bool, program: Option<&str>) -> Result<(), Failed> {
-    gallery::write(root, quick, program).map_err(|problem| {
-        eprintln!("xtask: {problem}");
-        Failed
-    })
+    failed(gallery::write(root, quick, program))
 }
 
 /// Maps of many designs, each row verified.
@@ -95,10 +92,7 @@ pub fn certify(root: &Path, options: &[&str]) -> Result<(), Failed> {
 
 /// The benches, and the page of their figures.
 pub fn bench(root: &Path, saved: Option<&str>) -> Result<(), Failed> {
-    bench::write(root, saved).map_err(|problem| {
-        eprintln!("xtask: {problem}");
-        Failed
-    })
+    failed(bench::write(root, saved))
 }
 
 fn report(findings: Vec<Finding>) -> Result<(), Failed> {
@@ -122,24 +116,19 @@ fn timed(name: &str, step: impl FnOnce() -> Result<(), Failed>) -> Result<(), Fa
 }
 
 fn command(root: &Path) -> Command {
-    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    let mut command = Command::new(program::cargo());
     command.current_dir(root);
     command
 }
 
 fn cargo(root: &Path, arguments: &[&str], environment: &[(&str, &str)]) -> Result<(), Failed> {
     let status = command(root).args(arguments).envs(environment.iter().copied()).status();
-    match status {
-        Ok(status) if status.success() => Ok(()),
-        Ok(status) => {
-            eprintln!("xtask: `cargo {}` ended with {status}", arguments.join(" "));
-            Err(Failed)
-        }
-        Err(e) => {
-            eprintln!("xtask: `cargo {}` did not start: {e}", arguments.join(" "));
-            Err(Failed)
-        }
-    }
+    let problem = match status {
+        Ok(status) if status.success() => return Ok(()),
+        Ok(status) => format!("ended with {status}"),
+        Err(e) => format!("did not start: {e}"),
+    };
+    failed(Err(format!("`cargo {}` {problem}", arguments.join(" "))))
 }
 
 fn has_nextest(root: &Path) -> bool {
