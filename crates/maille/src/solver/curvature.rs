@@ -205,9 +205,7 @@ impl SparseHessian {
             let norm = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
             vector.iter_mut().for_each(|x| *x /= norm);
         }
-        let mut image = vec![0.0; vector.len()];
-        self.exact.add_times(1.0, &vector, &mut image);
-        Some((image.iter().zip(&vector).map(|(a, v)| a * v).sum(), vector))
+        Some((self.exact.quadratic_form(&vector), vector))
     }
 }
 

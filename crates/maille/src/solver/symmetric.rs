@@ -200,6 +200,13 @@ impl Symmetric {
         }
     }
 
+    /// xᵀ A x.
+    pub fn quadratic_form(&self, x: &[f64]) -> f64 {
+        let mut image = vec![0.0; self.n];
+        self.add_times(1.0, x, &mut image);
+        image.iter().zip(x).map(|(a, x)| a * x).sum()
+    }
+
     /// Σ |A_ij| over j ≠ i, row by row.
     pub fn off_diagonal_sums(&self) -> Vec<f64> {
         let mut sums = vec![0.0; self.n];
