@@ -1,11 +1,10 @@
 //! Whether a pull has taken a sheet apart: it can then go on for ever.
 
 use crate::{
-    lattice::{ACROSS, direction, shifts_within},
+    lattice::{ACROSS, axes, shifts_within},
     model::Model,
     state::State,
 };
-use nalgebra::Vector2;
 
 /// Whether l1 can grow without end from `state`, the poses as they are.
 ///
@@ -17,9 +16,9 @@ use nalgebra::Vector2;
 ///
 /// Sufficient, not necessary: a body is taken for its ball. What touches in `state` itself is not looked at.
 pub fn comes_apart(model: &Model, state: &State, direction_deg: f64) -> bool {
-    let along = direction(direction_deg);
+    let (along, across) = axes(direction_deg);
     let thickest = model.rings.iter().map(|r| r.minor_radius).fold(0.0, f64::max);
-    let (across, f) = (Vector2::new(-along.y, along.x), state.deformation_gradient(model));
+    let f = state.deformation_gradient(model);
     let lean = (along.dot(&(f * across)) / across.dot(&(f * across))).abs();
     let elements = || state.poses.iter().zip(&model.elements).enumerate();
     elements().all(|(i, (a, first))| {
