@@ -3,7 +3,7 @@
 //! Both protocols are sums of weighted squares of linear functions of four points: the first element's centre x1,
 //! the lattice vectors a1, a2, and the fourth corner's x4 − x1.
 
-use crate::{lattice::direction, model::Model, solver::curvature::Curvature, state::State};
+use crate::{lattice::axes, model::Model, solver::curvature::Curvature, state::State};
 use maille_geometry::Vec3;
 use nalgebra::{Matrix2, Vector2};
 use serde::{Deserialize, Serialize};
@@ -21,8 +21,7 @@ pub enum Protocol {
 
 /// F = (1 + l1) D Dᵀ + (1 + l2) D⊥ D⊥ᵀ for the unit vector D at `direction_deg`.
 pub fn target_gradient(direction_deg: f64, l1: f64, l2: f64) -> Matrix2<f64> {
-    let d = direction(direction_deg);
-    let across = Vector2::new(-d.y, d.x);
+    let (d, across) = axes(direction_deg);
     d * d.transpose() * (1.0 + l1) + across * across.transpose() * (1.0 + l2)
 }
 
