@@ -1,6 +1,6 @@
 //! The steps of `ci`, each announced and timed.
 
-use crate::{bench, certify, circles, gallery, layers, paths, program, repository::Finding, view, wheel::Environment};
+use crate::{certify, circles, layers, paths, program, repository::Finding, view, wheel::Environment};
 use std::{
     path::Path,
     process::{Command, Stdio},
@@ -25,7 +25,7 @@ pub fn ci(root: &Path) -> Result<(), Failed> {
 pub fn test(root: &Path) -> Result<(), Failed> {
     let python = timed("Python package", || failed(Environment::new(root, false).and_then(|python| python.test())));
     let viewer = timed("viewer", || failed(view::test(root)));
-    let certify = timed("certify --quick", || self::certify(root, &["--quick"]));
+    let certify = timed("certify --quick", || failed(certify::run(root, &["--quick"])));
     let tests = rust_tests(root);
     for (of, done) in [("the Python package", &python), ("the viewer", &viewer), ("certify --quick", &certify)] {
         if done.is_err() {
@@ -61,7 +61,8 @@ pub fn wheel(root: &Path) -> Result<(), Failed> {
     timed("wheel and examples", || failed(Environment::new(root, true).and_then(|python| python.examples())))
 }
 
-fn failed(done: Result<(), String>) -> Result<(), Failed> {
+/// Says what went wrong.
+pub fn failed(done: Result<(), String>) -> Result<(), Failed> {
     done.map_err(|problem| {
         eprintln!("xtask: {problem}");
         Failed
@@ -78,21 +79,6 @@ pub fn layers(root: &Path) -> Result<(), Failed> {
 /// The check of the paths named in the documents.
 pub fn paths(root: &Path) -> Result<(), Failed> {
     report(paths::check(root))
-}
-
-/// The gallery of the built-in designs, written anew.
-pub fn gallery(root: &Path, quick: bool, program: Option<&str>) -> Result<(), Failed> {
-    failed(gallery::write(root, quick, program))
-}
-
-/// Maps of many designs, each row verified.
-pub fn certify(root: &Path, options: &[&str]) -> Result<(), Failed> {
-    failed(certify::Options::read(options).and_then(|options| certify::run(root, &options)))
-}
-
-/// The benches, and the page of their figures.
-pub fn bench(root: &Path, saved: Option<&str>) -> Result<(), Failed> {
-    failed(bench::write(root, saved))
 }
 
 fn report(findings: Vec<Finding>) -> Result<(), Failed> {
