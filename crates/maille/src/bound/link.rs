@@ -241,6 +241,7 @@ fn template(ties: &[Tie], center: &[Option<usize>], turn: &[Option<usize>], n: u
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::solver::cone::eigenvalues;
     use nalgebra::{Quaternion, UnitQuaternion, Vector4};
 
     #[test]
