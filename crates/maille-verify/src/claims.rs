@@ -8,6 +8,37 @@ const EXACT: [&str; 7] =
     ["global", "local", "uncertified", "l2-unreachable", "l2-not-reached", "unbounded", "interrupted"];
 const ENERGY: [&str; 6] =
     ["threshold-reached", "not-converged", "infeasible-start", "l2-not-reached", "unbounded", "interrupted"];
+/// What a limit has.
+const OF_LIMIT: [&str; 13] = [
+    "l1",
+    "lambda1",
+    "lambda2",
+    "stretch1",
+    "stretch2",
+    "a1_x",
+    "a1_y",
+    "a2_x",
+    "a2_y",
+    "l2_min",
+    "l2_max",
+    "shear_min",
+    "shear_max",
+];
+/// What a certified limit has besides. The energy method looks at the last three, too.
+const OF_CERTIFICATE: [&str; 10] = [
+    "dual_residual",
+    "complementarity",
+    "min_multiplier",
+    "zero_modes",
+    "n_starts",
+    "n_distinct",
+    "own_image_force",
+    "max_overlap",
+    "min_gap",
+    "links_ok",
+];
+/// What a bounded limit has.
+const OF_BOUND: [&str; 3] = ["bound_l1", "bound_kind", "bound_gap"];
 /// Tolerance of the figures of a certificate.
 const CERTIFIED: f64 = 1e-9;
 
@@ -19,73 +50,40 @@ pub(crate) fn contradiction(row: &Row, columns: &BTreeSet<String>) -> Option<Str
         return Some(format!("the {method} method has no status {status}"));
     }
     let is_limit = row.certified() || status == "threshold-reached";
-    let of_limit = [
-        ("l1", row.l1.is_some()),
-        ("lambda1", row.lambda1.is_some()),
-        ("lambda2", row.lambda2.is_some()),
-        ("stretch1", row.stretch1.is_some()),
-        ("stretch2", row.stretch2.is_some()),
-        ("a1_x", row.a1_x.is_some()),
-        ("a1_y", row.a1_y.is_some()),
-        ("a2_x", row.a2_x.is_some()),
-        ("a2_y", row.a2_y.is_some()),
-        ("l2_min", row.l2_min.is_some()),
-        ("l2_max", row.l2_max.is_some()),
-        ("shear_min", row.shear_min.is_some()),
-        ("shear_max", row.shear_max.is_some()),
-    ];
-    let of_certificate = [
-        ("dual_residual", row.dual_residual.is_some()),
-        ("complementarity", row.complementarity.is_some()),
-        ("min_multiplier", row.min_multiplier.is_some()),
-        ("zero_modes", row.zero_modes.is_some()),
-        ("n_starts", row.n_starts.is_some()),
-        ("n_distinct", row.n_distinct.is_some()),
-        ("own_image_force", row.own_image_force.is_some()),
-        ("max_overlap", row.max_overlap.is_some()),
-        ("min_gap", row.min_gap.is_some()),
-        ("links_ok", row.links_ok.is_some()),
-    ];
-    let of_bound = [
-        ("bound_l1", row.bound_l1.is_some()),
-        ("bound_kind", row.bound_kind.is_some()),
-        ("bound_gap", row.bound_gap.is_some()),
-    ];
-    let lacking = |names: &[(&'static str, bool)]| {
-        names.iter().find(|(name, there)| !there && columns.contains(*name)).map(|(name, _)| *name)
-    };
-    let unearned = |names: &[(&'static str, bool)]| names.iter().find(|(_, there)| *there).map(|(name, _)| *name);
+    let lacking =
+        |names: &[&'static str]| names.iter().find(|name| !row.has(name) && columns.contains(**name)).copied();
+    let unearned = |names: &[&'static str]| names.iter().find(|name| row.has(name)).copied();
     let has_no = |name: &str| Some(format!("a row that is {status} has no {name}"));
     let has = |name: &str| Some(format!("a row that is {status} has {name}"));
-    if is_limit && let Some(name) = lacking(&of_limit) {
+    if is_limit && let Some(name) = lacking(&OF_LIMIT) {
         return has_no(name);
     }
-    if !is_limit && let Some(name) = unearned(&of_limit) {
+    if !is_limit && let Some(name) = unearned(&OF_LIMIT) {
         return has(name);
     }
     if row.certified() {
-        if let Some(name) = lacking(&of_certificate) {
+        if let Some(name) = lacking(&OF_CERTIFICATE) {
             return has_no(name);
         }
         if let Some(words) = out_of_tolerance(row) {
             return Some(words);
         }
-        let bounded = of_bound.map(|(_, there)| there);
+        let bounded = OF_BOUND.map(|name| row.has(name));
         if bounded != [true; 3] && (status == "global" || bounded != [false; 3]) {
-            return lacking(&of_bound).and_then(has_no);
+            return lacking(&OF_BOUND).and_then(has_no);
         }
     }
     if method != "exact" {
         // Links and gaps are looked at by both methods.
-        let of_exact = &of_certificate[..7];
-        if let Some(name) = unearned(of_exact).or_else(|| unearned(&of_bound)) {
+        let of_exact = &OF_CERTIFICATE[..7];
+        if let Some(name) = unearned(of_exact).or_else(|| unearned(&OF_BOUND)) {
             return Some(format!("a row of the {method} method has {name}"));
         }
     }
     if row.l1_uncertified.is_some() && status != "uncertified" {
         return has("l1_uncertified");
     }
-    if row.end.as_deref() == Some("least") && (status == "global" || unearned(&of_bound).is_some()) {
+    if row.end.as_deref() == Some("least") && (status == "global" || unearned(&OF_BOUND).is_some()) {
         return Some("a least l1 has no bound, and is never global".into());
     }
     if let (Some(overlap), Some(gap)) = (row.max_overlap, row.min_gap)
@@ -98,17 +96,15 @@ pub(crate) fn contradiction(row: &Row, columns: &BTreeSet<String>) -> Option<Str
 
 /// What of a certified row's own figures is none of a certificate.
 fn out_of_tolerance(row: &Row) -> Option<String> {
-    let above = |x: Option<f64>, most: f64| x.is_some_and(|x| x > most);
     let figure =
         |name: &str, value: Option<f64>| Some(format!("{name} of a certified row is {:?}", value.unwrap_or(f64::NAN)));
-    if above(row.dual_residual, CERTIFIED) {
-        return figure("dual_residual", row.dual_residual);
-    }
-    if above(row.complementarity, CERTIFIED) {
-        return figure("complementarity", row.complementarity);
-    }
-    if above(row.min_multiplier.map(|m| -m), CERTIFIED) {
-        return figure("min_multiplier", row.min_multiplier);
+    let small = [
+        ("dual_residual", row.dual_residual, 1.0),
+        ("complementarity", row.complementarity, 1.0),
+        ("min_multiplier", row.min_multiplier, -1.0),
+    ];
+    if let Some((name, value, _)) = small.into_iter().find(|(_, x, sign)| x.is_some_and(|x| sign * x > CERTIFIED)) {
+        return figure(name, value);
     }
     if row.min_curvature.is_some_and(|c| c <= 0.0) {
         return figure("min_curvature", row.min_curvature);

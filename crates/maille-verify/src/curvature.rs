@@ -274,12 +274,21 @@ pub(crate) fn curvature(
             row(&columns, &tilt);
         }
     }
+    let (values, idle) = kept(&of_sum, &gram);
+    if values.iter().any(|v| !v.is_finite()) {
+        return Err("the eigenvalues of the curvature are not finite".into());
+    }
+    Ok(Curvature { values, idle, flat: !flat.is_empty() })
+}
+
+/// Eigenvalues of `of_sum`, ascending, on the motions that keep the rows with this Gram matrix, and the number of unknowns that
+/// neither meets.
+fn kept(of_sum: &DMatrix<f64>, gram: &DMatrix<f64>) -> (Vec<f64>, usize) {
+    let n = gram.nrows();
     let is_met = |k: &usize| gram[(*k, *k)] != 0.0 || of_sum.column(*k).iter().any(|x| *x != 0.0);
     let met: Vec<usize> = (0..n).filter(is_met).collect();
-    let idle = n - met.len();
     let block = |of: &DMatrix<f64>| DMatrix::from_fn(met.len(), met.len(), |i, j| of[(met[i], met[j])]);
-    let (sub, gram) = (block(&of_sum), block(&gram));
-    let eigen = gram.symmetric_eigen();
+    let eigen = block(gram).symmetric_eigen();
     let largest = eigen.eigenvalues.amax();
     let free: Vec<DVector<f64>> = (0..met.len())
         .filter(|&k| eigen.eigenvalues[k] < DEPENDENT * largest)
@@ -288,15 +297,12 @@ pub(crate) fn curvature(
     let mut values = Vec::new();
     if !free.is_empty() {
         let basis = DMatrix::from_columns(&free);
-        let reduced = basis.transpose() * sub * &basis;
+        let reduced = basis.transpose() * block(of_sum) * &basis;
         let reduced = (&reduced + reduced.transpose()) * 0.5;
         values = reduced.symmetric_eigenvalues().iter().copied().collect();
         values.sort_by(f64::total_cmp);
     }
-    if values.iter().any(|v| !v.is_finite()) {
-        return Err("the eigenvalues of the curvature are not finite".into());
-    }
-    Ok(Curvature { values, idle, flat: !flat.is_empty() })
+    (values, n - met.len())
 }
 
 /// Whether two rings are equal, parallel and coaxial, nearly.

@@ -138,6 +138,9 @@ pub(crate) struct Row {
     pub a2_y: Option<f64>,
     #[serde(default)]
     pub end: Option<String>,
+    /// Columns that are not empty.
+    #[serde(skip)]
+    pub present: BTreeSet<String>,
 }
 
 /// One line of `states.jsonl`, in the file's unit.
@@ -218,57 +221,32 @@ pub(crate) fn read_states(text: &str) -> Result<Vec<State>, Unreadable> {
     text.lines().enumerate().map(|(k, line)| json(STATES, k + 1, line)).collect()
 }
 
+/// Columns of free text.
+const TEXTS: [&str; 2] = ["design", "note"];
+
 /// The rows, and the names of the columns.
 pub(crate) fn read_rows(text: &str) -> Result<(Vec<Row>, BTreeSet<String>), Unreadable> {
     complete(LIMITS, text)?;
     let mut reader = csv::Reader::from_reader(text.as_bytes());
-    let header = reader.headers().map_err(|e| Unreadable { file: LIMITS, line: 1, problem: e.to_string() })?;
+    let header = reader.headers().map_err(|e| Unreadable { file: LIMITS, line: 1, problem: e.to_string() })?.clone();
     let columns = header.iter().map(str::to_owned).collect();
-    let rows = reader.deserialize::<Row>().enumerate();
-    let rows = rows.map(|(k, row)| {
+    let rows = reader.records().enumerate().map(|(k, record)| {
         let wrong = |problem: String| Unreadable { file: LIMITS, line: k + 2, problem };
-        let row = row.map_err(|e| wrong(e.to_string()))?;
-        if row.numbers().iter().flatten().all(|x| x.is_finite()) {
-            Ok(row)
-        } else {
-            Err(wrong("a number is not finite".into()))
+        let record = record.map_err(|e| wrong(e.to_string()))?;
+        let row: Row = record.deserialize(Some(&header)).map_err(|e| wrong(e.to_string()))?;
+        let fields = || header.iter().zip(&record).filter(|(name, text)| !text.is_empty() && !TEXTS.contains(name));
+        if fields().any(|(_, text)| text.parse().is_ok_and(|x: f64| !x.is_finite())) {
+            return Err(wrong("a number is not finite".into()));
         }
+        Ok(Row { present: fields().map(|(name, _)| name.to_owned()).collect(), ..row })
     });
     Ok((rows.collect::<Result<_, _>>()?, columns))
 }
 
 impl Row {
-    /// Every number that a row can have.
-    fn numbers(&self) -> [Option<f64>; 26] {
-        let r = self;
-        [
-            r.minor_radius,
-            Some(r.direction_deg),
-            Some(r.l2),
-            r.l1,
-            r.lambda1,
-            r.lambda2,
-            r.stretch1,
-            r.stretch2,
-            r.max_overlap,
-            r.min_gap,
-            r.bound_l1,
-            r.bound_gap,
-            r.dual_residual,
-            r.complementarity,
-            r.min_multiplier,
-            r.min_curvature,
-            r.own_image_force,
-            r.l1_uncertified,
-            r.l2_min,
-            r.l2_max,
-            r.shear_min,
-            r.shear_max,
-            r.a1_x,
-            r.a1_y,
-            r.a2_x,
-            r.a2_y,
-        ]
+    /// Whether the column stands there with something in it.
+    pub(crate) fn has(&self, column: &str) -> bool {
+        self.present.contains(column)
     }
 
     pub(crate) fn certified(&self) -> bool {

@@ -1,8 +1,8 @@
 //! The state: all that changes. Poses of the elements and the deformed lattice.
 
-use crate::{design::Design, lattice::Shift, model::Model};
-use maille_geometry::{Circle, Vec3};
-use nalgebra::{Matrix2, Unit, UnitQuaternion};
+use crate::lattice::Shift;
+use maille_geometry::Vec3;
+use nalgebra::UnitQuaternion;
 
 /// Pose of an element: where its reference point is, and how it is turned from the design's pose (§4.2, eq. 4.2.1).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,40 +40,5 @@ impl State {
     /// Translation of the image `shift`.
     pub fn translation(&self, shift: Shift) -> Vec3 {
         self.a1 * f64::from(shift[0]) + self.a2 * f64::from(shift[1])
-    }
-
-    /// Arm from its element's reference point to the centre of ring `ring`.
-    pub fn arm(&self, model: &Model, ring: usize) -> Vec3 {
-        let r = &model.rings[ring];
-        self.poses[r.element].rotation * r.offset
-    }
-
-    /// Core circle of ring `ring` in the image `shift`.
-    pub fn circle(&self, model: &Model, ring: usize, shift: Shift) -> Circle {
-        let r = &model.rings[ring];
-        let pose = &self.poses[r.element];
-        let center = pose.position + pose.rotation * r.offset + self.translation(shift);
-        Circle::new(center, Unit::new_normalize(pose.rotation * r.normal.into_inner()), r.major_radius)
-    }
-
-    /// In-plane deformation gradient F of the lattice vectors, F a_k(reference) = a_k (eq. 5.2.1).
-    pub fn deformation_gradient(&self, model: &Model) -> Matrix2<f64> {
-        let deformed = Matrix2::new(self.a1.x, self.a2.x, self.a1.y, self.a2.y);
-        deformed * model.reference_inverse
-    }
-
-    /// `design` as it stands in this state of its own cell: centres, normals, offsets and lattice in the design's unit.
-    pub fn design(&self, design: &Design, model: &Model) -> Design {
-        let mut out = design.clone();
-        out.lattice.a1 = (self.a1 * model.unit).into();
-        out.lattice.a2 = (self.a2 * model.unit).into();
-        for (element, pose) in out.elements.iter_mut().zip(&self.poses) {
-            element.center = (pose.position * model.unit + model.origin).into();
-            for ring in &mut element.rings {
-                ring.normal = (pose.rotation * Vec3::from(ring.normal)).into();
-                ring.offset = (pose.rotation * Vec3::from(ring.offset)).into();
-            }
-        }
-        out
     }
 }

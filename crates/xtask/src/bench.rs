@@ -1,5 +1,6 @@
 //! `cargo xtask bench`: every bench once, as the one table of docs/performance.md.
 
+use crate::program::cargo;
 use std::{
     collections::BTreeMap,
     fmt::Write as _,
@@ -48,7 +49,7 @@ pub fn write(root: &Path, saved: Option<&str>) -> Result<(), String> {
 
 /// What the benches print; what cargo says goes to the terminal.
 fn run(root: &Path) -> Result<String, String> {
-    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    let mut command = Command::new(cargo());
     command.args(["bench", "-p", "maille-geometry", "-p", "maille", "--benches"]).current_dir(root);
     let output = command.stderr(Stdio::inherit()).output().map_err(|e| format!("cargo bench did not start: {e}"))?;
     if !output.status.success() {

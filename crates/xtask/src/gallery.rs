@@ -3,7 +3,6 @@
 use crate::program;
 use serde_json::Value;
 use std::{
-    fmt::Write,
     fs,
     path::{Path, PathBuf},
     process::{Command, Stdio},
@@ -91,56 +90,55 @@ fn parsed(text: &[u8], line: &str) -> Result<Value, String> {
     serde_json::from_slice(text).map_err(|e| format!("`maille {line}` printed no JSON: {e}"))
 }
 
-/// The numbers of one design.
+/// A design's line of the table, and its section; none if a key is missing.
 struct Page {
-    name: String,
-    title: String,
-    unit: String,
-    rings: u64,
-    links: u64,
-    gap: f64,
-    wire: f64,
-    wire_per_area: Option<f64>,
-    reference_radius: f64,
-    /// Least and largest l1 with the direction where it is, at l2 = 0; none where no limit was found.
-    limits: Option<[(f64, f64); 2]>,
-    attained: u64,
-    asked: u64,
+    line: String,
+    section: String,
 }
 
 impl Page {
-    /// None if a key is missing.
     fn of(inspected: &Value, limits: &Value) -> Option<Page> {
-        let text = |key: &str| inspected[key].as_str().map(str::to_owned);
-        let extreme = |entry: &Value| Some((entry["l1"].as_f64()?, entry["direction_deg"].as_f64()?));
+        let text = |key: &str| inspected[key].as_str();
+        let (name, title, unit) =
+            (text("design")?, text("title").unwrap_or_default(), text("unit").unwrap_or_default());
+        let (rings, links) = (inspected["rings"].as_u64()?, inspected["links"].as_u64()?);
+        let gap = inspected["smallest_gap"]["gap"].as_f64()?;
+        let wire = inspected["wire"]["length"].as_f64()?;
+        let radius = inspected["reference_radius"].as_f64()?;
         let of_l2 = limits["limits"].as_array()?;
         let held = of_l2.iter().find(|entry| entry["l2"].as_f64() == Some(0.0))?;
-        Some(Page {
-            name: text("design")?,
-            title: text("title").unwrap_or_default(),
-            unit: text("unit").unwrap_or_default(),
-            rings: inspected["rings"].as_u64()?,
-            links: inspected["links"].as_u64()?,
-            gap: inspected["smallest_gap"]["gap"].as_f64()?,
-            wire: inspected["wire"]["length"].as_f64()?,
-            wire_per_area: inspected["wire"]["metres_per_square_metre"].as_f64(),
-            reference_radius: inspected["reference_radius"].as_f64()?,
-            limits: extreme(&held["least"]).zip(extreme(&held["largest"])).map(|(least, largest)| [least, largest]),
-            attained: limits["statuses"]["global"].as_u64().unwrap_or(0),
-            asked: of_l2.iter().map(|entry| entry["asked"].as_u64()).sum::<Option<u64>>()?,
-        })
-    }
-
-    fn limit(&self, which: usize) -> String {
-        self.limits
-            .map_or_else(|| "none found".into(), |limits| format!("{:.4} at {}°", limits[which].0, limits[which].1))
+        let limit = |entry: &Value| match (entry["l1"].as_f64(), entry["direction_deg"].as_f64()) {
+            (Some(l1), Some(direction_deg)) => format!("{l1:.4} at {direction_deg}°"),
+            _ => "none found".into(),
+        };
+        let line = format!(
+            "| [{name}](#{}) | {rings} | {links} | {:.4} | {:.2} | {} | {} | {} of {} |\n",
+            anchor(&format!("{name} {title}")),
+            gap / radius,
+            wire / radius,
+            limit(&held["least"]),
+            limit(&held["largest"]),
+            limits["statuses"]["global"].as_u64().unwrap_or(0),
+            of_l2.iter().map(|entry| entry["asked"].as_u64()).sum::<Option<u64>>()?,
+        );
+        let wire = match inspected["wire"]["metres_per_square_metre"].as_f64() {
+            Some(metres) => format!("wire {wire:.1} {unit} a cell, {metres:.0} m a square metre"),
+            None => format!("wire {wire:.2} a cell"),
+        };
+        let gap = format!("{gap:.4} {unit}");
+        let section = format!(
+            "\n## {name} {title}\n\n\
+            {rings} rings and {links} links a cell; smallest gap {}; {wire}.\n\n\
+            | start | limits |\n| --- | --- |\n\
+            | ![{name}, a patch of the sheet]({name}.png) | ![{name}, largest stretch in each direction]({name}-polar.png) |\n",
+            gap.trim_end(),
+        );
+        Some(Page { line, section })
     }
 }
 
 fn document(pages: &[Page], pulls: &str) -> String {
-    let mut out = String::new();
-    let _ = write!(
-        out,
+    let mut out = format!(
         "# Gallery\n\n\
         Every built-in design: the sheet at its start, the largest stretch in each direction, and the numbers. Written by\n\
         `cargo xtask gallery`, which runs for each\n\n    \
@@ -157,43 +155,8 @@ fn document(pages: &[Page], pulls: &str) -> String {
         | design | rings | links | smallest gap / R | wire / R | least l1 | largest l1 | attained |\n\
         | --- | --- | --- | --- | --- | --- | --- | --- |\n"
     );
-    for page in pages {
-        let _ = writeln!(
-            out,
-            "| [{}](#{}) | {} | {} | {:.4} | {:.2} | {} | {} | {} of {} |",
-            page.name,
-            anchor(&format!("{} {}", page.name, page.title)),
-            page.rings,
-            page.links,
-            page.gap / page.reference_radius,
-            page.wire / page.reference_radius,
-            page.limit(0),
-            page.limit(1),
-            page.attained,
-            page.asked,
-        );
-    }
-    for page in pages {
-        let name = &page.name;
-        let wire = match page.wire_per_area {
-            Some(metres) => {
-                format!("wire {:.1} {} a cell, {metres:.0} m a square metre", page.wire, page.unit)
-            }
-            None => format!("wire {:.2} a cell", page.wire),
-        };
-        let gap = format!("{:.4} {}", page.gap, page.unit);
-        let _ = write!(
-            out,
-            "\n## {name} {}\n\n\
-            {} rings and {} links a cell; smallest gap {}; {wire}.\n\n\
-            | start | limits |\n| --- | --- |\n\
-            | ![{name}, a patch of the sheet]({name}.png) | ![{name}, largest stretch in each direction]({name}-polar.png) |\n",
-            page.title,
-            page.rings,
-            page.links,
-            gap.trim_end(),
-        );
-    }
+    out.extend(pages.iter().map(|page| &*page.line));
+    out.extend(pages.iter().map(|page| &*page.section));
     out
 }
 
@@ -222,7 +185,7 @@ mod tests {
         ));
         assert!(text.contains("smallest gap 0.5000 mm; wire 40.0 mm a cell, 321 m a square metre."), "{text}");
         let without = serde_json::json!({ "limits": [entry(0.0, Value::Null)], "statuses": {} });
-        assert_eq!(Page::of(&inspected, &without).unwrap().limit(0), "none found");
+        assert!(Page::of(&inspected, &without).unwrap().line.contains("| none found | 0.7740 at 45° | 0 of 37 |"));
         assert!(Page::of(&inspected, &serde_json::json!({})).is_none());
     }
 }

@@ -5,10 +5,12 @@
 //! first, in `ARCHITECTURE.md` and here.
 
 use crate::{
-    repository::{Finding, files, read},
-    source::{self, NamedPath, Source},
+    program::cargo,
+    repository::{Finding, read, sources},
+    uses::uses,
 };
-use std::path::Path;
+use serde_json::Value;
+use std::{collections::BTreeMap, path::Path, process::Command};
 
 /// The crates, lowest first. A crate depends only on crates of the rows before its own; dev-dependencies are free.
 const CRATES: &[&[&str]] = &[
@@ -65,19 +67,11 @@ fn row(rows: &[&[&str]], name: &str) -> Option<usize> {
 /// Everything that breaks the order, sorted.
 pub fn check(root: &Path) -> Vec<Finding> {
     let mut out = check_drawing(&read(root, DRAWING).unwrap_or_default());
-    out.extend(check_crates(root));
-    match files(root, SOURCES, "rs") {
-        Err(e) => out.push(Finding::new(SOURCES, 0, format!("cannot be read: {e}"))),
-        Ok(sources) => {
-            for file in sources {
-                match read(root, &file) {
-                    Ok(source) => out.extend(check_module(&file, &source)),
-                    Err(finding) => out.push(finding),
-                }
-            }
-        }
-    }
+    out.extend(manifests(root).map_or_else(|e| vec![Finding::new("Cargo.toml", 0, e)], |all| check_crates(&all)));
+    out.extend(sources(root, SOURCES).map_or_else(|finding| vec![finding], |files| check_modules(&files)));
     out.sort_unstable();
+    // A group of imports names its module more than once.
+    out.dedup();
     out
 }
 
@@ -92,129 +86,72 @@ fn check_drawing(drawing: &str) -> Vec<Finding> {
         .collect()
 }
 
-fn check_crates(root: &Path) -> Vec<Finding> {
-    let folders = match std::fs::read_dir(root.join("crates")) {
-        Ok(folders) => folders.flatten().map(|f| f.file_name().to_string_lossy().into_owned()),
-        Err(e) => return vec![Finding::new("crates", 0, format!("cannot be read: {e}"))],
-    };
+/// What cargo reads in the manifests of the workspace.
+fn manifests(root: &Path) -> Result<Value, String> {
+    let mut command = Command::new(cargo());
+    command.args(["metadata", "--no-deps", "--format-version", "1"]).current_dir(root);
+    let output = command.output().map_err(|e| format!("cargo did not start: {e}"))?;
+    serde_json::from_slice(&output.stdout).map_err(|_| String::from_utf8_lossy(&output.stderr).into_owned())
+}
+
+fn check_crates(manifests: &Value) -> Vec<Finding> {
+    let all = |list: &Value| list.as_array().cloned().unwrap_or_default();
+    let name = |of: &Value| of["name"].as_str().unwrap_or_default().to_string();
     let mut out = Vec::new();
-    for folder in folders {
-        let file = format!("crates/{folder}/Cargo.toml");
-        match read(root, &file) {
-            Ok(manifest) => out.extend(check_manifest(&file, &folder, &manifest)),
-            Err(finding) => out.push(finding),
+    for package in all(&manifests["packages"]) {
+        let file = format!("crates/{}/Cargo.toml", name(&package));
+        let Some(own) = row(CRATES, &name(&package)) else {
+            out.push(Finding::new(file, 0, no_room("crate", &name(&package))));
+            continue;
+        };
+        let dependencies = all(&package["dependencies"]).into_iter().filter(|of| of["kind"] != "dev");
+        for dependency in dependencies.filter(|of| row(CRATES, &name(of)).is_some_and(|row| row >= own)) {
+            let (user, used, order) = (name(&package), name(&dependency), order_of_crates());
+            out.push(Finding::new(&file, 0, format!("{user} depends on {used} against the order {order}")));
         }
     }
     out
 }
 
-/// Checks one manifest. Dependencies are read line by line: `[dependencies]` and its kin for builds and targets, as
-/// keys, as headers (`[dependencies.maille]`) or renamed (`package = "maille"`).
-fn check_manifest(file: &str, name: &str, manifest: &str) -> Vec<Finding> {
-    let Some(own) = row(CRATES, name) else {
-        return vec![Finding::new(file, 0, no_room("crate", name))];
-    };
-    let mut out = Vec::new();
-    let mut judge = |line: usize, dependency: &str| {
-        if row(CRATES, dependency).is_some_and(|row| row >= own) {
-            let order = order_of_crates();
-            out.push(Finding::new(file, line, format!("{name} depends on {dependency} against the order {order}")));
-        }
-    };
-    let mut inside = false;
-    for (index, text) in manifest.lines().enumerate() {
-        let text = text.split('#').next().unwrap_or_default().trim();
-        if let Some(header) = text.strip_prefix('[') {
-            let parts: Vec<&str> = header.trim_end_matches(']').split('.').map(str::trim).collect();
-            let kind = parts.iter().position(|part| matches!(*part, "dependencies" | "build-dependencies"));
-            inside = kind.is_some();
-            if let Some(dependency) = kind.and_then(|at| parts.get(at + 1)) {
-                judge(index + 1, unquoted(dependency));
-            }
-        } else if inside && let Some((key, value)) = text.split_once('=') {
-            let key = unquoted(key.split('.').next().unwrap_or_default());
-            judge(index + 1, key);
-            let renamed = if key == "package" { Some(value) } else { value.split_once("package").map(|v| v.1) };
-            let package = renamed.and_then(|text| text.split('"').nth(1));
-            if let Some(package) = package.filter(|package| *package != key) {
-                judge(index + 1, package);
-            }
-        }
-    }
-    out
+/// The module of `maille` that a file below `src` belongs to; none for the crate's root.
+fn module(file: &str) -> Option<&str> {
+    let top = file.split('/').next().unwrap_or(file).trim_end_matches(".rs");
+    (top != "lib").then_some(top)
 }
 
-fn unquoted(text: &str) -> &str {
-    text.trim().trim_matches('"')
-}
-
-/// Checks one source file of `maille`; `file` is its path from the repository's root.
-fn check_module(file: &str, source: &str) -> Vec<Finding> {
-    let path = file.strip_prefix(SOURCES).unwrap_or(file).trim_start_matches('/').trim_end_matches(".rs");
-    let mut module: Vec<String> = path.split('/').map(str::to_string).collect();
-    if matches!(module.last().map(String::as_str), Some("mod")) || module == ["lib"] {
-        module.pop();
-    }
-    let Source { modules, paths, .. } = match source::read(source) {
-        Ok(source) => source,
-        Err(e) => return vec![Finding::new(file, e.span().start().line, format!("cannot be read: {e}"))],
+/// Checks the sources of `maille`, by their paths below `src`.
+fn check_modules(files: &BTreeMap<String, String>) -> Vec<Finding> {
+    let found = |file: &str, line, problem| Finding::new(format!("{SOURCES}/{file}"), line, problem);
+    let uses = match uses(files) {
+        Ok(uses) => uses,
+        Err(problem) => return vec![Finding::new(SOURCES, 0, problem)],
     };
     let mut out = Vec::new();
-    match module.first() {
-        Some(own) if !has_room(own) => out.push(Finding::new(file, 0, no_room("module", own))),
-        Some(_) => {}
-        // The root: every module that it declares has a room, inline ones too.
-        None => {
-            for (name, line) in modules.iter().flat_map(|(path, line)| Some((path.last()?, *line))) {
-                if !has_room(name) {
-                    out.push(Finding::new(file, line, no_room("module", name)));
-                }
-            }
+    for (file, text) in files {
+        let Some(own) = module(file) else { continue };
+        if !has_room(own) {
+            out.push(found(file, 0, no_room("module", own)));
         }
-    }
-    for path in &paths {
-        let from = [module.as_slice(), &path.module].concat();
-        // The crate's root stands above all modules.
-        let Some(own) = from.first() else { continue };
-        if let Some((name, line)) = from_root(path, from.len())
-            && let Some(problem) = judge_use(own, name)
-        {
-            out.push(Finding::new(file, line, problem));
-        }
-        if own == ASIDE && path.names()[0] == "maille_geometry" {
+        let code = text.lines().enumerate().filter(|(_, line)| !line.trim_start().starts_with("//"));
+        for (index, _) in code.filter(|(_, line)| own == ASIDE && line.contains("maille_geometry")) {
             let problem = format!("{ASIDE} stands aside and knows no ring: no maille_geometry");
-            out.push(Finding::new(file, path.line(), problem));
+            out.push(found(file, index + 1, problem));
         }
     }
-    // A group of imports names its module more than once.
-    out.dedup();
+    for u in uses {
+        // The crate's root stands above all modules.
+        let Some(own) = module(&u.from) else { continue };
+        let problem = match module(&u.to) {
+            Some(name) => judge_use(own, name),
+            None => Some(format!("{own} uses what stands in the crate's root: name its module in the path")),
+        };
+        out.extend(problem.map(|problem| found(&u.from, u.line, problem)));
+    }
     out
-}
-
-/// The name that a path takes from the crate's root, or what stands in its place (`*`, `as`): by `crate::…` and by
-/// chains of `self::` and `super::` that are `depth` modules high.
-fn from_root(path: &NamedPath, depth: usize) -> Option<(&str, usize)> {
-    let names = path.names();
-    let up = names.iter().take_while(|name| matches!(**name, "crate" | "self" | "super")).count();
-    let supers = names[..up].iter().filter(|name| **name == "super").count();
-    if names[0] != "crate" && (supers == 0 || supers < depth) {
-        return None;
-    }
-    match path.segments.get(up) {
-        Some((name, line)) => Some((name, *line)),
-        None => path.import.is_some().then(|| ("as", path.line())),
-    }
 }
 
 /// What is wrong with a use of module `name` in module `own`.
 fn judge_use(own: &str, name: &str) -> Option<String> {
-    if !has_room(name) {
-        return Some(if name.starts_with(|c: char| c.is_lowercase()) && name != "as" {
-            format!("{own} uses {name}: {}", no_room("module", name))
-        } else {
-            format!("`{name}` straight from the crate's root hides its module: name the module in the path")
-        });
-    }
     if own == name {
         return None;
     }
@@ -242,9 +179,21 @@ fn no_room(what: &str, name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use serde_json::json;
 
+    /// Findings on a source of `maille` beside one file for each module.
     fn problems(file: &str, source: &str) -> Vec<(usize, String)> {
-        check_module(&format!("{SOURCES}/{file}"), source).into_iter().map(|f| (f.line, f.problem)).collect()
+        let modules = || MODULES.concat().into_iter().chain([ASIDE]);
+        let mut files: BTreeMap<String, String> =
+            modules().map(|name| (format!("{name}.rs"), "pub struct Thing; pub fn run() {}".into())).collect();
+        let root: String = modules().map(|name| format!("pub mod {name};\n")).collect();
+        files.insert("lib.rs".into(), root + "pub use state::Thing as Passed; pub use outside::Other;");
+        if let Some((top, name)) = file.split_once('/') {
+            let (name, _) = name.split_once('.').unwrap();
+            files.insert(format!("{top}.rs"), format!("mod {name};"));
+        }
+        files.insert(file.into(), source.into());
+        check_modules(&files).into_iter().map(|f| (f.line, f.problem)).collect()
     }
 
     fn only(file: &str, source: &str) -> (usize, String) {
@@ -256,72 +205,62 @@ mod tests {
     #[test]
     fn a_backward_use_is_found_with_its_line() {
         let (line, problem) =
-            only("state.rs", "//! State.\n\nuse crate::{\n    model::Model,\n    relaxation::SheetEnergy,\n};\n");
+            only("state.rs", "//! State.\n\nuse crate::{\n    model::Thing,\n    relaxation::Thing as Other,\n};\n");
         assert_eq!(line, 5);
         assert!(problem.starts_with("state uses relaxation, which stands after it: error ← design ←"), "{problem}");
-        assert_eq!(only("program/gap_kernel.rs", "fn f() -> crate::search::Search {}").0, 1);
-        assert_eq!(only("design.rs", "use super::lattice::Cell;").0, 1);
-        assert_eq!(only("design.rs", "\nmod tests {\n use super::super::lattice::Cell;\n}").0, 3);
+        assert_eq!(only("program/gap_kernel.rs", "fn f() -> crate::search::Thing {}").0, 1);
+        assert_eq!(only("design.rs", "use super::lattice::Thing;").0, 1);
+        assert_eq!(only("design.rs", "\nmod tests {\n use super::super::lattice::Thing;\n}").0, 3);
+        assert_eq!(only("design.rs", "#[cfg(test)]\nmod tests {\n use crate::lattice::run;\n}").0, 3);
+        assert_eq!(only("design.rs", "use crate::Passed;").0, 1, "what the root passes on is its module's");
     }
 
     #[test]
     fn forward_uses_and_uses_within_a_row_are_fine() {
-        let source = "use crate::{error::InvalidInput, lattice, model::Model, state::State, topology};";
+        let source = "use crate::{error::Thing, lattice, model::Thing as A, state::Thing as B, topology};";
         assert_eq!(problems("model.rs", source), []);
         assert_eq!(problems("topology/links.rs", source), []);
-        assert_eq!(
-            problems("search.rs", "use crate::{relaxation::target, record::Status, solver::newton, search::Search};"),
-            []
-        );
-        assert_eq!(problems("lib.rs", "pub mod search; pub use crate::search::Search;"), []);
+        assert_eq!(problems("search.rs", "use crate::{relaxation::run, record::Thing, solver::Thing as A};"), []);
+        assert_eq!(problems("search.rs", "use crate::Passed; use crate as root; use super::{self as top};"), []);
+        assert_eq!(problems("search.rs", "use crate::solver; fn f() { solver::run() }"), []);
     }
 
     #[test]
     fn the_solver_stands_aside() {
-        assert_eq!(problems("solver/newton.rs", "use super::eigen; use crate::solver::eigen::symmetric_eigen;"), []);
-        assert!(only("solver/newton.rs", "use crate::error::InvalidInput;").1.contains("uses no other module"));
+        assert_eq!(problems("solver/newton.rs", "use super::eigen; use crate::solver::newton::run; fn run() {}"), []);
+        assert!(only("solver/newton.rs", "use crate::error::Thing;").1.contains("uses no other module"));
         assert!(only("solver/newton.rs", "\nuse maille_geometry::Vec3;").1.contains("knows no ring"));
-        assert!(only("topology.rs", "use crate::solver::newton;").1.contains("survey use it"));
-        assert_eq!(problems("relaxation/mod.rs", "use crate::solver::newton::Objective;"), []);
+        assert!(only("topology.rs", "use crate::solver::Thing;").1.contains("survey use it"));
+        assert_eq!(problems("relaxation/limit.rs", "use crate::solver::Thing;"), []);
     }
 
     #[test]
     fn a_module_without_a_room_is_found() {
         assert!(only("shear.rs", "").1.contains("module shear has no room"));
-        assert!(only("search.rs", "use crate::shear::Shear;").1.contains("module shear has no room"));
-        assert_eq!(only("lib.rs", "pub mod search;\nmod shear { use super::search::Search; }").0, 2);
     }
 
     #[test]
     fn a_path_that_hides_its_module_is_found() {
-        for source in ["use crate::*;", "use crate::Vec3;", "use crate as root;", "use super::{self as root};"] {
-            assert!(only("search.rs", source).1.contains("name the module"), "{source}");
+        for source in ["use crate::*;", "use crate::Other;", "fn f(x: super::Unknown) {}"] {
+            assert!(only("search.rs", source).1.contains("name its module"), "{source}");
         }
     }
 
     #[test]
     fn a_manifest_against_the_order_is_found() {
-        let lines = |name: &str, manifest: &str| -> Vec<usize> {
-            check_manifest("Cargo.toml", name, manifest).iter().map(|f| f.line).collect()
+        let found = |name: &str, dependencies: &[(&str, Option<&str>)]| {
+            let dependencies: Vec<Value> =
+                dependencies.iter().map(|(name, kind)| json!({ "name": name, "kind": kind })).collect();
+            let manifests = json!({ "packages": [{ "name": name, "dependencies": dependencies }] });
+            check_crates(&manifests).into_iter().map(|f| f.problem).collect::<Vec<_>>()
         };
-        let backward =
-            "[package]\nname = \"maille\"\n[dependencies]\nserde = \"1\"\nmaille-io.workspace = true # why\n";
-        assert_eq!(lines("maille", backward), [5]);
-        assert_eq!(lines("maille-cli", backward), [] as [usize; 0]);
-        assert_eq!(
-            lines("maille", "[dev-dependencies]\nmaille-io.workspace = true\n[dev-dependencies.xtask]\n"),
-            [] as [usize; 0]
-        );
-        assert_eq!(lines("maille", "[dependencies.maille-io]\npath = \"../maille-io\"\n"), [1]);
-        assert_eq!(lines("maille", "[dependencies.io]\npackage = \"maille-io\"\n"), [2]);
-        assert_eq!(lines("maille", "[dependencies]\nio = { package = \"maille-io\", path = \"x\" }\n"), [2]);
-        assert_eq!(lines("maille", "[target.'cfg(unix)'.build-dependencies]\n\"maille-cli\" = \"1\"\n"), [2]);
-        assert_eq!(
-            lines("maille-cli", "[dependencies]\nmaille-view = { workspace = true, optional = true }\n"),
-            [] as [usize; 0]
-        );
-        assert_eq!(lines("maille-view", "[dependencies]\nmaille-cli.workspace = true\n"), [2]);
-        assert_eq!(lines("maille-shear", ""), [0]);
+        let backward = [("serde", None), ("maille-io", None)];
+        assert!(found("maille", &backward)[0].starts_with("maille depends on maille-io against the order maille-geo"));
+        assert_eq!(found("maille-cli", &backward), [""; 0]);
+        assert_eq!(found("maille", &[("maille-io", Some("dev"))]), [""; 0]);
+        assert_eq!(found("maille", &[("maille-cli", Some("build"))]).len(), 1);
+        assert_eq!(found("maille-view", &[("maille-cli", None)]).len(), 1);
+        assert!(found("maille-shear", &[])[0].starts_with("crate maille-shear has no room"));
     }
 
     #[test]

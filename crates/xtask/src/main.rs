@@ -7,12 +7,11 @@ mod certify;
 mod circles;
 mod gallery;
 mod layers;
-mod modules;
 mod paths;
 mod program;
 mod repository;
-mod source;
 mod steps;
+mod uses;
 mod view;
 mod wheel;
 
@@ -57,13 +56,13 @@ fn main() -> ExitCode {
         ["ci"] => steps::ci(&root),
         ["layers"] => steps::layers(&root),
         ["paths"] => steps::paths(&root),
-        ["gallery"] => steps::gallery(&root, false, None),
-        ["gallery", "--quick"] => steps::gallery(&root, true, None),
-        ["gallery", "--program", program] => steps::gallery(&root, false, Some(program)),
-        ["gallery", "--quick", "--program", program] => steps::gallery(&root, true, Some(program)),
-        ["bench"] => steps::bench(&root, None),
-        ["bench", "--from", file] => steps::bench(&root, Some(file)),
-        ["certify", ref options @ ..] => steps::certify(&root, options),
+        ["gallery"] => steps::failed(gallery::write(&root, false, None)),
+        ["gallery", "--quick"] => steps::failed(gallery::write(&root, true, None)),
+        ["gallery", "--program", program] => steps::failed(gallery::write(&root, false, Some(program))),
+        ["gallery", "--quick", "--program", program] => steps::failed(gallery::write(&root, true, Some(program))),
+        ["bench"] => steps::failed(bench::write(&root, None)),
+        ["bench", "--from", file] => steps::failed(bench::write(&root, Some(file))),
+        ["certify", ref options @ ..] => steps::failed(certify::run(&root, options)),
         [] | ["help" | "--help" | "-h"] => {
             print!("{HELP}");
             return ExitCode::SUCCESS;

@@ -26,6 +26,20 @@ pub fn cargo() -> std::ffi::OsString {
     std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
 }
 
+/// Where cargo builds.
+pub fn target(root: &Path) -> PathBuf {
+    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), |path| root.join(path))
+}
+
+/// Runs a command to its end; `what` says in an error what could not be done.
+pub fn done(command: &mut Command, what: &str) -> Result<(), String> {
+    match command.status() {
+        Ok(status) if status.success() => Ok(()),
+        Ok(status) => Err(format!("cannot {what}: `{}` ended with {status}", command.get_program().display())),
+        Err(e) => Err(format!("cannot {what}: `{}` did not start: {e}", command.get_program().display())),
+    }
+}
+
 /// How a command ended that had a time limit.
 pub struct Ended {
     /// Its own status.

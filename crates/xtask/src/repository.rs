@@ -1,6 +1,7 @@
 //! The repository's files, and what a check finds in them.
 
 use std::{
+    collections::BTreeMap,
     fmt,
     path::{Path, PathBuf},
 };
@@ -60,4 +61,10 @@ pub fn files(root: &Path, folder: &str, extension: &str) -> std::io::Result<Vec<
 /// Reads a file of the repository; a failure is a finding of its own.
 pub fn read(root: &Path, file: &str) -> Result<String, Finding> {
     std::fs::read_to_string(root.join(file)).map_err(|e| Finding::new(file, 0, format!("cannot be read: {e}")))
+}
+
+/// The Rust files below `folder` with their texts, by their paths below it.
+pub fn sources(root: &Path, folder: &str) -> Result<BTreeMap<String, String>, Finding> {
+    let files = files(root, folder, "rs").map_err(|e| Finding::new(folder, 0, format!("cannot be read: {e}")))?;
+    files.into_iter().map(|file| Ok((file[folder.len() + 1..].to_string(), read(root, &file)?))).collect()
 }

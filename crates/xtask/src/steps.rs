@@ -1,6 +1,6 @@
 //! The steps of `ci`, each announced and timed.
 
-use crate::{bench, certify, circles, gallery, layers, paths, repository::Finding, view, wheel::Environment};
+use crate::{certify, circles, layers, paths, program, repository::Finding, view, wheel::Environment};
 use std::{
     path::Path,
     process::{Command, Stdio},
@@ -25,7 +25,7 @@ pub fn ci(root: &Path) -> Result<(), Failed> {
 pub fn test(root: &Path) -> Result<(), Failed> {
     let python = timed("Python package", || failed(Environment::new(root, false).and_then(|python| python.test())));
     let viewer = timed("viewer", || failed(view::test(root)));
-    let certify = timed("certify --quick", || self::certify(root, &["--quick"]));
+    let certify = timed("certify --quick", || failed(certify::run(root, &["--quick"])));
     let tests = rust_tests(root);
     for (of, done) in [("the Python package", &python), ("the viewer", &viewer), ("certify --quick", &certify)] {
         if done.is_err() {
@@ -61,7 +61,8 @@ pub fn wheel(root: &Path) -> Result<(), Failed> {
     timed("wheel and examples", || failed(Environment::new(root, true).and_then(|python| python.examples())))
 }
 
-fn failed(done: Result<(), String>) -> Result<(), Failed> {
+/// Says what went wrong.
+pub fn failed(done: Result<(), String>) -> Result<(), Failed> {
     done.map_err(|problem| {
         eprintln!("xtask: {problem}");
         Failed
@@ -78,27 +79,6 @@ pub fn layers(root: &Path) -> Result<(), Failed> {
 /// The check of the paths named in the documents.
 pub fn paths(root: &Path) -> Result<(), Failed> {
     report(paths::check(root))
-}
-
-/// The gallery of the built-in designs, written anew.
-pub fn gallery(root: &Path, quick: bool, program: Option<&str>) -> Result<(), Failed> {
-    gallery::write(root, quick, program).map_err(|problem| {
-        eprintln!("xtask: {problem}");
-        Failed
-    })
-}
-
-/// Maps of many designs, each row verified.
-pub fn certify(root: &Path, options: &[&str]) -> Result<(), Failed> {
-    failed(certify::Options::read(options).and_then(|options| certify::run(root, &options)))
-}
-
-/// The benches, and the page of their figures.
-pub fn bench(root: &Path, saved: Option<&str>) -> Result<(), Failed> {
-    bench::write(root, saved).map_err(|problem| {
-        eprintln!("xtask: {problem}");
-        Failed
-    })
 }
 
 fn report(findings: Vec<Finding>) -> Result<(), Failed> {
@@ -122,24 +102,19 @@ fn timed(name: &str, step: impl FnOnce() -> Result<(), Failed>) -> Result<(), Fa
 }
 
 fn command(root: &Path) -> Command {
-    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    let mut command = Command::new(program::cargo());
     command.current_dir(root);
     command
 }
 
 fn cargo(root: &Path, arguments: &[&str], environment: &[(&str, &str)]) -> Result<(), Failed> {
     let status = command(root).args(arguments).envs(environment.iter().copied()).status();
-    match status {
-        Ok(status) if status.success() => Ok(()),
-        Ok(status) => {
-            eprintln!("xtask: `cargo {}` ended with {status}", arguments.join(" "));
-            Err(Failed)
-        }
-        Err(e) => {
-            eprintln!("xtask: `cargo {}` did not start: {e}", arguments.join(" "));
-            Err(Failed)
-        }
-    }
+    let problem = match status {
+        Ok(status) if status.success() => return Ok(()),
+        Ok(status) => format!("ended with {status}"),
+        Err(e) => format!("did not start: {e}"),
+    };
+    failed(Err(format!("`cargo {}` {problem}", arguments.join(" "))))
 }
 
 fn has_nextest(root: &Path) -> bool {

@@ -1,5 +1,6 @@
 //! The viewer: its page, the program with the page inside, and what a user does with it in a browser.
 
+use crate::program::{cargo, done, target};
 use std::{
     env, fs,
     path::{Path, PathBuf},
@@ -31,7 +32,7 @@ pub fn test(root: &Path) -> Result<(), String> {
     fs::copy(&built, &copy).map_err(|e| format!("cannot copy {}: {e}", built.display()))?;
     let mut command = Command::new("npm");
     command.args(["run", "test"]).current_dir(root.join(PAGE)).env("MAILLE", copy).env("CHROMIUM", browser);
-    run(&mut command, "test the viewer")
+    done(&mut command, "test the viewer")
 }
 
 /// Installs what the page is built with, as its lockfile says, and builds it.
@@ -61,17 +62,12 @@ fn npm(root: &Path, arguments: &[&str]) -> Result<(), String> {
     // Browsers come from the system.
     let mut command = Command::new("npm");
     command.arg("--silent").args(arguments).current_dir(root.join(PAGE)).env("PLAYWRIGHT_SKIP_BROWSER_DOWNLOAD", "1");
-    run(&mut command, &format!("run npm {}", arguments.join(" ")))
+    done(&mut command, &format!("run npm {}", arguments.join(" ")))
 }
 
 fn program(root: &Path, profile: &[&str]) -> Result<(), String> {
-    let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let build = ["build", "--package", "maille-cli", "--features", "view", "--locked"];
-    run(Command::new(cargo).args(build).args(profile).current_dir(root), "build the program with the viewer")
-}
-
-fn target(root: &Path) -> PathBuf {
-    env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), |path| root.join(path))
+    done(Command::new(cargo()).args(build).args(profile).current_dir(root), "build the program with the viewer")
 }
 
 fn name() -> String {
@@ -89,7 +85,7 @@ fn browser() -> Result<PathBuf, String> {
     let install = "apt-get update && apt-get install -y --no-install-recommends chromium";
     let root = Command::new("id").arg("-u").output().is_ok_and(|out| out.stdout.trim_ascii() == b"0");
     if root && find(&["apt-get"]).is_some() {
-        run(Command::new("sh").args(["-c", install]).env("DEBIAN_FRONTEND", "noninteractive"), "install Chromium")?;
+        done(Command::new("sh").args(["-c", install]).env("DEBIAN_FRONTEND", "noninteractive"), "install Chromium")?;
     }
     find(BROWSERS).ok_or_else(|| {
         format!(
@@ -102,12 +98,4 @@ fn find(names: &[&str]) -> Option<PathBuf> {
     let folders: Vec<PathBuf> = env::split_paths(&env::var_os("PATH")?).collect();
     let places = names.iter().flat_map(|name| folders.iter().map(move |folder| folder.join(name)));
     places.into_iter().find(|path| path.is_file())
-}
-
-fn run(command: &mut Command, what: &str) -> Result<(), String> {
-    match command.status() {
-        Ok(status) if status.success() => Ok(()),
-        Ok(status) => Err(format!("cannot {what}: `{}` ended with {status}", command.get_program().display())),
-        Err(e) => Err(format!("cannot {what}: `{}` did not start: {e}", command.get_program().display())),
-    }
 }

@@ -1,5 +1,6 @@
 //! The Python package: its wheel, built, installed into an environment of its own, tried and tested.
 
+use crate::program::{cargo, done, target};
 use std::{
     ffi::OsStr,
     path::{Path, PathBuf},
@@ -25,7 +26,7 @@ impl Environment {
     /// Builds the wheel with the profile of the tests and installs it. With `clean`, the environment is made anew; else
     /// one that is there is used again.
     pub fn new(root: &Path, clean: bool) -> Result<Self, String> {
-        let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), |path| root.join(path));
+        let target = target(root);
         let out = Environment { root: root.to_owned(), folder: target.join("python"), target };
         let ready = out.folder.join("ready");
         let lock = root.join(LOCK);
@@ -89,9 +90,8 @@ impl Environment {
 
     /// Runs the tests of the package and the examples of its docstrings. The program is built first: maps are compared.
     pub fn test(&self) -> Result<(), String> {
-        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
         let build = ["build", "--package", "maille-cli", "--locked"];
-        self.run(Command::new(cargo).args(build).current_dir(&self.root), "build the program")?;
+        self.run(Command::new(cargo()).args(build).current_dir(&self.root), "build the program")?;
         let program = self.target.join("debug").join(format!("maille{}", std::env::consts::EXE_SUFFIX));
         let pytest = ["-m", "pytest", "-q", "-p", "no:cacheprovider", "--doctest-modules", "--pyargs", "maille"];
         let tests = self.root.join(PACKAGE).join("tests");
@@ -101,10 +101,6 @@ impl Environment {
     }
 
     fn run(&self, command: &mut Command, what: &str) -> Result<(), String> {
-        match command.env("PYTHONDONTWRITEBYTECODE", "1").status() {
-            Ok(status) if status.success() => Ok(()),
-            Ok(status) => Err(format!("cannot {what}: `{}` ended with {status}", command.get_program().display())),
-            Err(e) => Err(format!("cannot {what}: `{}` did not start: {e}", command.get_program().display())),
-        }
+        done(command.env("PYTHONDONTWRITEBYTECODE", "1"), what)
     }
 }

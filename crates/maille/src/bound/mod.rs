@@ -24,6 +24,7 @@ mod image;
 mod link;
 mod metric;
 mod outcome;
+mod proof;
 mod tie;
 
 pub use chain::ChainBound;

@@ -7,8 +7,9 @@
 
 use super::{
     Posed, SheetProgram,
+    key::{pair_key, pair_of_key},
     metric::Factored,
-    pair::{height_angles_rad, pair_key, pair_of_key},
+    pair::height_angles_rad,
 };
 use crate::{
     solver::constraints::{Multiplier, Row},

@@ -64,6 +64,27 @@ pub struct Jet {
     pub hess: Hess,
 }
 
+impl Jet {
+    /// The number 0.
+    pub const ZERO: Jet = Jet {
+        value: 0.0,
+        grad: Grad::from_array_storage(nalgebra::ArrayStorage([[0.0; 9]])),
+        hess: Hess::from_array_storage(nalgebra::ArrayStorage([[0.0; 9]; 9])),
+    };
+
+    /// f of a number with these derivatives, by f, f′ and f″.
+    pub fn of([value, first, second]: [f64; 3], grad: &Grad, hess: &Hess) -> Jet {
+        Jet { value, grad: grad * first, hess: hess * first + grad * grad.transpose() * second }
+    }
+
+    /// Adds the multiple `factor` of `other`.
+    pub fn add(&mut self, factor: f64, other: &Jet) {
+        self.value += factor * other.value;
+        self.grad += other.grad * factor;
+        self.hess += other.hess * factor;
+    }
+}
+
 fn cross_matrix(a: &Vec3) -> Matrix3<f64> {
     a.cross_matrix()
 }

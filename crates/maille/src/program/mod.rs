@@ -9,12 +9,13 @@
 
 pub mod flat;
 pub mod gap_kernel;
+mod key;
 pub mod metric;
 mod pair;
 
 use self::{
+    key::{bound_key, pair_key, pair_of_key},
     metric::Factored,
-    pair::{bound_key, pair_key, pair_of_key},
 };
 use crate::{
     model::Model,

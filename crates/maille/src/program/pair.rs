@@ -1,6 +1,10 @@
 //! The rows of one pair of rings: gaps at the minima of the distance, beside flat ones, and a flat pair's heights.
 
-use super::{Posed, SheetProgram, metric::Factored};
+use super::{
+    Posed, SheetProgram,
+    key::{bound_key, pair_key},
+    metric::Factored,
+};
 use crate::{
     program::gap_kernel::{Grad, Hess, PairFrame, RootMotion},
     solver::constraints::{Derivatives, Row},
@@ -204,25 +208,4 @@ impl SheetProgram<'_> {
 /// The angles of a flat pair's heights.
 pub(super) fn height_angles_rad() -> impl Iterator<Item = f64> {
     (0..HEIGHTS).map(|k| std::f64::consts::TAU * k as f64 / HEIGHTS as f64)
-}
-
-/// Number of a pair that stays the same from state to state.
-pub(super) fn pair_key(pair: &RingPair) -> u64 {
-    let small = |x: i32| (x & 0xfff) as u64;
-    (pair.ring_a as u64) << 44 | (pair.ring_b as u64) << 24 | small(pair.shift[0]) << 12 | small(pair.shift[1])
-}
-
-/// The pair of a key.
-pub(super) fn pair_of_key(key: u64) -> RingPair {
-    let small = |bits: u64| ((bits & 0xfff) as i32) << 20 >> 20;
-    RingPair {
-        ring_a: (key >> 44) as usize,
-        ring_b: (key >> 24 & 0xf_ffff) as usize,
-        shift: [small(key >> 12), small(key)],
-    }
-}
-
-/// Key of the row that holds parameter `m` below its bound.
-pub(super) fn bound_key(m: usize) -> u64 {
-    u64::MAX - m as u64
 }

@@ -3,10 +3,11 @@
 use serde::{Deserialize, Serialize};
 
 /// Which energy an overlap costs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ContactLaw {
     /// [`barrier`], eq. 4.1.3.
+    #[default]
     Barrier,
     /// [`quadratic`], eq. 4.1.1.
     Quadratic,

@@ -167,7 +167,7 @@ pub(super) fn energy(model: &Model, options: &ContactOptions, state: &State) -> 
 
 /// The minima of an overlap with the points beside them.
 fn minima_jet(options: &ContactOptions, overlap: &Overlap) -> Jet {
-    let mut sum = Jet { value: 0.0, grad: Grad::zeros(), hess: Hess::zeros() };
+    let mut sum = Jet::ZERO;
     for &(angle, _) in overlap.minima() {
         let root = overlap.frame.jet(angle);
         let motion = RootMotion::at(&root);
@@ -177,11 +177,9 @@ fn minima_jet(options: &ContactOptions, overlap: &Overlap) -> Jet {
             .filter(|offset| overlap.frame.distance(angle + **offset) < overlap.contact_distance)
             .map(|offset| overlap.frame.jet(angle + offset));
         for jet in std::iter::once(root).chain(samples) {
-            let [value, first, second] = options.law.at(jet.distance, overlap.contact_distance, options.alpha);
-            let (d_grad, d_hess) = jet.distance_derivatives(&motion);
-            sum.value += value;
-            sum.grad += d_grad * first;
-            sum.hess += d_hess * first + d_grad * d_grad.transpose() * second;
+            let (grad, hess) = jet.distance_derivatives(&motion);
+            let law = options.law.at(jet.distance, overlap.contact_distance, options.alpha);
+            sum.add(1.0, &Jet::of(law, &grad, &hess));
         }
     }
     sum

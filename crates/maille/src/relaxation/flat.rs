@@ -98,20 +98,17 @@ impl FlatPair {
 
     /// E_circle with gradient and Hessian in y = (x, α, β).
     pub fn jet(&self, law: ContactLaw, alpha: f64) -> Jet {
-        let [seen, other] = [0, 1].map(|view| {
-            let mut sum = Jet { value: 0.0, grad: Grad::zeros(), hess: Hess::zeros() };
+        let [mut seen, other] = [0, 1].map(|view| {
+            let mut sum = Jet::ZERO;
             for angle in self.angles(view).filter(|angle| self.views[view].distance(*angle) < self.touching) {
                 let point = self.views[view].jet(angle);
-                let [value, first, second] = law.at(point.distance, self.touching, alpha);
                 let (grad, hess) = point.distance_derivatives_fixed();
-                sum.value += value;
-                sum.grad += grad * first;
-                sum.hess += hess * first + grad * grad.transpose() * second;
+                sum.add(1.0, &Jet::of(law.at(point.distance, self.touching, alpha), &grad, &hess));
             }
             sum
         });
-        let other = exchanged(&other);
-        Jet { value: seen.value + other.value, grad: seen.grad + other.grad, hess: seen.hess + other.hess }
+        seen.add(1.0, &exchanged(&other));
+        seen
     }
 
     /// The weight w with gradient and Hessian.
@@ -122,10 +119,7 @@ impl FlatPair {
         let (fourth, over) = (square(&apart_sq), 1.0 / self.scale);
         let mut curvature_sq = sum(&[(-1.0, &square(&cosine)), (over, &fourth), (over * self.unequal, &apart_sq)]);
         curvature_sq.value += 1.0;
-        let [value, first, second] = share(curvature_sq.value);
-        let grad = curvature_sq.grad * first;
-        let hess = curvature_sq.hess * first + curvature_sq.grad * curvature_sq.grad.transpose() * second;
-        Jet { value, grad, hess }
+        Jet::of(share(curvature_sq.value), &curvature_sq.grad, &curvature_sq.hess)
     }
 }
 
@@ -148,17 +142,12 @@ pub fn share(curvature_sq: f64) -> [f64; 3] {
 }
 
 fn square(j: &Jet) -> Jet {
-    let hess = (j.hess * j.value + j.grad * j.grad.transpose()) * 2.0;
-    Jet { value: j.value * j.value, grad: j.grad * (2.0 * j.value), hess }
+    Jet::of([j.value * j.value, 2.0 * j.value, 2.0], &j.grad, &j.hess)
 }
 
 fn sum(terms: &[(f64, &Jet)]) -> Jet {
-    let mut out = Jet { value: 0.0, grad: Grad::zeros(), hess: Hess::zeros() };
-    for (factor, jet) in terms {
-        out.value += factor * jet.value;
-        out.grad += jet.grad * *factor;
-        out.hess += jet.hess * *factor;
-    }
+    let mut out = Jet::ZERO;
+    terms.iter().for_each(|(factor, jet)| out.add(*factor, jet));
     out
 }
 

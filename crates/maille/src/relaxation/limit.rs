@@ -25,10 +25,11 @@ use serde::{Deserialize, Serialize};
 use std::{sync::atomic::AtomicBool, time::Instant};
 
 /// How the energy is minimised.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Minimiser {
     /// Newton's iteration with floored eigenvalues.
+    #[default]
     Newton,
     /// Newton's iteration with growing shifts γ 1 of the Hessian (Algorithm 4.3.2), trials from the same point.
     NewtonShifted,
@@ -69,10 +70,10 @@ pub struct EnergyOptions {
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub steps: bool,
     /// What an overlap costs.
-    #[serde(default = "barrier")]
+    #[serde(default)]
     pub contact_law: ContactLaw,
     /// How the energy is minimised.
-    #[serde(default = "newton")]
+    #[serde(default)]
     pub minimiser: Minimiser,
     /// Refuse steps that flip a side sign (§4.3.3).
     #[serde(default)]
@@ -87,14 +88,6 @@ pub struct EnergyOptions {
 
 fn gradient_tolerance() -> f64 {
     1e-6
-}
-
-fn barrier() -> ContactLaw {
-    ContactLaw::Barrier
-}
-
-fn newton() -> Minimiser {
-    Minimiser::Newton
 }
 
 impl Default for EnergyOptions {
@@ -411,9 +404,14 @@ impl Search<'_> {
             Some(t) => (t.state, t.gradient, Some(t.residual)),
             None => (self.method.start.clone(), Matrix2::identity(), None),
         };
-        let model = self.method.model;
-        let along = self.direction.along();
-        let answer = Answer {
+        let (model, along) = (self.method.model, self.direction.along());
+        let reached = status == Status::ThresholdReached;
+        // Of a search that failed, the links of its last state.
+        let judged = reached || matches!(status, Status::L2NotReached | Status::NotConverged);
+        Answer {
+            value: reached.then(|| along.dot(&(gradient * along)) - 1.0),
+            gap: reached.then(|| topology::smallest_gap(model, &state)).flatten().map(|(gap, _)| gap),
+            links_ok: judged.then(|| topology::links_kept(model, &state)),
             state,
             gradient,
             residual,
@@ -422,20 +420,6 @@ impl Search<'_> {
             note,
             steps: self.steps.clone(),
             ..Answer::new(model, status)
-        };
-        match status {
-            Status::ThresholdReached => {
-                let value = Some(along.dot(&(gradient * along)) - 1.0);
-                let gap = topology::smallest_gap(model, &answer.state).map(|(gap, _)| gap);
-                let links_ok = Some(topology::links_kept(model, &answer.state));
-                Answer { value, gap, links_ok, ..answer }
-            }
-            // The last state of a search that failed.
-            Status::L2NotReached | Status::NotConverged => {
-                let links_ok = Some(topology::links_kept(model, &answer.state));
-                Answer { links_ok, ..answer }
-            }
-            _ => answer,
         }
     }
 }

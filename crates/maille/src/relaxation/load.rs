@@ -7,7 +7,7 @@ use crate::{
     model::Model,
     solver::curvature::Curvature,
     state::{Pose, State},
-    topology::broad_phase::in_chunks,
+    topology::{broad_phase::in_chunks, linked_parts},
 };
 use maille_geometry::Vec3;
 use nalgebra::{Matrix3, Matrix4, Vector4};
@@ -103,7 +103,7 @@ impl Loads {
                 }
             }
         }
-        for group in groups(model) {
+        for group in linked_parts(model).into_iter().map(|part| part.elements) {
             let inside = |e: &usize| group.binary_search(e).is_ok();
             let force: Vec3 = self.forces.iter().filter(|f| inside(&f.0)).map(|f| f.1).sum();
             let held = self.held.iter().chain(self.targets.iter().map(|t| &t.element)).any(inside);
@@ -235,26 +235,4 @@ fn for_points_of(model: &Model, state: &State, floor: Floor, index: usize, mut e
             each(arm, height, ring.minor_radius);
         }
     }
-}
-
-/// Elements that chains of links join, images included.
-fn groups(model: &Model) -> Vec<Vec<usize>> {
-    let mut parent: Vec<usize> = (0..model.elements.len()).collect();
-    fn root(parent: &mut [usize], mut e: usize) -> usize {
-        while parent[e] != e {
-            parent[e] = parent[parent[e]];
-            e = parent[e];
-        }
-        e
-    }
-    for link in &model.links {
-        let (i, j) = (model.rings[link.pair.ring_a].element, model.rings[link.pair.ring_b].element);
-        let (i, j) = (root(&mut parent, i), root(&mut parent, j));
-        parent[i.max(j)] = i.min(j);
-    }
-    let mut out = std::collections::BTreeMap::<usize, Vec<usize>>::new();
-    for e in 0..parent.len() {
-        out.entry(root(&mut parent, e)).or_default().push(e);
-    }
-    out.into_values().collect()
 }

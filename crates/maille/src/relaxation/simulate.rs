@@ -27,24 +27,16 @@ use std::{
     sync::atomic::{AtomicBool, Ordering},
 };
 
-/// An edge of a finite sheet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Edge {
-    Left,
-    Right,
-    Top,
-    Bottom,
-}
-
 /// The elements that `place` names: those of an edge (left and right along a1, bottom and top along a2), an element of
 /// one cell (`flat@0,1`), or its copies in all cells (`flat`).
 pub fn elements_at(model: &Model, place: &str) -> Result<Vec<usize>, InvalidInput> {
     let all = 0..model.elements.len();
-    let edge = match place {
-        "left" => Edge::Left,
-        "right" => Edge::Right,
-        "top" => Edge::Top,
-        "bottom" => Edge::Bottom,
+    // An edge is where a coordinate along a lattice vector, or less it, is least.
+    let (axis, sign) = match place {
+        "left" => (0, 1.0),
+        "right" => (0, -1.0),
+        "top" => (1, -1.0),
+        "bottom" => (1, 1.0),
         name => {
             let of = |e: &usize| {
                 let full = &model.elements[*e].name;
@@ -68,17 +60,9 @@ pub fn elements_at(model: &Model, place: &str) -> Result<Vec<usize>, InvalidInpu
             return Ok(found);
         }
     };
-    let fraction = |e: usize| {
-        let along = model.reference_inverse * model.start.poses[e].position.xy();
-        match edge {
-            Edge::Left => along.x,
-            Edge::Right => -along.x,
-            Edge::Bottom => along.y,
-            Edge::Top => -along.y,
-        }
-    };
-    let least = all.clone().map(fraction).fold(f64::INFINITY, f64::min);
-    Ok(all.filter(|e| fraction(*e) < least + 1e-6).collect())
+    let inwards = |e: usize| sign * (model.reference_inverse * model.start.poses[e].position.xy())[axis];
+    let least = all.clone().map(inwards).fold(f64::INFINITY, f64::min);
+    Ok(all.filter(|e| inwards(*e) < least + 1e-6).collect())
 }
 
 /// What is done to a sheet. Lengths in units of the reference radius.

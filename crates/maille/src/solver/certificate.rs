@@ -80,8 +80,7 @@ pub(super) fn matched(rows: &[Row], loads: &Loads) -> Vec<(usize, f64)> {
 }
 
 pub(super) fn labelled(rows: &[Row], multipliers: &[f64]) -> Vec<Multiplier> {
-    let pairs = rows.iter().zip(multipliers);
-    pairs.map(|(r, &value)| Multiplier { key: r.key, angle: r.angle, minimum: r.minimum, value }).collect()
+    rows.iter().zip(multipliers).map(|(row, &value)| row.multiplier(value)).collect()
 }
 
 /// Multipliers ≥ 0 with the least |c + Σ μ ∇g|, for dependent rows whose minimum-norm multipliers have wrong signs.

@@ -1,17 +1,12 @@
 //! Cholesky's factorisation of a positive matrix, again and again in the same room: a plain loop where it is small, faer's
 //! blocked kernels where it is larger, and where it is larger still, and mostly zeros, faer's sparse ones.
 
-use super::symmetric::Symmetric;
+use super::{sparse::Entries, symmetric::Symmetric};
 use faer::{
     MatMut, Par, Side, Spec,
     dyn_stack::{MemBuffer, MemStack, StackReq},
     linalg::cholesky::llt::factor::{cholesky_in_place, cholesky_in_place_scratch},
-    sparse::{
-        SparseColMatRef, SymbolicSparseColMatRef,
-        linalg::cholesky::{
-            CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
-        },
-    },
+    sparse::{SparseColMatRef, linalg::cholesky::LltRef},
 };
 
 /// From this size on faer's blocked kernels are faster than the plain loop.
@@ -20,30 +15,9 @@ const BLOCKED_FROM: usize = 40;
 /// A symmetric matrix and its factor L (A = L Lᵀ).
 pub struct Cholesky {
     matrix: Symmetric,
+    /// Values of a sparse factor; a dense one takes the place of its matrix.
+    sparse: Vec<f64>,
     room: MemBuffer,
-    sparse: Option<Sparse>,
-}
-
-/// The factor of a sparse matrix, with what follows from its pattern.
-struct Sparse {
-    symbolic: SymbolicCholesky<usize>,
-    values: Vec<f64>,
-}
-
-impl Sparse {
-    /// `None` if there is not enough memory.
-    fn new(matrix: &Symmetric) -> Option<Self> {
-        let order = SymmetricOrdering::Amd;
-        let symbolic =
-            factorize_symbolic_cholesky(pattern(matrix), Side::Lower, order, CholeskySymbolicParams::default()).ok()?;
-        Some(Sparse { values: vec![0.0; symbolic.len_val()], symbolic })
-    }
-}
-
-/// The pattern of a sparse matrix as faer wants it.
-pub(super) fn pattern(matrix: &Symmetric) -> SymbolicSparseColMatRef<'_, usize> {
-    let at = matrix.entries().expect("a sparse matrix");
-    SymbolicSparseColMatRef::new_checked(matrix.n(), matrix.n(), &at.starts, None, &at.rows)
 }
 
 impl Cholesky {
@@ -54,7 +28,7 @@ impl Cholesky {
             None => MemBuffer::new(cholesky_in_place_scratch::<f64>(n, Par::Seq, Spec::default())),
             Some(_) => MemBuffer::new(StackReq::EMPTY),
         };
-        Cholesky { matrix, room, sparse: None }
+        Cholesky { matrix, sparse: Vec::new(), room }
     }
 
     /// The matrix, to be written before each factorisation; only its lower triangle is read.
@@ -62,7 +36,7 @@ impl Cholesky {
         &mut self.matrix
     }
 
-    /// Factors the matrix; false where it is not positive. The matrix is lost.
+    /// Factors the matrix; false where it is not positive. A dense matrix is lost.
     pub fn factor(&mut self) -> bool {
         let n = self.matrix.n();
         if self.matrix.entries().is_some() {
@@ -94,20 +68,20 @@ impl Cholesky {
         true
     }
 
-    /// The sparse factor; what follows from the pattern and the room are kept.
+    /// The sparse factor; its values and the room are kept.
     fn factor_sparse(&mut self) -> Option<()> {
-        if self.sparse.is_none() {
-            let sparse = Sparse::new(&self.matrix)?;
-            let factor = sparse.symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Spec::default());
-            let solve = sparse.symbolic.solve_in_place_scratch::<f64>(1, Par::Seq);
+        let entries = self.matrix.entries()?;
+        let symbolic = entries.symbolic()?;
+        if self.sparse.is_empty() {
+            let factor = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Spec::default());
+            let solve = symbolic.solve_in_place_scratch::<f64>(1, Par::Seq);
             self.room = MemBuffer::try_new(factor.or(solve)).ok()?;
-            self.sparse = Some(sparse);
+            self.sparse = vec![0.0; symbolic.len_val()];
         }
-        let Sparse { symbolic, values } = self.sparse.as_mut()?;
-        let matrix = SparseColMatRef::new(pattern(&self.matrix), self.matrix.values());
-        let room = MemStack::new(&mut self.room);
+        let matrix = SparseColMatRef::new(entries.as_faer(), self.matrix.values());
+        let (factor, room) = (&mut self.sparse, MemStack::new(&mut self.room));
         symbolic
-            .factorize_numeric_llt(values, matrix, Side::Lower, Default::default(), Par::Seq, room, Spec::default())
+            .factorize_numeric_llt(factor, matrix, Side::Lower, Default::default(), Par::Seq, room, Spec::default())
             .ok()?;
         Some(())
     }
@@ -115,10 +89,10 @@ impl Cholesky {
     /// Puts A⁻¹ b in the place of b.
     pub fn solve(&mut self, b: &mut [f64]) {
         let n = self.matrix.n();
-        if let Some(Sparse { symbolic, values }) = &self.sparse {
+        if let Some(symbolic) = self.matrix.entries().and_then(Entries::symbolic) {
             let right = MatMut::from_column_major_slice_mut(b, n, 1);
             let room = MemStack::new(&mut self.room);
-            LltRef::new(symbolic, values).solve_in_place_with_conj(faer::Conj::No, right, Par::Seq, room);
+            LltRef::new(symbolic, &self.sparse).solve_in_place_with_conj(faer::Conj::No, right, Par::Seq, room);
             return;
         }
         let matrix = self.matrix.values();

@@ -22,6 +22,11 @@ pub struct Row {
 }
 
 impl Row {
+    /// Its multiplier, of size `value`.
+    pub fn multiplier(&self, value: f64) -> Multiplier {
+        Multiplier { key: self.key, angle: self.angle, minimum: self.minimum, value }
+    }
+
     /// A row without derivatives.
     pub fn value(key: u64, angle: f64, gap: f64) -> Row {
         Row { key, angle, gap, minimum: true, columns: Vec::new(), gradient: Vec::new(), hessian: Vec::new() }

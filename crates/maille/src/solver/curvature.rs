@@ -5,8 +5,10 @@
 //! elsewhere every block is made positive by itself, and the step is that of their sum. Either descends.
 
 use super::{
+    cholesky::Cholesky,
     eigen::{Eigen, EigenFailure, symmetric_eigen},
-    sparse::{GROUP, Pattern, Patterns},
+    sparse::{Entries, GROUP, Patterns},
+    symmetric::Symmetric,
 };
 use faer::{Mat, Side};
 use rayon::prelude::*;
@@ -49,6 +51,14 @@ impl Piece {
                 each(row as usize, column as usize, c * d * Self::at(block, p as usize, q as usize));
             }
         }
+    }
+
+    /// Groups of the unknowns.
+    fn groups(&self) -> Vec<usize> {
+        let mut groups: Vec<usize> = self.entries.iter().map(|e| e.1 as usize / GROUP).collect();
+        groups.sort_unstable();
+        groups.dedup();
+        groups
     }
 
     /// B with its negative eigenvalues set to 0; B itself where the decomposition fails.
@@ -133,24 +143,27 @@ impl Curvature {
             Kind::Dense(h) => return Ok(Decomposed::Dense(symmetric_eigen(&h)?)),
             Kind::Sparse(pieces) => pieces,
         };
-        let group = |e: &(u32, u32, f64)| e.1 / GROUP as u32;
-        let mut pairs = Vec::new();
-        for piece in &pieces {
-            let mut groups: Vec<u32> = piece.entries.iter().map(group).collect();
-            groups.sort_unstable();
-            groups.dedup();
-            for (k, row) in groups.iter().enumerate() {
-                pairs.extend(groups[..k].iter().map(|column| (*column, *row)));
-            }
-        }
-        let no_room = EigenFailure { residual: f64::NAN, norm: f64::NAN };
-        let pattern = patterns.with(self.n, pairs).ok_or(no_room)?;
-        let mut exact = pattern.zeros();
-        for piece in &pieces {
-            piece.scatter(&piece.block, |row, column, value| pattern.add(&mut exact, row, column, value));
-        }
+        let groups: Vec<Vec<usize>> = pieces.iter().map(Piece::groups).collect();
+        let pattern = patterns.with(self.n, groups.iter().map(|of| &of[..]));
+        pattern.symbolic().ok_or(EigenFailure { residual: f64::NAN, norm: f64::NAN })?; // no memory
+        let exact = sum(&pattern, pieces.iter().map(|piece| (piece, &piece.block)));
         Ok(Decomposed::Sparse(SparseHessian { pattern, exact, pieces }))
     }
+}
+
+/// Σ of the pieces with the blocks that stand beside them.
+fn sum<'a>(pattern: &Arc<Entries>, pieces: impl Iterator<Item = (&'a Piece, &'a Box<[f64]>)>) -> Symmetric {
+    let mut out = Symmetric::sparse(pattern.clone());
+    pieces.for_each(|(piece, block)| piece.scatter(block, |row, column, value| out.add_entry(row, column, value)));
+    out
+}
+
+/// The factor of a matrix with `shift` added to its diagonal; `None` where that is not positive.
+fn factored(matrix: Symmetric, shift: f64) -> Option<Cholesky> {
+    let mut system = Cholesky::new(matrix);
+    let matrix = system.matrix_mut();
+    (0..matrix.n()).for_each(|k| matrix.add_to_diagonal(k, shift));
+    system.factor().then_some(system)
 }
 
 /// A Hessian of which steps and signs can be asked.
@@ -163,44 +176,36 @@ pub enum Decomposed {
 
 /// A large Hessian.
 pub struct SparseHessian {
-    pattern: Arc<Pattern>,
-    exact: Vec<f64>,
+    pattern: Arc<Entries>,
+    exact: Symmetric,
     pieces: Vec<Piece>,
 }
 
 impl SparseHessian {
-    /// Entries of the lower triangle, and of its factor.
-    pub fn sizes(&self) -> [usize; 2] {
-        self.pattern.sizes()
-    }
-
     /// The sum of the blocks' positive parts.
-    fn convex(&self) -> Vec<f64> {
+    fn convex(&self) -> Symmetric {
         let blocks: Vec<Box<[f64]>> = self.pieces.par_iter().with_min_len(64).map(Piece::positive).collect();
-        let mut values = self.pattern.zeros();
-        for (piece, block) in self.pieces.iter().zip(&blocks) {
-            piece.scatter(block, |row, column, value| self.pattern.add(&mut values, row, column, value));
-        }
-        values
+        sum(&self.pattern, self.pieces.iter().zip(&blocks))
     }
 
     fn step(&self, gradient: &[f64], floor: f64) -> Option<Vec<f64>> {
-        let exact = self.pattern.factor(&self.exact, floor);
-        let factor = exact.or_else(|| self.pattern.factor(&self.convex(), floor))?;
-        Some(factor.solve(gradient)?.iter().map(|x| -x).collect())
+        let mut system = factored(self.exact.clone(), floor).or_else(|| factored(self.convex(), floor))?;
+        let mut step: Vec<f64> = gradient.iter().map(|g| -g).collect();
+        system.solve(&mut step);
+        Some(step)
     }
 
     fn lowest(&self) -> Option<(f64, Vec<f64>)> {
-        let size = self.exact.iter().fold(1e-300f64, |m, v| m.max(v.abs()));
-        let factor = (0..60).find_map(|k| self.pattern.factor(&self.exact, 1e-9 * size * 2f64.powi(k)))?;
+        let size = self.exact.values().iter().fold(1e-300f64, |m, v| m.max(v.abs()));
+        let mut system = (0..60).find_map(|k| factored(self.exact.clone(), 1e-9 * size * 2f64.powi(k)))?;
         // Any start that is orthogonal to no vector in particular.
-        let mut vector: Vec<f64> = (0..self.pattern.unknowns()).map(|k| (1.0 + k as f64).sin()).collect();
+        let mut vector: Vec<f64> = (0..self.exact.n()).map(|k| (1.0 + k as f64).sin()).collect();
         for _ in 0..INVERSE_ITERATIONS {
-            vector = factor.solve(&vector)?;
+            system.solve(&mut vector);
             let norm = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
             vector.iter_mut().for_each(|x| *x /= norm);
         }
-        Some((self.pattern.quadratic_form(&self.exact, &vector), vector))
+        Some((self.exact.quadratic_form(&vector), vector))
     }
 }
 
@@ -220,7 +225,7 @@ impl Decomposed {
     pub fn no_saddle(&self, tolerance: f64) -> bool {
         match self {
             Decomposed::Dense(eigen) => eigen.values[0] >= -tolerance,
-            Decomposed::Sparse(hessian) => hessian.pattern.factor(&hessian.exact, tolerance).is_some(),
+            Decomposed::Sparse(hessian) => factored(hessian.exact.clone(), tolerance).is_some(),
         }
     }
 

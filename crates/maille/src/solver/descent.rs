@@ -20,12 +20,10 @@ pub fn steepest_descent<O: Objective>(
     loop {
         (out.energy, out.gradient_norm) = (energy, norm(&gradient));
         if cancel.load(Ordering::Relaxed) {
-            out.outcome = Outcome::Interrupted;
-            return out;
+            return out.ended(Outcome::Interrupted);
         }
         if out.gradient_norm < options.gradient_tolerance {
-            out.outcome = Outcome::Minimum;
-            return out;
+            return out.ended(Outcome::Minimum);
         }
         if out.iterations == options.max_iterations {
             return out;
@@ -33,8 +31,7 @@ pub fn steepest_descent<O: Objective>(
         out.iterations += 1;
         let step: Vec<f64> = gradient.iter().map(|g| -length * g).collect();
         let Some((point, _)) = descend(objective, &out.point, (energy, &gradient), &guard, &step) else {
-            out.outcome = Outcome::Stalled;
-            return out;
+            return out.ended(Outcome::Stalled);
         };
         let before = energy;
         let slope_sq = out.gradient_norm * out.gradient_norm;

@@ -24,21 +24,6 @@ pub struct Derivatives<G> {
     pub guard: G,
 }
 
-/// [`Derivatives`] with the Hessian decomposed.
-struct Here<G> {
-    energy: f64,
-    gradient: Vec<f64>,
-    curvature: Decomposed,
-    guard: G,
-}
-
-impl<G> Derivatives<G> {
-    fn decompose(self, patterns: &mut Patterns) -> Result<Here<G>, EigenFailure> {
-        let Derivatives { energy, gradient, hessian, guard } = self;
-        Ok(Here { energy, gradient, curvature: hessian.decompose(patterns)?, guard })
-    }
-}
-
 /// What is minimised.
 pub trait Objective {
     /// A point of the configuration space.
@@ -133,6 +118,11 @@ impl<P> Minimization<P> {
             kicks: 0,
         }
     }
+
+    /// Ended so.
+    pub(super) fn ended(self, outcome: Outcome) -> Self {
+        Minimization { outcome, ..self }
+    }
 }
 
 /// Minimises `objective` from `start` until `cancel` or an end. `watch` sees every point with its energy, the start
@@ -149,59 +139,48 @@ pub fn minimize<O: Objective>(
     let mut floor = options.curvature_floor;
     while out.iterations < options.max_iterations {
         if cancel.load(Ordering::Relaxed) {
-            out.outcome = Outcome::Interrupted;
-            return out;
+            return out.ended(Outcome::Interrupted);
         }
-        let here = objective.derivatives(&out.point);
-        (out.energy, out.gradient_norm) = (here.energy, norm(&here.gradient));
-        watch(&out.point, here.energy, out.escapes + out.kicks);
-        let here = match here.decompose(&mut patterns) {
-            Ok(here) => here,
-            Err(failure) => {
-                out.outcome = Outcome::Eigen(failure);
-                return out;
-            }
+        let Derivatives { energy, gradient, hessian, guard } = objective.derivatives(&out.point);
+        (out.energy, out.gradient_norm) = (energy, norm(&gradient));
+        watch(&out.point, energy, out.escapes + out.kicks);
+        let curvature = match hessian.decompose(&mut patterns) {
+            Ok(curvature) => curvature,
+            Err(failure) => return out.ended(Outcome::Eigen(failure)),
         };
         out.iterations += 1;
         let next = if out.gradient_norm < options.gradient_tolerance {
-            if here.curvature.no_saddle(options.saddle_tolerance) {
-                out.outcome = Outcome::Minimum;
-                return out;
+            if curvature.no_saddle(options.saddle_tolerance) {
+                return out.ended(Outcome::Minimum);
             }
-            match escape(objective, &out.point, &here) {
+            match escape(objective, &out.point, energy, &guard, &curvature) {
                 Some(point) => {
                     out.escapes += 1;
                     Some(point)
                 }
                 // No decrease along negative curvature: the energy jumps there. The point is as low as can be found.
-                None => {
-                    out.outcome = Outcome::Minimum;
-                    return out;
-                }
+                None => return out.ended(Outcome::Minimum),
             }
         } else {
-            let newton = here.curvature.descent_step(&here.gradient, floor);
-            let along = |step: &[f64]| descend(objective, &out.point, (here.energy, &here.gradient), &here.guard, step);
+            let newton = curvature.descent_step(&gradient, floor);
+            let along = |step: &[f64]| descend(objective, &out.point, (energy, &gradient), &guard, step);
             newton
                 .and_then(|step| along(&step))
                 .inspect(|&(_, fraction)| floor = next_floor(floor, fraction, options.curvature_floor))
-                .or_else(|| along(&here.gradient.iter().map(|g| -g).collect::<Vec<_>>()))
+                .or_else(|| along(&gradient.iter().map(|g| -g).collect::<Vec<_>>()))
                 .map(|(point, _)| point)
-                .or_else(|| escape(objective, &out.point, &here))
+                .or_else(|| escape(objective, &out.point, energy, &guard, &curvature))
         };
         out.point = match next {
             Some(point) => point,
             None if out.kicks < options.max_kicks => {
                 out.kicks += 1;
                 let step = objective.kick(out.kicks);
-                let fraction = objective.largest_step(&here.guard, &step);
+                let fraction = objective.largest_step(&guard, &step);
                 let kicked = objective.moved(&out.point, &step, fraction);
                 if objective.allows(&out.point, &kicked) { kicked } else { continue }
             }
-            None => {
-                out.outcome = Outcome::Stalled;
-                return out;
-            }
+            None => return out.ended(Outcome::Stalled),
         };
     }
     out
@@ -238,19 +217,25 @@ pub(super) fn descend<O: Objective>(
     None
 }
 
-/// The lowest of the points tried along ± the most negative eigenvector, if it lies below the saddle as far as its
+/// From `x`, of the energy `here`: the lowest of the points tried along ± the most negative eigenvector, if it lies below the saddle as far as its
 /// curvature promises (a fraction of it).
-fn escape<O: Objective>(objective: &O, x: &O::Point, here: &Here<O::Guard>) -> Option<O::Point> {
-    let (lowest, vector) = here.curvature.lowest()?;
+fn escape<O: Objective>(
+    objective: &O,
+    x: &O::Point,
+    here: f64,
+    guard: &O::Guard,
+    curvature: &Decomposed,
+) -> Option<O::Point> {
+    let (lowest, vector) = curvature.lowest()?;
     let lowest = lowest.min(0.0);
     let mut best: Option<(f64, O::Point)> = None;
     for sign in [1.0, -1.0] {
         let step: Vec<f64> = vector.iter().map(|v| sign * v).collect();
-        let mut fraction = objective.largest_step(&here.guard, &step);
+        let mut fraction = objective.largest_step(guard, &step);
         while fraction > 1e-6 {
             let trial = objective.moved(x, &step, fraction);
             let energy = objective.energy(&trial);
-            let low_enough = energy < here.energy + 0.1 * lowest * fraction * fraction;
+            let low_enough = energy < here + 0.1 * lowest * fraction * fraction;
             if low_enough && best.as_ref().is_none_or(|b| energy < b.0) && objective.allows(x, &trial) {
                 best = Some((energy, trial));
                 break;

@@ -121,11 +121,8 @@ fn polished<P: Program>(
         let rows = program.rows(&x, BAND, Derivatives::None);
         let loads = Loads::new(&active);
         let violated = rows.iter().filter(|r| r.gap < -GAP_TOLERANCE && loads.of(r) == 0.0);
-        active.extend(
-            violated
-                .map(|r| Multiplier { key: r.key, angle: r.angle, minimum: r.minimum, value: 1e-300 })
-                .collect::<Vec<_>>(),
-        );
+        let taken_in: Vec<Multiplier> = violated.map(|row| row.multiplier(1e-300)).collect();
+        active.extend(taken_in);
         if active.len() > before {
             taken = Some(figures);
         } else {

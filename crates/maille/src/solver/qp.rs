@@ -95,6 +95,14 @@ struct Cone {
 }
 
 impl Cone {
+    /// Where the iteration starts, at x = 0.
+    fn start(program: &QuadraticProgram<'_>, scale: f64) -> Self {
+        let rows = program.lower.iter().map(|b| (-b).max(1e-2));
+        let s: Vec<f64> = rows.chain(program.half_width.iter().chain(program.half_width).copied()).collect();
+        let z = s.iter().map(|s| 1e-2 * scale / s.max(1e-1)).collect();
+        Cone { inverse: vec![0.0; s.len()], s, z }
+    }
+
     fn gap(&self) -> f64 {
         dot(&self.s, &self.z) / self.s.len() as f64
     }
@@ -104,20 +112,9 @@ impl Cone {
 pub fn solve(program: &QuadraticProgram<'_>) -> QpSolution {
     let (n, m) = (program.linear.len(), program.lower.len());
     let sides = m + 2 * n;
-    let row = |k: usize| program.rows.row(k);
     let scale = 1.0 + program.linear.iter().fold(0.0f64, |a, c| a.max(c.abs()));
     let mut x = vec![0.0; n];
-    let mut cone = Cone { s: vec![0.0; sides], z: vec![0.0; sides], inverse: vec![0.0; sides] };
-    for k in 0..m {
-        cone.s[k] = (-program.lower[k]).max(1e-2);
-        cone.z[k] = 1e-2 * scale / cone.s[k].max(1e-1);
-    }
-    for i in 0..n {
-        for side in [m + i, m + n + i] {
-            cone.s[side] = program.half_width[i];
-            cone.z[side] = 1e-2 * scale / cone.s[side].max(1e-1);
-        }
-    }
+    let mut cone = Cone::start(program, scale);
     // The best iterate so far is the answer: rounding can spoil the last ones.
     let mut best = QpSolution { x: x.clone(), multipliers: vec![0.0; m], residual: f64::INFINITY, iterations: 0 };
     let (mut dual, mut primal) = (vec![0.0; n], vec![0.0; m]);
@@ -126,15 +123,10 @@ pub fn solve(program: &QuadraticProgram<'_>) -> QpSolution {
     let mut direction = Direction { x: vec![0.0; n], s: vec![0.0; sides], z: vec![0.0; sides] };
     let mut target = vec![0.0; sides];
     for iteration in 0..MAX_ITERATIONS {
-        // Residuals: dual H x + c − Aᵀ z_A − z_low + z_up; primal A x − b − s. The box slacks stay exact.
-        for i in 0..n {
-            dual[i] = program.linear[i] - cone.z[m + i] + cone.z[m + n + i];
-        }
-        program.hessian.add_times(1.0, &x, &mut dual);
-        for k in 0..m {
-            let (columns, values) = row(k);
-            primal[k] = sparse_dot(columns, values, &x) - program.lower[k] - cone.s[k];
-            columns.iter().zip(values).for_each(|(&i, a)| dual[i] -= a * cone.z[k]);
+        residuals(program, &x, &cone, &mut dual, &mut primal);
+        // A maximum would skip what is no number.
+        if !x.iter().chain(&cone.z).all(|v| v.is_finite()) {
+            break;
         }
         let worst = |v: &[f64]| v.iter().fold(0.0f64, |a, x| a.max(x.abs()));
         let gap = cone.gap();
@@ -144,22 +136,11 @@ pub fn solve(program: &QuadraticProgram<'_>) -> QpSolution {
             best.multipliers.copy_from_slice(&cone.z[..m]);
             (best.residual, best.iterations) = (residual, iteration);
         }
-        if residual < TOLERANCE || !residual.is_finite() {
+        if residual < TOLERANCE {
             break;
         }
         cone.inverse.iter_mut().zip(&cone.s).for_each(|(inverse, s)| *inverse = 1.0 / s);
-        // Normal matrix H + Aᵀ diag(z/s) A + diag(box), and its Cholesky factor.
-        let matrix = system.matrix_mut();
-        matrix.set(program.hessian);
-        let mut at = &positions[..];
-        for k in 0..m {
-            let ((columns, values), weight) = (row(k), cone.z[k] * cone.inverse[k]);
-            at = matrix.add_square(columns, values, weight, at);
-        }
-        for i in 0..n {
-            let sides = cone.z[m + i] * cone.inverse[m + i] + cone.z[m + n + i] * cone.inverse[m + n + i];
-            matrix.add_to_diagonal(i, sides + 1e-13);
-        }
+        write_normal_matrix(program, &cone, &positions, system.matrix_mut());
         if !system.factor() {
             break;
         }
@@ -192,6 +173,35 @@ pub fn solve(program: &QuadraticProgram<'_>) -> QpSolution {
         }
     }
     best
+}
+
+/// Dual H x + c − Aᵀ z_A − z_low + z_up; primal A x − b − s. The box slacks stay exact.
+fn residuals(program: &QuadraticProgram<'_>, x: &[f64], cone: &Cone, dual: &mut [f64], primal: &mut [f64]) {
+    let (n, m) = (x.len(), primal.len());
+    for i in 0..n {
+        dual[i] = program.linear[i] - cone.z[m + i] + cone.z[m + n + i];
+    }
+    program.hessian.add_times(1.0, x, dual);
+    for k in 0..m {
+        let (columns, values) = program.rows.row(k);
+        primal[k] = sparse_dot(columns, values, x) - program.lower[k] - cone.s[k];
+        columns.iter().zip(values).for_each(|(&i, a)| dual[i] -= a * cone.z[k]);
+    }
+}
+
+/// H + Aᵀ diag(z/s) A + diag(box).
+fn write_normal_matrix(program: &QuadraticProgram<'_>, cone: &Cone, positions: &[usize], matrix: &mut Symmetric) {
+    let (n, m) = (program.linear.len(), program.lower.len());
+    matrix.set(program.hessian);
+    let mut at = positions;
+    for k in 0..m {
+        let ((columns, values), weight) = (program.rows.row(k), cone.z[k] * cone.inverse[k]);
+        at = matrix.add_square(columns, values, weight, at);
+    }
+    for i in 0..n {
+        let sides = cone.z[m + i] * cone.inverse[m + i] + cone.z[m + n + i] * cone.inverse[m + n + i];
+        matrix.add_to_diagonal(i, sides + 1e-13);
+    }
 }
 
 /// A matrix with the pattern of H + AᵀA, and the places of the rows' entries in it.

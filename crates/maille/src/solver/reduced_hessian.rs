@@ -5,7 +5,7 @@
 //! keep the rows see H alone, others are stiff. By the minimax principle no eigenvalue of M lies above the one of H on the null
 //! space that it stands for; it lies lower by |dμ|²/ρ, where dμ is what the multipliers change along the unit motion.
 
-use super::{cholesky::pattern, constraints::Row, eigen::symmetric_eigen, symmetric::Symmetric};
+use super::{constraints::Row, eigen::symmetric_eigen, symmetric::Symmetric};
 use faer::{
     Mat, Par, Side, Spec,
     dyn_stack::{MemBuffer, MemStack},
@@ -115,7 +115,8 @@ impl Counter {
             ..Default::default()
         };
         let symbolic =
-            factorize_symbolic_cholesky(pattern(&matrix), Side::Lower, SymmetricOrdering::Amd, columns).ok()?;
+            factorize_symbolic_cholesky(matrix.entries()?.as_faer(), Side::Lower, SymmetricOrdering::Amd, columns)
+                .ok()?;
         let need = symbolic.factorize_numeric_ldlt_scratch::<f64>(Par::Seq, Spec::default());
         let (factor, room) = (vec![0.0; symbolic.len_val()], MemBuffer::try_new(need).ok()?);
         Some(Counter { shifted: matrix.clone(), matrix, symbolic, factor, room })
@@ -125,7 +126,7 @@ impl Counter {
     fn below(&mut self, sigma: f64) -> Option<usize> {
         self.shifted.set(&self.matrix);
         (0..self.matrix.n()).for_each(|i| self.shifted.add_to_diagonal(i, -sigma));
-        let matrix = SparseColMatRef::new(pattern(&self.shifted), self.shifted.values());
+        let matrix = SparseColMatRef::new(self.shifted.entries()?.as_faer(), self.shifted.values());
         let room = MemStack::new(&mut self.room);
         let (symbolic, factor) = (&self.symbolic, &mut self.factor);
         symbolic

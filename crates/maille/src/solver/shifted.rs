@@ -48,23 +48,18 @@ pub fn shifted_newton<O: Objective>(
     let mut shift = FIRST_SHIFT * options.curvature_floor;
     while out.iterations < options.max_iterations {
         if cancel.load(Ordering::Relaxed) {
-            out.outcome = Outcome::Interrupted;
-            return out;
+            return out.ended(Outcome::Interrupted);
         }
         let here = objective.derivatives(&out.point);
         (out.energy, out.gradient_norm) = (here.energy, norm(&here.gradient));
         out.iterations += 1;
         let eigen = match symmetric_eigen(&here.hessian.to_dense()) {
             Ok(eigen) => eigen,
-            Err(failure) => {
-                out.outcome = Outcome::Eigen(failure);
-                return out;
-            }
+            Err(failure) => return out.ended(Outcome::Eigen(failure)),
         };
         if out.gradient_norm < options.gradient_tolerance {
             if eigen.values.first().is_none_or(|least| *least >= -options.saddle_tolerance) {
-                out.outcome = Outcome::Minimum;
-                return out;
+                return out.ended(Outcome::Minimum);
             }
             let step: Vec<f64> = eigen.lowest().iter().map(|v| PERTURBATION * v).collect();
             let fraction = objective.largest_step(&here.guard, &step);
@@ -76,8 +71,7 @@ pub fn shifted_newton<O: Objective>(
             shift = FIRST_SHIFT * options.curvature_floor;
         }
         let Some(step) = descending_step(&eigen, &here.gradient, &mut shift) else {
-            out.outcome = Outcome::Stalled;
-            return out;
+            return out.ended(Outcome::Stalled);
         };
         // The sum of all trials is at most twice the first: so the step bound is asked for that.
         let most = match reading {
@@ -87,8 +81,7 @@ pub fn shifted_newton<O: Objective>(
         let (mut fraction, mut total) = (most, 0.0);
         out.point = loop {
             if fraction <= LEAST_FRACTION * most {
-                out.outcome = Outcome::Stalled;
-                return out;
+                return out.ended(Outcome::Stalled);
             }
             total = if reading == Reading::Printed { total + fraction } else { fraction };
             fraction *= 0.5;

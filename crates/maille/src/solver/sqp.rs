@@ -148,6 +148,42 @@ const LEAST_SHIFT: f64 = 1e-4;
 /// See [`LEAST_SHIFT`].
 const MOST_SHIFT: f64 = 0.1;
 
+/// Rows up to this gap are listed for a step of at most `radius`.
+fn band(radius: f64) -> f64 {
+    0.1 + 2.0 * radius
+}
+
+/// The merit −value + penalty · violation at a point, and the violation.
+fn merit_at<P: Program>(program: &P, x: &P::Point, penalty: f64) -> (f64, f64) {
+    let violation = violation(&program.rows(x, 0.0, Derivatives::None));
+    (-program.value(x) + penalty * violation, violation)
+}
+
+/// The point that the shortest correction by `metric` leads to from `x`, whose rows are violated by up to `violation`.
+fn corrected<P: Program>(program: &P, x: &P::Point, violation: f64, metric: &Symmetric, radius: f64) -> P::Point {
+    let rows = program.rows(x, band(radius).min(0.2), Derivatives::First);
+    let none = vec![0.0; metric.n()];
+    let (step, _, _) = elastic_program(&rows, metric, &none, 1e3 * radius, radius.min(FURTHEST * violation));
+    program.moved(x, &cut_back(program, x, &step).0)
+}
+
+/// The part of a step that is allowed, and which part it is.
+fn cut_back<P: Program>(program: &P, x: &P::Point, step: &[f64]) -> (Vec<f64>, f64) {
+    let fraction = program.largest_step(x, &program.guard(x), step);
+    (step.iter().map(|s| s * fraction).collect(), fraction)
+}
+
+/// The half width of the trust box after an accepted step of `size`, by the actual reduction over the predicted one.
+fn adapted(radius: f64, ratio: f64, size: f64, most: f64) -> f64 {
+    if ratio > 0.7 && size > 0.9 * radius {
+        (2.0 * radius).min(most)
+    } else if ratio < 0.3 {
+        0.5 * radius
+    } else {
+        radius
+    }
+}
+
 /// Maximises `program` from `start`; `known` are multipliers of an earlier iteration, if there was one.
 pub fn maximize<P: Program>(
     program: &P,
@@ -161,7 +197,6 @@ pub fn maximize<P: Program>(
     let descent: Vec<f64> = c.iter().map(|x| -x).collect();
     let mut radius = options.first_radius;
     let mut penalty = options.penalty;
-    let band = |radius: f64| 0.1 + 2.0 * radius;
     let mut curvature_shift = MOST_SHIFT;
     let mut end = SqpEnd { point: start, multipliers: known, iterations: 0, settled: false, violation: f64::INFINITY };
     let mut activation_band = band(radius);
@@ -178,13 +213,10 @@ pub fn maximize<P: Program>(
         let known: Vec<f64> = rows.iter().map(|row| loads.of(row)).collect();
         let h = convexified(lagrangian_hessian(n, &rows, &known, &[]), &rows, &known, curvature_shift);
         let (step, multipliers, elastic_residual) = elastic_program(&rows, &h, &descent, penalty, radius);
-        let keep = |multipliers: &[f64]| -> Vec<Multiplier> {
-            let pairs = rows.iter().zip(multipliers).filter(|(_, mu)| **mu > 1e-9);
-            pairs.map(|(r, &value)| Multiplier { key: r.key, angle: r.angle, minimum: r.minimum, value }).collect()
-        };
         let size = step.iter().fold(0.0f64, |a, s| a.max(s.abs()));
         let predicted = dot(&c, &step) + penalty * (end.violation - elastic_residual);
-        end.multipliers = keep(&multipliers);
+        let carrying = rows.iter().zip(&multipliers).filter(|(_, mu)| **mu > 1e-9);
+        end.multipliers = carrying.map(|(row, mu)| row.multiplier(*mu)).collect();
         loads = Loads::new(&end.multipliers);
         curvature_shift = size.clamp(LEAST_SHIFT, MOST_SHIFT);
         penalty = penalty.max(2.0 * multipliers.iter().sum::<f64>().min(1e4));
@@ -197,34 +229,19 @@ pub fn maximize<P: Program>(
             break;
         }
         // The step is cut back so that no two core circles can cross.
-        let guard = program.guard(&end.point);
-        let fraction = program.largest_step(&end.point, &guard, &step);
-        let step: Vec<f64> = step.iter().map(|s| s * fraction).collect();
+        let (step, fraction) = cut_back(program, &end.point, &step);
         let merit = -program.value(&end.point) + penalty * end.violation;
-        let merit_at = |point: &P::Point| {
-            let violation = violation(&program.rows(point, 0.0, Derivatives::None));
-            (-program.value(point) + penalty * violation, violation)
-        };
         // Actual reduction of the merit at the trial point, against the predicted one.
         let mut trial = program.moved(&end.point, &step);
-        let (mut trial_merit, mut trial_violation) = merit_at(&trial);
+        let (mut trial_merit, mut trial_violation) = merit_at(program, &trial, penalty);
         let predicted_decrease = predicted * fraction;
-        let mut hessian_step = vec![0.0; n];
-        h.add_times(1.0, &step, &mut hessian_step);
         // What the curved rows take away again, by the model.
-        let model_decrease = predicted_decrease - 0.5 * dot(&hessian_step, &step);
+        let model_decrease = predicted_decrease - 0.5 * h.quadratic_form(&step);
         // Second-order correction: the trial point violates curved constraints that the model had as straight ones.
         if merit - trial_merit < 0.5 * predicted_decrease && trial_violation > 0.0 {
-            let there = program.rows(&trial, band(radius).min(0.2), Derivatives::First);
-            let none = vec![0.0; n];
             let metric = stiff_where_loaded(n, &rows, &multipliers);
-            let (correction, _, _) =
-                elastic_program(&there, &metric, &none, 1e3 * radius, radius.min(FURTHEST * trial_violation));
-            let guard = program.guard(&trial);
-            let fraction = program.largest_step(&trial, &guard, &correction);
-            let correction: Vec<f64> = correction.iter().map(|s| s * fraction).collect();
-            let corrected = program.moved(&trial, &correction);
-            let (better, left) = merit_at(&corrected);
+            let corrected = corrected(program, &trial, trial_violation, &metric, radius);
+            let (better, left) = merit_at(program, &corrected, penalty);
             if better < trial_merit {
                 (trial, trial_merit, trial_violation) = (corrected, better, left);
             }
@@ -234,21 +251,16 @@ pub fn maximize<P: Program>(
         if ratio > 0.05 || (predicted < 1e-9 && merit - trial_merit > -1e-14) {
             end.point = trial;
             end.violation = trial_violation;
-            if ratio > 0.7 && size > 0.9 * radius {
-                radius = (2.0 * radius).min(options.most_radius);
-            } else if ratio < 0.3 {
-                radius *= 0.5;
-            }
+            radius = adapted(radius, ratio, size, options.most_radius);
             activation_band = band(radius);
-            rows = program.rows(&end.point, activation_band, Derivatives::Second(&loads));
         } else {
             radius = 0.3 * radius.min(size);
             if radius < 1e-13 {
                 break;
             }
-            // The same rows with the Hessians of those that are loaded now.
-            rows = program.rows(&end.point, activation_band, Derivatives::Second(&loads));
         }
+        // After a rejected step the same rows, with the Hessians of those that are loaded now.
+        rows = program.rows(&end.point, activation_band, Derivatives::Second(&loads));
     }
     end
 }

@@ -1,7 +1,8 @@
 //! Symmetric matrices that sums of small dense blocks make up: dense for few unknowns, for many only the entries that
 //! some block can reach.
 
-use std::rc::Rc;
+use super::sparse::Entries;
+use std::sync::Arc;
 
 /// From this size on zeros are left out. It lies between 133 unknowns, where a cell's matrices are nearly full, and 538,
 /// where dense factors took ten times as long.
@@ -11,58 +12,9 @@ pub const SPARSE_FROM: usize = 200;
 #[derive(Clone, Debug)]
 pub struct Symmetric {
     n: usize,
-    at: Option<Rc<Entries>>,
+    at: Option<Arc<Entries>>,
     /// All entries, column after column; of a sparse matrix those of the lower triangle in the order of [`Entries`].
     values: Vec<f64>,
-}
-
-/// Where the lower triangle is not zero: each column's rows ascending, the diagonal first.
-#[derive(Debug, PartialEq, Eq)]
-pub struct Entries {
-    /// First entry of each column, and the number of all.
-    pub starts: Vec<usize>,
-    /// Row of each entry.
-    pub rows: Vec<usize>,
-}
-
-impl Entries {
-    /// The diagonal, where `first` is not zero, and what `cliques` of unknowns reach.
-    fn new<'c>(n: usize, first: Option<&Symmetric>, cliques: impl IntoIterator<Item = &'c [usize]>) -> Self {
-        let mut columns: Vec<Vec<usize>> = (0..n).map(|i| vec![i]).collect();
-        if let Some(first) = first {
-            columns
-                .iter_mut()
-                .enumerate()
-                .take(first.n)
-                .for_each(|(j, column)| first.each_below(j, |i, _| column.push(i)));
-        }
-        let mut last: &[usize] = &[];
-        for clique in cliques {
-            // Rows of one pair follow one another.
-            if clique == last {
-                continue;
-            }
-            last = clique;
-            for &j in clique {
-                columns[j].extend(clique.iter().filter(|i| **i > j));
-            }
-        }
-        let (mut starts, mut rows) = (vec![0], Vec::new());
-        for column in &mut columns {
-            column.sort_unstable();
-            column.dedup();
-            rows.extend_from_slice(column);
-            starts.push(rows.len());
-        }
-        Entries { starts, rows }
-    }
-
-    fn position(&self, i: usize, j: usize) -> usize {
-        let (row, column) = (i.max(j), i.min(j));
-        let range = self.starts[column]..self.starts[column + 1];
-        let found = self.rows[range].binary_search(&row).expect("a clique reaches the entry");
-        self.starts[column] + found
-    }
 }
 
 impl Symmetric {
@@ -79,9 +31,17 @@ impl Symmetric {
     }
 
     fn with_room<'c>(n: usize, first: Option<&Symmetric>, cliques: impl IntoIterator<Item = &'c [usize]>) -> Self {
-        let at = (n >= SPARSE_FROM).then(|| Rc::new(Entries::new(n, first, cliques)));
-        let room = at.as_ref().map_or(n * n, |at| at.rows.len());
-        Symmetric { n, at, values: vec![0.0; room] }
+        if n < SPARSE_FROM {
+            return Symmetric { n, at: None, values: vec![0.0; n * n] };
+        }
+        let full = Entries::full(first.filter(|first| first.at.is_none()).map_or(0, |first| first.n));
+        let first = first.map(|first| first.entries().unwrap_or(&full));
+        Self::sparse(Arc::new(Entries::new(n, first, cliques)))
+    }
+
+    /// Zero, with room for `entries`.
+    pub fn sparse(entries: Arc<Entries>) -> Self {
+        Symmetric { n: entries.starts.len() - 1, values: vec![0.0; entries.rows.len()], at: Some(entries) }
     }
 
     /// Number of rows.
@@ -115,6 +75,12 @@ impl Symmetric {
                 }
             }
         }
+    }
+
+    /// Adds to the entries (i, j) and (j, i) of a sparse matrix.
+    pub fn add_entry(&mut self, i: usize, j: usize, by: f64) {
+        let at = self.at.as_ref().expect("a sparse matrix").position(i, j);
+        self.values[at] += by;
     }
 
     /// Sets the entries (i, j) and (j, i).
@@ -232,6 +198,13 @@ impl Symmetric {
                 }
             }
         }
+    }
+
+    /// xᵀ A x.
+    pub fn quadratic_form(&self, x: &[f64]) -> f64 {
+        let mut image = vec![0.0; self.n];
+        self.add_times(1.0, x, &mut image);
+        image.iter().zip(x).map(|(a, x)| a * x).sum()
     }
 
     /// Σ |A_ij| over j ≠ i, row by row.

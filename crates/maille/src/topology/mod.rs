@@ -6,28 +6,10 @@ pub mod separation;
 pub mod side_signs;
 pub mod step_bound;
 
+pub use crate::model::{Link, RingPair};
 use crate::{lattice::Shift, model::Model, state::State};
 use maille_geometry::{circle_distance_minima, linking_number};
-
-/// Ring `ring_a` of the main cell and ring `ring_b` of the image `shift`; each pair of the sheet stands once per cell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct RingPair {
-    /// Ring of the main cell.
-    pub ring_a: usize,
-    /// Ring of the image.
-    pub ring_b: usize,
-    /// The image's shift.
-    pub shift: Shift,
-}
-
-/// Two linked rings with their signed linking number (the signs follow the normals given in the design).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Link {
-    /// The rings.
-    pub pair: RingPair,
-    /// Signed linking number, never 0.
-    pub number: i32,
-}
+use std::collections::{BTreeMap, BTreeSet};
 
 /// All pairs of rings of different elements whose tori may be within `margin` of each other.
 ///
@@ -121,7 +103,7 @@ pub struct Neighbour {
 
 /// The interlocking neighbours (Definition 3.4.1) of one element of the main cell, sorted by element and cell.
 pub fn neighbours(model: &Model, element: usize) -> Vec<Neighbour> {
-    let mut found = std::collections::BTreeMap::<(usize, Shift), Vec<i32>>::new();
+    let mut found = BTreeMap::<(usize, Shift), Vec<i32>>::new();
     for link in &model.links {
         let (i, j) = (model.rings[link.pair.ring_a].element, model.rings[link.pair.ring_b].element);
         let [p, q] = link.pair.shift;
@@ -135,12 +117,18 @@ pub fn neighbours(model: &Model, element: usize) -> Vec<Neighbour> {
     found.into_iter().map(|((element, shift), numbers)| Neighbour { element, shift, numbers }).collect()
 }
 
-/// How the links bind the sheet: generators of the group of lattice vectors that chains of links join, for every
-/// connected component of the periodic link graph (the elements are its nodes, the links its edges with shifts).
+/// Elements that chains of links join, images included, with the lattice vectors by which such chains return to an element.
+pub struct LinkedPart {
+    /// Its elements, ascending.
+    pub elements: Vec<usize>,
+    /// Generators of the group of lattice vectors that chains of links join.
+    pub vectors: BTreeSet<Shift>,
+}
+
+/// The connected components of the periodic link graph (the elements are its nodes, the links its edges with shifts).
 ///
-/// A direction D is bound iff some generator v has v·D ≠ 0. Spanning trees give every element an offset; an edge
-/// that closes a loop gives the lattice vector by which it misses.
-pub fn binding_vectors(model: &Model) -> Vec<Shift> {
+/// Spanning trees give every element an offset; an edge that closes a loop gives the lattice vector by which it misses.
+pub fn linked_parts(model: &Model) -> Vec<LinkedPart> {
     let n = model.elements.len();
     let mut edges = vec![Vec::new(); n];
     for link in &model.links {
@@ -150,14 +138,16 @@ pub fn binding_vectors(model: &Model) -> Vec<Shift> {
         edges[j].push((i, [-p, -q]));
     }
     let mut offset: Vec<Option<Shift>> = vec![None; n];
-    let mut out = std::collections::BTreeSet::new();
+    let mut out = Vec::new();
     for root in 0..n {
         if offset[root].is_some() {
             continue;
         }
         offset[root] = Some([0, 0]);
+        let mut part = LinkedPart { elements: Vec::new(), vectors: BTreeSet::new() };
         let mut queue = vec![(root, [0, 0])];
         while let Some((i, at)) = queue.pop() {
+            part.elements.push(i);
             for &(j, [p, q]) in &edges[i] {
                 let here = [at[0] + p, at[1] + q];
                 match offset[j] {
@@ -168,14 +158,22 @@ pub fn binding_vectors(model: &Model) -> Vec<Shift> {
                     Some(there) => {
                         let loop_shift = [here[0] - there[0], here[1] - there[1]];
                         if loop_shift > [0, 0] {
-                            out.insert(loop_shift);
+                            part.vectors.insert(loop_shift);
                         }
                     }
                 }
             }
         }
+        part.elements.sort_unstable();
+        out.push(part);
     }
-    out.into_iter().collect()
+    out
+}
+
+/// How the links bind the sheet: a direction D is bound iff some of these lattice vectors v has v·D ≠ 0.
+pub fn binding_vectors(model: &Model) -> Vec<Shift> {
+    let all: BTreeSet<Shift> = linked_parts(model).into_iter().flat_map(|part| part.vectors).collect();
+    all.into_iter().collect()
 }
 
 /// Whether a chain of links binds a pull along `direction` (a unit vector in the plane).

@@ -14,7 +14,7 @@ use std::{
     hash::{DefaultHasher, Hasher},
     path::{Path, PathBuf},
     process::Command,
-    time::{Duration, SystemTime},
+    time::Duration,
 };
 use tally::{Tally, quoted};
 
@@ -42,20 +42,20 @@ const ENDS: [&str; 3] = [",proved", ",open", FALSE];
 const FALSE: &str = ",false";
 
 /// What is asked for on the command line.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Options {
-    pub quick: bool,
+#[derive(Debug, PartialEq)]
+struct Options {
+    quick: bool,
     /// The program; built if none is given.
-    pub program: Option<String>,
+    program: Option<String>,
     /// Time that one map and its verification may take, each.
-    pub limit_s: f64,
+    limit_s: f64,
     /// Threads of the program; all cores if none is given.
-    pub threads: Option<String>,
+    threads: Option<String>,
 }
 
 impl Options {
     /// Reads the words after `certify`.
-    pub fn read(words: &[&str]) -> Result<Options, String> {
+    fn read(words: &[&str]) -> Result<Options, String> {
         let mut out = Options { quick: false, program: None, limit_s: 1800.0, threads: None };
         let mut words = words.iter();
         while let Some(word) = words.next() {
@@ -103,7 +103,8 @@ struct House {
 }
 
 /// Runs all maps, and writes the table; an error if a row is false or a map failed.
-pub fn run(root: &Path, options: &Options) -> Result<(), String> {
+pub fn run(root: &Path, words: &[&str]) -> Result<(), String> {
+    let options = Options::read(words)?;
     let program = match &options.program {
         Some(program) => PathBuf::from(program),
         None => program::build(root, if options.quick { "dev" } else { "release" })?,
@@ -118,7 +119,7 @@ pub fn run(root: &Path, options: &Options) -> Result<(), String> {
     fs::create_dir_all(&scratch).map_err(|e| format!("{} cannot be made: {e}", scratch.display()))?;
     let built = options.program.is_none().then(|| commit(root)).flatten();
     let version = format!("{} {}", version(&program)?, built.unwrap_or(hash));
-    let house = House { program, version, scratch, options: options.clone() };
+    let house = House { program, version, scratch, options };
     let tasks = house.tasks(root)?;
     let table = house.scratch.join("certified.csv");
     let mut done = house.done(&table)?;
@@ -145,7 +146,7 @@ pub fn run(root: &Path, options: &Options) -> Result<(), String> {
         done.insert(key, fields);
         write_table(&table, &tasks, &done)?;
     }
-    if !options.quick {
+    if !house.options.quick {
         write_table(&root.join(TABLE), &tasks, &done)?;
         println!("{TABLE}");
     }
@@ -349,36 +350,15 @@ fn parsed(text: &str, line: &str) -> Result<Value, String> {
     serde_json::from_str(text).map_err(|e| format!("`{line}` printed no JSON: {e}"))
 }
 
-/// The day in UTC, as 2026-11-22.
+/// The day in UTC, as 2026-11-22; nothing where the system does not tell.
 fn today() -> String {
-    let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).map_or(0, |since| since.as_secs());
-    date(now / 86_400)
-}
-
-/// The day after so many days since 1970-01-01. Years are counted from March, so that a leap day is the last one.
-fn date(days: u64) -> String {
-    let shifted = days + 719_468;
-    let (era, day_of_era) = (shifted / 146_097, shifted % 146_097);
-    let year_of_era = (day_of_era - day_of_era / 1_460 + day_of_era / 36_524 - day_of_era / 146_096) / 365;
-    let day_of_year = day_of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
-    let month_from_march = (5 * day_of_year + 2) / 153;
-    let day = day_of_year - (153 * month_from_march + 2) / 5 + 1;
-    let month = if month_from_march < 10 { month_from_march + 3 } else { month_from_march - 9 };
-    let year = era * 400 + year_of_era + u64::from(month <= 2);
-    format!("{year:04}-{month:02}-{day:02}")
+    let told = Command::new("date").args(["-u", "+%F"]).output();
+    told.map_or_else(|_| String::new(), |told| String::from_utf8_lossy(&told.stdout).trim().to_owned())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn days_have_dates() {
-        for (days, text) in [(0, "1970-01-01"), (11_016, "2000-02-29"), (11_017, "2000-03-01"), (20_779, "2026-11-22")]
-        {
-            assert_eq!(date(days), text);
-        }
-    }
 
     #[test]
     fn options_are_read() {

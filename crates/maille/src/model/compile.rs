@@ -1,80 +1,16 @@
-//! The model: a design compiled for one cell. Validated, indexed, in units of the reference radius, immutable.
+//! From a design to its models.
 
+use super::{Element, FAR, MANY, Model, Ring};
 use crate::{
     design::Design,
     error::InvalidInput,
-    lattice::{self, Cell, Shift},
+    lattice::{self, Cell},
     state::{Pose, State},
-    topology::{self, Link},
+    topology,
 };
 use maille_geometry::Vec3;
-use nalgebra::{Matrix2, Unit, UnitQuaternion, UnitVector3};
-use std::ops::Range;
+use nalgebra::{Matrix2, Unit, UnitQuaternion};
 
-/// A torus of an element, in the element's frame at the starting state.
-#[derive(Clone, Debug)]
-pub struct Ring {
-    /// Index of the element that it belongs to.
-    pub element: usize,
-    /// Centre relative to the element's reference point.
-    pub offset: Vec3,
-    /// Normal of the core circle.
-    pub normal: UnitVector3<f64>,
-    /// Major radius R.
-    pub major_radius: f64,
-    /// Minor radius r.
-    pub minor_radius: f64,
-}
-
-/// A rigid element of the cell.
-#[derive(Clone, Debug)]
-pub struct Element {
-    /// Name in the design, with the copy in a supercell: `flat@1,0`.
-    pub name: String,
-    /// Its rings, as indices into [`Model::rings`].
-    pub rings: Range<usize>,
-    /// Radius about the reference point that holds all core circles: max |offset| + R.
-    pub reach: f64,
-    /// Where its copy of the design's cell stands in a larger one, in lattice vectors: that part of a strain it can follow. In a
-    /// design of more than [`MANY`] elements, where it stands itself.
-    pub anchor: [f64; 2],
-}
-
-/// A design compiled for one cell.
-#[derive(Clone, Debug)]
-pub struct Model {
-    /// Name of the design.
-    pub name: String,
-    /// The cell that is solved; of a finite sheet, the whole sheet.
-    pub cell: Cell,
-    /// Whether the cell has images. A finite sheet has none: the only shift is (0, 0), and its lattice vectors, which
-    /// nothing moves, only say where the cells were.
-    pub periodic: bool,
-    /// Length of one unit of the model, in the file's unit: the reference radius R.
-    pub unit: f64,
-    /// Where the file has the model's origin, in the file's unit: its own origin, or the first element's centre where that
-    /// lies more than [`FAR`] from it, so that positions keep their digits.
-    pub origin: Vec3,
-    /// Elements of the cell.
-    pub elements: Vec<Element>,
-    /// Rings of all elements.
-    pub rings: Vec<Ring>,
-    /// The starting state; its lattice is the reference of F.
-    pub start: State,
-    /// Inverse of the reference lattice [a1 a2] (columns), in the plane.
-    pub reference_inverse: Matrix2<f64>,
-    /// Links of the starting state: the topology that every state keeps.
-    pub links: Vec<Link>,
-    /// Largest major radius.
-    pub largest_radius: f64,
-    /// A short basis of the design's lattice, as a cell of one copy.
-    pub short_basis: Cell,
-}
-
-/// A design of more elements is taken for a large cell written out.
-pub const MANY: usize = 32;
-/// A design whose first element lies further than this from the origin is moved there, in units of R.
-pub const FAR: f64 = 1e3;
 /// Elements further than this from the first one, and rings from their element's centre, are refused, in units of R: rounding
 /// hides their gaps.
 const FARTHEST: f64 = 1e4;
@@ -97,60 +33,7 @@ impl Model {
         if !problems.is_empty() {
             return Err(problems);
         }
-        let unit = design.reference_radius;
-        let vector = |x: [f64; 3]| Vec3::from(x) / unit;
-        let (p1, p2) = (vector(design.lattice.a1), vector(design.lattice.a2));
-        let [a1, a2] = cell.vectors(p1, p2);
-        let first = Vec3::from(design.elements[0].center);
-        let origin = if first.norm() > FAR * unit { first } else { Vec3::zeros() };
-        let reference_inverse = Matrix2::new(a1.x, a2.x, a1.y, a2.y).try_inverse().ok_or_else(|| {
-            vec![InvalidInput::new("lattice.a2", "is parallel to a1", "give two independent translations")]
-        })?;
-        let (mut elements, mut rings, mut poses) = (Vec::new(), Vec::new(), Vec::new());
-        for coset in cell.cosets() {
-            let shift = p1 * f64::from(coset[0]) + p2 * f64::from(coset[1]);
-            for spec in &design.elements {
-                let first = rings.len();
-                for ring in &spec.rings {
-                    rings.push(Ring {
-                        element: elements.len(),
-                        offset: vector(ring.offset),
-                        normal: Unit::new_normalize(Vec3::from(ring.normal) / Vec3::from(ring.normal).amax()),
-                        major_radius: ring.major_radius / unit,
-                        minor_radius: ring.minor_radius.or(design.minor_radius).unwrap_or(f64::NAN) / unit,
-                    });
-                }
-                let reach = rings[first..].iter().map(|r| r.offset.norm() + r.major_radius).fold(0.0, f64::max);
-                let name = if cell.copies() == 1 {
-                    spec.name.clone()
-                } else {
-                    format!("{}@{},{}", spec.name, coset[0], coset[1])
-                };
-                let position = (Vec3::from(spec.center) - origin) / unit + shift;
-                let copy = if design.elements.len() > MANY { position } else { shift };
-                let anchor = (reference_inverse * copy.xy()).into();
-                elements.push(Element { name, rings: first..rings.len(), reach, anchor });
-                poses.push(Pose { position, rotation: UnitQuaternion::identity() });
-            }
-        }
-        let largest_radius = rings.iter().map(|r| r.major_radius).fold(0.0, f64::max);
-        let start = State { poses, a1, a2 };
-        let name = design.name.clone();
-        let links = Vec::new();
-        let mut model = Model {
-            name,
-            cell,
-            periodic,
-            unit,
-            origin,
-            elements,
-            rings,
-            start,
-            reference_inverse,
-            links,
-            largest_radius,
-            short_basis: lattice::short_basis(p1, p2),
-        };
+        let mut model = Self::first_cell(design, periodic)?.tiled(cell);
         model.check_extent(design)?;
         let pairs = topology::close_pairs(&model, &model.start, 0.0);
         let overlaps = model.overlaps(&pairs, design);
@@ -159,6 +42,49 @@ impl Model {
         }
         model.links = topology::links(&model, &model.start, &pairs);
         Ok(model)
+    }
+
+    /// The design's own cell, unchecked, without links and anchors.
+    fn first_cell(design: &Design, periodic: bool) -> Result<Model, Vec<InvalidInput>> {
+        let unit = design.reference_radius;
+        let vector = |x: [f64; 3]| Vec3::from(x) / unit;
+        let (a1, a2) = (vector(design.lattice.a1), vector(design.lattice.a2));
+        let first = Vec3::from(design.elements[0].center);
+        let origin = if first.norm() > FAR * unit { first } else { Vec3::zeros() };
+        let reference_inverse = Matrix2::new(a1.x, a2.x, a1.y, a2.y).try_inverse().ok_or_else(|| {
+            vec![InvalidInput::new("lattice.a2", "is parallel to a1", "give two independent translations")]
+        })?;
+        let (mut elements, mut rings, mut poses) = (Vec::new(), Vec::new(), Vec::new());
+        for spec in &design.elements {
+            let first = rings.len();
+            for ring in &spec.rings {
+                rings.push(Ring {
+                    element: elements.len(),
+                    offset: vector(ring.offset),
+                    normal: Unit::new_normalize(Vec3::from(ring.normal) / Vec3::from(ring.normal).amax()),
+                    major_radius: ring.major_radius / unit,
+                    minor_radius: ring.minor_radius.or(design.minor_radius).unwrap_or(f64::NAN) / unit,
+                });
+            }
+            let reach = rings[first..].iter().map(|r| r.offset.norm() + r.major_radius).fold(0.0, f64::max);
+            let position = (Vec3::from(spec.center) - origin) / unit;
+            elements.push(Element { name: spec.name.clone(), rings: first..rings.len(), reach, anchor: [0.0; 2] });
+            poses.push(Pose { position, rotation: UnitQuaternion::identity() });
+        }
+        Ok(Model {
+            name: design.name.clone(),
+            cell: Cell::PRIMITIVE,
+            periodic,
+            unit,
+            origin,
+            largest_radius: rings.iter().map(|r| r.major_radius).fold(0.0, f64::max),
+            elements,
+            rings,
+            start: State { poses, a1, a2 },
+            reference_inverse,
+            links: Vec::new(),
+            short_basis: lattice::short_basis(a1, a2),
+        })
     }
 
     /// Refuses elements that lie or reach so far that gaps there are lost to rounding, and those of a periodic sheet that do so
@@ -240,25 +166,30 @@ impl Model {
 
     /// The same design in the cell `cell` of a periodic model.
     pub fn in_cell(&self, cell: Cell) -> Model {
-        let mut out = self.primitive();
+        let own = self.primitive();
         if cell == Cell::PRIMITIVE || !self.periodic {
-            return out;
+            return own;
         }
-        let own = out.clone();
-        let [a1, a2] = cell.vectors(own.start.a1, own.start.a2);
-        let columns = Matrix2::new(a1.x, a2.x, a1.y, a2.y);
+        let mut out = own.tiled(cell);
+        out.links = topology::links(&out, &out.start, &topology::close_pairs(&out, &out.start, 0.0));
+        out
+    }
+
+    /// Copies of this model's own cell fill `cell`; the links are not looked for.
+    fn tiled(&self, cell: Cell) -> Model {
+        let [a1, a2] = cell.vectors(self.start.a1, self.start.a2);
         // Dependent rows are no cell.
-        out.reference_inverse = columns.try_inverse().unwrap_or(own.reference_inverse);
-        (out.cell, out.start.a1, out.start.a2) = (cell, a1, a2);
-        (out.elements, out.rings, out.start.poses) = (Vec::new(), Vec::new(), Vec::new());
+        let inverse = Matrix2::new(a1.x, a2.x, a1.y, a2.y).try_inverse().unwrap_or(self.reference_inverse);
+        let start = State { poses: Vec::new(), a1, a2 };
+        let (elements, rings, links) = (Vec::new(), Vec::new(), Vec::new());
+        let mut out = Model { cell, start, reference_inverse: inverse, elements, rings, links, ..self.clone() };
         for coset in cell.cosets() {
-            let shift = own.start.translation(coset);
-            let first = out.elements.len();
-            let rings = out.rings.len();
-            out.rings.extend(own.rings.iter().map(|ring| Ring { element: ring.element + first, ..ring.clone() }));
-            for (element, pose) in own.elements.iter().zip(&own.start.poses) {
+            let shift = self.start.translation(coset);
+            let (first, rings) = (out.elements.len(), out.rings.len());
+            out.rings.extend(self.rings.iter().map(|ring| Ring { element: ring.element + first, ..ring.clone() }));
+            for (element, pose) in self.elements.iter().zip(&self.start.poses) {
                 let position = pose.position + shift;
-                let copy = if own.elements.len() > MANY { position } else { shift };
+                let copy = if self.elements.len() > MANY { position } else { shift };
                 let name = match cell.copies() {
                     1 => element.name.clone(),
                     _ => format!("{}@{},{}", element.name, coset[0], coset[1]),
@@ -267,18 +198,12 @@ impl Model {
                     name,
                     rings: element.rings.start + rings..element.rings.end + rings,
                     reach: element.reach,
-                    anchor: (out.reference_inverse * copy.xy()).into(),
+                    anchor: (inverse * copy.xy()).into(),
                 });
                 out.start.poses.push(Pose { position, ..*pose });
             }
         }
-        out.links = topology::links(&out, &out.start, &topology::close_pairs(&out, &out.start, 0.0));
         out
-    }
-
-    /// Sum of the minor radii of two rings: the core distance r̂ at which their tori touch.
-    pub fn contact_distance(&self, ring_a: usize, ring_b: usize) -> f64 {
-        self.rings[ring_a].minor_radius + self.rings[ring_b].minor_radius
     }
 
     /// Overlaps of the starting state that the design does not allow; core circles that meet are never allowed,
@@ -305,18 +230,5 @@ impl Model {
             }
         }
         out
-    }
-
-    /// A name for a ring of an image: `gyroscope ring 2 (+1,0)`.
-    pub fn ring_label(&self, ring: usize, shift: Shift) -> String {
-        let element = &self.elements[self.rings[ring].element];
-        let mut label = format!("\"{}\"", element.name);
-        if element.rings.len() > 1 {
-            label += &format!(" ring {}", ring - element.rings.start);
-        }
-        if shift != [0, 0] {
-            label += &format!(" in cell ({:+},{:+})", shift[0], shift[1]);
-        }
-        label
     }
 }

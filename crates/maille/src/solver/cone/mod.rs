@@ -7,7 +7,14 @@
 //! shows every multiplier z to its caller, who proves with it what it proves. That is often best after rounding has
 //! spoiled the residuals, because the gap still falls.
 
+mod packed;
+mod scaling;
+
+pub use packed::{eigenvalues, pack};
+
 use nalgebra::{DMatrix, DVector, Matrix4};
+use packed::{DIAGONAL, unpack};
+use scaling::{Block, split_square};
 
 /// A cone; K is a product of them, in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,33 +41,6 @@ impl Cone {
             Cone::Positive => 4.0,
         }
     }
-}
-
-/// The upper triangle of a symmetric matrix, row by row, off-diagonals times √2: ⟨A, B⟩ = pack(A)·pack(B).
-pub fn pack(m: &Matrix4<f64>) -> [f64; 10] {
-    let mut out = [0.0; 10];
-    let mut k = 0;
-    for i in 0..4 {
-        for j in i..4 {
-            out[k] = if i == j { m[(i, i)] } else { std::f64::consts::FRAC_1_SQRT_2 * (m[(i, j)] + m[(j, i)]) };
-            k += 1;
-        }
-    }
-    out
-}
-
-fn unpack(v: &[f64]) -> Matrix4<f64> {
-    let mut out = Matrix4::zeros();
-    let mut k = 0;
-    for i in 0..4 {
-        for j in i..4 {
-            let value = if i == j { v[k] } else { v[k] * std::f64::consts::FRAC_1_SQRT_2 };
-            out[(i, j)] = value;
-            out[(j, i)] = value;
-            k += 1;
-        }
-    }
-    out
 }
 
 /// The program; dense, for tens of unknowns.
@@ -280,101 +260,10 @@ impl ConeProgram {
     }
 }
 
-/// Rows of the diagonal in a packed matrix.
-const DIAGONAL: [usize; 4] = [0, 4, 7, 9];
-
-/// t² − |u|² as (t − |u|)(t + |u|).
-fn split_square(v: &[f64]) -> f64 {
-    let norm = (1..4).map(|i| v[i] * v[i]).sum::<f64>().sqrt();
-    (v[0] - norm) * (v[0] + norm)
-}
-
 /// W with W z = W⁻ᵀ s = λ.
 struct Scaling {
     blocks: Vec<Block>,
     lambda: DVector<f64>,
-}
-
-enum Block {
-    /// W = β (2 v vᵀ − J), symmetric.
-    Norm { beta: f64, v: [f64; 4] },
-    /// W u = Rᵀ u R.
-    Positive { r: Box<Matrix4<f64>>, r_inverse: Box<Matrix4<f64>> },
-}
-
-impl Block {
-    fn norm(s: &[f64], z: &[f64]) -> Option<Block> {
-        let (s_sq, z_sq) = (split_square(s), split_square(z));
-        if !(s_sq > 0.0 && z_sq > 0.0 && s[0] > 0.0 && z[0] > 0.0) {
-            return None;
-        }
-        let (s_norm, z_norm) = (s_sq.sqrt(), z_sq.sqrt());
-        let dot: f64 = (0..4).map(|i| s[i] / s_norm * (z[i] / z_norm)).sum();
-        let gamma = (0.5 * (1.0 + dot)).sqrt();
-        let sign = [1.0, -1.0, -1.0, -1.0];
-        let mut v: [f64; 4] = std::array::from_fn(|i| (s[i] / s_norm + sign[i] * z[i] / z_norm) / (2.0 * gamma));
-        let half = (2.0 * (v[0] + 1.0)).sqrt();
-        v[0] += 1.0;
-        Some(Block::Norm { beta: (s_norm / z_norm).sqrt(), v: v.map(|x| x / half) })
-    }
-
-    fn positive(s: &[f64], z: &[f64]) -> Option<Block> {
-        let l1 = unpack(s).cholesky()?.l();
-        let l2 = unpack(z).cholesky()?.l();
-        let (values, right) = singular(l2.transpose() * l1);
-        let roots = values.map(|x| 1.0 / x.sqrt());
-        if !roots.iter().all(|x| x.is_finite()) {
-            return None;
-        }
-        let r = l1 * right * Matrix4::from_diagonal(&roots.into());
-        // R⁻¹ = Λ^(−1/2) Uᵀ L2ᵀ = Λ^(−1) Rᵀ Z by the same factors.
-        let r_inverse = Matrix4::from_diagonal(&values.map(|x| 1.0 / x).into()) * r.transpose() * unpack(z);
-        Some(Block::Positive { r: Box::new(r), r_inverse: Box::new(r_inverse) })
-    }
-
-    /// W v.
-    fn forward(&self, x: &[f64], out: &mut [f64]) {
-        match self {
-            Block::Norm { beta, v } => {
-                let dot: f64 = (0..4).map(|i| v[i] * x[i]).sum();
-                out[0] = beta * (2.0 * v[0] * dot - x[0]);
-                (1..4).for_each(|i| out[i] = beta * (2.0 * v[i] * dot + x[i]));
-            }
-            Block::Positive { r, .. } => out.copy_from_slice(&pack(&(r.transpose() * unpack(x) * **r))),
-        }
-    }
-
-    /// Wᵀ v.
-    fn transpose(&self, x: &[f64], out: &mut [f64]) {
-        match self {
-            Block::Norm { .. } => self.forward(x, out),
-            Block::Positive { r, .. } => out.copy_from_slice(&pack(&(**r * unpack(x) * r.transpose()))),
-        }
-    }
-
-    /// W⁻¹ v.
-    fn inverse(&self, x: &[f64], out: &mut [f64]) {
-        match self {
-            Block::Norm { beta, v } => {
-                let dot = v[0] * x[0] - (1..4).map(|i| v[i] * x[i]).sum::<f64>();
-                out[0] = (2.0 * v[0] * dot - x[0]) / beta;
-                (1..4).for_each(|i| out[i] = (x[i] - 2.0 * v[i] * dot) / beta);
-            }
-            Block::Positive { r_inverse, .. } => {
-                out.copy_from_slice(&pack(&(r_inverse.transpose() * unpack(x) * **r_inverse)));
-            }
-        }
-    }
-
-    /// W⁻ᵀ v.
-    fn inverse_transpose(&self, x: &[f64], out: &mut [f64]) {
-        match self {
-            Block::Norm { .. } => self.inverse(x, out),
-            Block::Positive { r_inverse, .. } => {
-                out.copy_from_slice(&pack(&(**r_inverse * unpack(x) * r_inverse.transpose())));
-            }
-        }
-    }
 }
 
 /// The Newton system of one scaling, in scaled variables ds̃ = W⁻ᵀ ds, dz̃ = W dz: with G̃ = W⁻ᵀ G,
@@ -434,74 +323,6 @@ impl<'a> Newton<'a> {
     }
 }
 
-/// Singular values of a 4×4 matrix and its right singular vectors, by one-sided Jacobi rotations: accurate to the
-/// last digits of small values too.
-fn singular(mut a: Matrix4<f64>) -> ([f64; 4], Matrix4<f64>) {
-    let mut right = Matrix4::identity();
-    for _sweep in 0..30 {
-        let mut turned = false;
-        for p in 0..3 {
-            for q in p + 1..4 {
-                let (pp, qq, pq) =
-                    (a.column(p).norm_squared(), a.column(q).norm_squared(), a.column(p).dot(&a.column(q)));
-                if pq.abs() <= 1e-16 * (pp * qq).sqrt() {
-                    continue;
-                }
-                turned = true;
-                let (c, s) = rotation(pp, qq, pq);
-                for m in [&mut a, &mut right] {
-                    rotate_columns(m, p, q, c, s);
-                }
-            }
-        }
-        if !turned {
-            break;
-        }
-    }
-    (std::array::from_fn(|k| a.column(k).norm()), right)
-}
-
-/// Eigenvalues of a symmetric 4×4 matrix by Jacobi rotations.
-pub fn eigenvalues(mut a: Matrix4<f64>) -> [f64; 4] {
-    let size = a.norm();
-    for _sweep in 0..30 {
-        let mut turned = false;
-        for p in 0..3 {
-            for q in p + 1..4 {
-                if a[(p, q)].abs() <= 1e-17 * size {
-                    continue;
-                }
-                turned = true;
-                let (c, s) = rotation(a[(p, p)], a[(q, q)], a[(p, q)]);
-                rotate_columns(&mut a, p, q, c, s);
-                a.transpose_mut();
-                rotate_columns(&mut a, p, q, c, s);
-                a.transpose_mut();
-            }
-        }
-        if !turned {
-            break;
-        }
-    }
-    std::array::from_fn(|k| a[(k, k)])
-}
-
-/// Cosine and sine of the rotation that makes [[pp, pq], [pq, qq]] diagonal.
-fn rotation(pp: f64, qq: f64, pq: f64) -> (f64, f64) {
-    let tau = (qq - pp) / (2.0 * pq);
-    let t = tau.signum() / (tau.abs() + tau.hypot(1.0));
-    let c = 1.0 / t.hypot(1.0);
-    (c, c * t)
-}
-
-fn rotate_columns(m: &mut Matrix4<f64>, p: usize, q: usize, c: f64, s: f64) {
-    for i in 0..4 {
-        let (x, y) = (m[(i, p)], m[(i, q)]);
-        m[(i, p)] = c * x - s * y;
-        m[(i, q)] = s * x + c * y;
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -509,30 +330,6 @@ mod tests {
     fn sample() -> Matrix4<f64> {
         let m = Matrix4::from_fn(|i, j| ((3 * i + 5 * j * j + 1) as f64).sin());
         m * m.transpose()
-    }
-
-    #[test]
-    fn packing_keeps_the_inner_product() {
-        let (a, b) = (sample(), Matrix4::from_diagonal_element(2.0) + sample() * 0.1);
-        let (pa, pb) = (pack(&a), pack(&b));
-        let dot: f64 = pa.iter().zip(&pb).map(|(x, y)| x * y).sum();
-        assert!((dot - a.dot(&b)).abs() < 1e-13);
-        assert!((unpack(&pa) - a).norm() < 1e-14);
-    }
-
-    #[test]
-    fn jacobi_rotations_diagonalise() {
-        let m = sample();
-        let (values, right) = singular(m);
-        assert!((right.transpose() * right - Matrix4::identity()).norm() < 1e-14);
-        for k in 0..4 {
-            assert!((m * right.column(k) - right.column(k) * values[k]).norm() < 1e-13, "symmetric: singular = eigen");
-        }
-        let mut eigen = eigenvalues(m);
-        let mut values = values;
-        eigen.sort_by(f64::total_cmp);
-        values.sort_by(f64::total_cmp);
-        (0..4).for_each(|k| assert!((eigen[k] - values[k]).abs() < 1e-13));
     }
 
     /// The scaled blocks invert each other, and W z = W⁻ᵀ s.

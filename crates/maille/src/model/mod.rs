@@ -1,0 +1,154 @@
+//! The model: a design compiled for one cell. Validated, indexed, in units of the reference radius, immutable.
+
+mod compile;
+
+use crate::{
+    design::Design,
+    lattice::{Cell, Shift},
+    state::State,
+};
+use maille_geometry::{Circle, Vec3};
+use nalgebra::{Matrix2, Unit, UnitVector3};
+use std::ops::Range;
+
+/// A torus of an element, in the element's frame at the starting state.
+#[derive(Clone, Debug)]
+pub struct Ring {
+    /// Index of the element that it belongs to.
+    pub element: usize,
+    /// Centre relative to the element's reference point.
+    pub offset: Vec3,
+    /// Normal of the core circle.
+    pub normal: UnitVector3<f64>,
+    /// Major radius R.
+    pub major_radius: f64,
+    /// Minor radius r.
+    pub minor_radius: f64,
+}
+
+/// A rigid element of the cell.
+#[derive(Clone, Debug)]
+pub struct Element {
+    /// Name in the design, with the copy in a supercell: `flat@1,0`.
+    pub name: String,
+    /// Its rings, as indices into [`Model::rings`].
+    pub rings: Range<usize>,
+    /// Radius about the reference point that holds all core circles: max |offset| + R.
+    pub reach: f64,
+    /// Where its copy of the design's cell stands in a larger one, in lattice vectors: that part of a strain it can follow. In a
+    /// design of more than [`MANY`] elements, where it stands itself.
+    pub anchor: [f64; 2],
+}
+
+/// A design compiled for one cell.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// Name of the design.
+    pub name: String,
+    /// The cell that is solved; of a finite sheet, the whole sheet.
+    pub cell: Cell,
+    /// Whether the cell has images. A finite sheet has none: the only shift is (0, 0), and its lattice vectors, which
+    /// nothing moves, only say where the cells were.
+    pub periodic: bool,
+    /// Length of one unit of the model, in the file's unit: the reference radius R.
+    pub unit: f64,
+    /// Where the file has the model's origin, in the file's unit: its own origin, or the first element's centre where that
+    /// lies more than [`FAR`] from it, so that positions keep their digits.
+    pub origin: Vec3,
+    /// Elements of the cell.
+    pub elements: Vec<Element>,
+    /// Rings of all elements.
+    pub rings: Vec<Ring>,
+    /// The starting state; its lattice is the reference of F.
+    pub start: State,
+    /// Inverse of the reference lattice [a1 a2] (columns), in the plane.
+    pub reference_inverse: Matrix2<f64>,
+    /// Links of the starting state: the topology that every state keeps.
+    pub links: Vec<Link>,
+    /// Largest major radius.
+    pub largest_radius: f64,
+    /// A short basis of the design's lattice, as a cell of one copy.
+    pub short_basis: Cell,
+}
+
+/// A design of more elements is taken for a large cell written out.
+pub const MANY: usize = 32;
+/// A design whose first element lies further than this from the origin is moved there, in units of R.
+pub const FAR: f64 = 1e3;
+/// Ring `ring_a` of the main cell and ring `ring_b` of the image `shift`; each pair of the sheet stands once per cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct RingPair {
+    /// Ring of the main cell.
+    pub ring_a: usize,
+    /// Ring of the image.
+    pub ring_b: usize,
+    /// The image's shift.
+    pub shift: Shift,
+}
+
+/// Two linked rings with their signed linking number (the signs follow the normals given in the design).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Link {
+    /// The rings.
+    pub pair: RingPair,
+    /// Signed linking number, never 0.
+    pub number: i32,
+}
+
+impl Model {
+    /// Sum of the minor radii of two rings: the core distance r̂ at which their tori touch.
+    pub fn contact_distance(&self, ring_a: usize, ring_b: usize) -> f64 {
+        self.rings[ring_a].minor_radius + self.rings[ring_b].minor_radius
+    }
+
+    /// A name for a ring of an image: `gyroscope ring 2 (+1,0)`.
+    pub fn ring_label(&self, ring: usize, shift: Shift) -> String {
+        let element = &self.elements[self.rings[ring].element];
+        let mut label = format!("\"{}\"", element.name);
+        if element.rings.len() > 1 {
+            label += &format!(" ring {}", ring - element.rings.start);
+        }
+        if shift != [0, 0] {
+            label += &format!(" in cell ({:+},{:+})", shift[0], shift[1]);
+        }
+        label
+    }
+}
+
+/// What of a state depends on its model.
+impl State {
+    /// Arm from its element's reference point to the centre of ring `ring`.
+    pub fn arm(&self, model: &Model, ring: usize) -> Vec3 {
+        let r = &model.rings[ring];
+        self.poses[r.element].rotation * r.offset
+    }
+
+    /// Core circle of ring `ring` in the image `shift`.
+    pub fn circle(&self, model: &Model, ring: usize, shift: Shift) -> Circle {
+        let r = &model.rings[ring];
+        let pose = &self.poses[r.element];
+        let center = pose.position + pose.rotation * r.offset + self.translation(shift);
+        Circle::new(center, Unit::new_normalize(pose.rotation * r.normal.into_inner()), r.major_radius)
+    }
+
+    /// In-plane deformation gradient F of the lattice vectors, F a_k(reference) = a_k (eq. 5.2.1).
+    pub fn deformation_gradient(&self, model: &Model) -> Matrix2<f64> {
+        let deformed = Matrix2::new(self.a1.x, self.a2.x, self.a1.y, self.a2.y);
+        deformed * model.reference_inverse
+    }
+
+    /// `design` as it stands in this state of its own cell: centres, normals, offsets and lattice in the design's unit.
+    pub fn design(&self, design: &Design, model: &Model) -> Design {
+        let mut out = design.clone();
+        out.lattice.a1 = (self.a1 * model.unit).into();
+        out.lattice.a2 = (self.a2 * model.unit).into();
+        for (element, pose) in out.elements.iter_mut().zip(&self.poses) {
+            element.center = (pose.position * model.unit + model.origin).into();
+            for ring in &mut element.rings {
+                ring.normal = (pose.rotation * Vec3::from(ring.normal)).into();
+                ring.offset = (pose.rotation * Vec3::from(ring.offset)).into();
+            }
+        }
+        out
+    }
+}
