@@ -25,8 +25,8 @@ type Value<'t> = Spanned<DeValue<'t>>;
 
 /// The design, if all its fields could be read, and what is wrong with the form of the file.
 pub(super) fn design(table: &DeTable<'_>, text: &str, index: &Index) -> (Option<Design>, Vec<DesignProblem>) {
-    let mut reader = Reader { text, problems: Vec::new(), last_line: index.last_line() };
-    let first = index.first_line();
+    let mut reader = Reader { text, problems: Vec::new(), last_line: index.last_line };
+    let first = index.first_line;
     let top = At { table, path: String::new(), known: TOP, span: first..first };
     let design = reader.design(&top);
     (design, reader.problems)
@@ -70,10 +70,7 @@ struct Reader<'s> {
 
 impl Reader<'_> {
     fn design(&mut self, top: &At<'_, '_>) -> Option<Design> {
-        let schema = match top.get("schema") {
-            Some((value, path)) => self.integer(value, &path),
-            None => Some(DESIGN_SCHEMA),
-        };
+        let schema = self.optional(top, "schema", Self::integer).map(|schema| schema.unwrap_or(DESIGN_SCHEMA));
         if schema.is_some_and(|s| s != DESIGN_SCHEMA) {
             // Nothing else can be judged by the rules of another version.
             let (value, path) = top.get("schema")?;

@@ -1,7 +1,7 @@
 //! A table for the terminal: aligned, rounded, as wide as the terminal.
 
 use super::{Field, Table};
-use crate::record::Cell;
+use maille::record::{Cell, Kind};
 use std::fmt::Write;
 
 /// How much of a table is shown.
@@ -14,7 +14,8 @@ pub struct Extent {
 }
 
 /// Columns of a first look, in order of importance.
-const FIRST_LOOK: [&str; 12] = [
+const FIRST_LOOK: [&str; 13] = [
+    "record",
     "design",
     "minor_radius",
     "method",
@@ -38,15 +39,8 @@ const EMPTY: &str = "-";
 impl Field {
     /// The columns of a first look; with `record`, the name of the record comes first.
     pub fn first_look(record: bool) -> Vec<Self> {
-        Self::all(record)
-            .into_iter()
-            .filter_map(|field| match field {
-                Field::Record => Some((0, field)),
-                field => Some((1 + FIRST_LOOK.iter().position(|name| *name == field.name())?, field)),
-            })
-            .collect::<std::collections::BTreeMap<_, _>>()
-            .into_values()
-            .collect()
+        let all = Self::all(record);
+        FIRST_LOOK.iter().filter_map(|name| all.iter().copied().find(|field| field.name() == *name)).collect()
     }
 }
 
@@ -110,7 +104,7 @@ impl Table<'_> {
 
     fn drawn(&self, field: Field, shown: usize) -> Drawn {
         let values: Vec<Cell<'_>> = self.rows[..shown].iter().map(|row| field.of(row)).collect();
-        let numbers = || values.iter().filter_map(|cell| if let Cell::Number(x) = cell { Some(*x) } else { None });
+        let numbers = || values.iter().filter_map(|cell| cell.number());
         let largest = numbers().fold(0.0, |most: f64, x| most.max(x.abs()));
         let power = largest > 0.0 && !PLAIN.contains(&largest);
         let decimals = numbers().map(decimals).max().unwrap_or(0);
@@ -131,7 +125,7 @@ impl Table<'_> {
         let unit = self.unit(field).filter(|unit| *unit != "1").map(|unit| format!("[{unit}]")).unwrap_or_default();
         let lengths = cells.iter().map(String::as_str).chain([field.name(), &unit]).map(|text| text.chars().count());
         let width = lengths.max().unwrap_or(0);
-        Drawn { name: field.name(), unit, cells, left: field.kind() == "text", width }
+        Drawn { name: field.name(), unit, cells, left: field.kind() == Kind::Text, width }
     }
 }
 
