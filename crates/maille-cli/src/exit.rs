@@ -1,9 +1,9 @@
 //! Exit codes by cause, for scripts.
 
-use maille::error::InvalidInput;
+use maille::{error::InvalidInput, record::Status};
 use maille_io::{DesignError, mesh::MeshError, record::RecordError, render::RenderError, study::StudyError};
 use miette::{Diagnostic, Report};
-use std::fmt;
+use std::{fmt, process::ExitCode};
 
 /// All done.
 pub const DONE: u8 = 0;
@@ -47,9 +47,34 @@ pub fn wrong(code: u8, problem: impl Into<String>, help: impl Into<String>) -> R
     Report::new(Wrong { code, problem: problem.into(), help: help.into() })
 }
 
-/// A question that was refused.
+/// A question that was refused. Options that it names in backticks are those of the command line.
 pub fn refused(problem: &InvalidInput) -> Report {
-    wrong(USAGE, &problem.problem, &problem.help)
+    let flags = |text: &str| {
+        let part = |(k, part): (usize, &str)| if k % 2 == 1 { format!("--{part}") } else { part.to_owned() };
+        text.split('`').enumerate().map(part).collect::<String>()
+    };
+    wrong(USAGE, flags(&problem.problem), flags(&problem.help))
+}
+
+/// How a run ends with which the same command can go on.
+pub fn ended(interrupted: bool, incomplete: bool, quiet: bool) -> ExitCode {
+    if interrupted && !quiet {
+        eprintln!("interrupted; the same command goes on from here");
+    }
+    ExitCode::from(match (interrupted, incomplete) {
+        (true, _) => INTERRUPTED,
+        (false, true) => INCOMPLETE,
+        (false, false) => DONE,
+    })
+}
+
+/// How a single question ends.
+pub fn of_answer(status: Status) -> ExitCode {
+    ExitCode::from(match status {
+        Status::Global | Status::Local | Status::L2Unreachable => DONE,
+        Status::Interrupted => INTERRUPTED,
+        _ => INCOMPLETE,
+    })
 }
 
 /// The exit code of what went wrong.

@@ -9,9 +9,8 @@ use crate::{
 use maille::{
     design::Design,
     error::InvalidInput,
-    lattice::Cell,
     search::ExactOptions,
-    survey::{CellChoice, Method},
+    survey::{CellChoice, MapQuestion, Method},
 };
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode, SourceSpan};
 use serde::Deserialize;
@@ -25,8 +24,8 @@ pub struct Study {
     pub directions_deg: Vec<f64>,
     /// Stretch − 1 held across it.
     pub l2: Vec<f64>,
-    /// The cell to solve; `None` where it is chosen by need.
-    pub cell: Option<Cell>,
+    /// The cells to solve.
+    pub cell: CellChoice,
     /// Starts of a limit whose bound is not attained, where given.
     pub starts: Option<usize>,
     /// Seed of everything random.
@@ -173,23 +172,21 @@ impl Study {
         Self::parsed(text).map_err(|wrong| StudyError { source, wrong })
     }
 
-    /// How limits are found: starts and seed of the study, the rest as usual.
-    pub fn options(&self) -> ExactOptions {
+    /// What is asked of each design: starts and seed of the study, the rest as usual.
+    pub fn question(&self) -> MapQuestion {
         let usual = ExactOptions::default();
-        ExactOptions { starts: self.starts.unwrap_or(usual.starts), seed: self.seed, ..usual }
+        let starts = self.starts.unwrap_or(usual.starts);
+        MapQuestion {
+            method: Method::Exact(ExactOptions { starts, seed: self.seed, ..usual }),
+            cells: self.cell.clone(),
+            directions_deg: self.directions_deg.clone(),
+            l2: self.l2.clone(),
+        }
     }
 
     /// The map that each design gets, with its record in `out`.
     pub fn map(&self, out: Option<PathBuf>, overwrite: bool) -> Map {
-        Map {
-            method: Method::Exact(self.options()),
-            cell: self.cell.map_or(CellChoice::Auto, CellChoice::One),
-            directions_deg: self.directions_deg.clone(),
-            l2: self.l2.clone(),
-            quantity: Quantity::Stretch,
-            out,
-            overwrite,
-        }
+        Map { question: self.question(), quantity: Quantity::Stretch, out, overwrite }
     }
 
     fn parsed(text: &str) -> Result<Study, Wrong> {
@@ -206,10 +203,8 @@ impl Study {
             Some(list) => read(&list.get_ref().text()).map(|n| n.0).map_err(|p| wrong(list, p, HELP)),
         };
         let cell = match &raw.cell {
-            Some(cell) if cell.get_ref() != "auto" => {
-                Some(cell.get_ref().parse().map_err(|e: maille::error::InvalidInput| wrong(cell, e.problem, e.help))?)
-            }
-            _ => None,
+            Some(cell) => cell.get_ref().parse().map_err(|e: InvalidInput| wrong(cell, e.problem, e.help))?,
+            None => CellChoice::Auto,
         };
         let whole = |number: &Option<Spanned<i64>>, least: i64| match number {
             Some(n) if *n.get_ref() < least => {
@@ -318,7 +313,7 @@ mod tests {
         let text =
             "l2 = \"-0.25:0:0.125\"\n[[designs]]\ndesign = \"1.1\"\nspacing = 1\n[[designs]]\ndesign = \"a.toml\"\n";
         let study = Study::read("s", text).unwrap();
-        assert_eq!((study.directions_deg.len(), study.l2.len(), study.cell, study.seed), (13, 3, None, 1));
+        assert_eq!((study.directions_deg.len(), study.l2.len(), study.cell, study.seed), (13, 3, CellChoice::Auto, 1));
         assert_eq!(study.designs[0].spacing, [1.0]);
         assert!(study.designs[1].minor_radius.is_empty());
     }
