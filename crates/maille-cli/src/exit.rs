@@ -1,7 +1,8 @@
 //! Exit codes by cause, for scripts.
 
+use crate::remedy::remedy;
 use maille::{error::InvalidInput, record::Status};
-use maille_io::{DesignError, mesh::MeshError, record::RecordError, render::RenderError, study::StudyError};
+use maille_io::{DesignError, study::StudyError};
 use miette::{Diagnostic, Report};
 use std::{fmt, process::ExitCode};
 
@@ -79,23 +80,8 @@ pub fn of_answer(status: Status) -> ExitCode {
 
 /// The exit code of what went wrong.
 pub fn code(report: &Report) -> u8 {
-    if let Some(wrong) = report.downcast_ref::<Wrong>() {
-        return wrong.code;
-    }
-    if report.downcast_ref::<DesignError>().is_some() {
-        return DESIGN;
-    }
-    match report.downcast_ref::<RecordError>() {
-        Some(RecordError::Io { action, .. }) if *action != "read" => return FAILED,
-        Some(_) => return RECORD,
-        None => {}
-    }
-    match report.downcast_ref::<MeshError>() {
-        Some(MeshError::Write(_)) => return FAILED,
-        Some(MeshError::OtherElements { .. }) => return RECORD,
-        Some(_) => return USAGE,
-        None => {}
-    }
-    let of_arguments = report.downcast_ref::<RenderError>().is_some() || report.downcast_ref::<StudyError>().is_some();
-    if of_arguments { USAGE } else { FAILED }
+    let of_design = report.downcast_ref::<DesignError>().map(|_| DESIGN);
+    let of_study = report.downcast_ref::<StudyError>().map(|_| USAGE);
+    let own = report.downcast_ref::<Wrong>().map(|wrong| wrong.code);
+    own.or(of_design).or(of_study).or(remedy(report).map(|(code, _)| code)).unwrap_or(FAILED)
 }

@@ -1,5 +1,6 @@
 //! What to do about errors of the library, in the words of the command line.
 
+use crate::exit::{FAILED, RECORD, USAGE};
 use maille_io::{mesh::MeshError, record::RecordError, render::RenderError};
 use miette::{Diagnostic, Report};
 use std::{error::Error, fmt};
@@ -10,47 +11,49 @@ pub const DAMAGED: &str = "the file is damaged or was edited: restore it, or com
 /// The report with what to do next, where the library does not say it.
 pub fn added(report: Report) -> Report {
     match remedy(&report) {
-        Some(help) => Report::new(Helped { report, help }),
-        None => report,
+        Some((_, Some(help))) => Report::new(Helped { report, help }),
+        _ => report,
     }
 }
 
-fn remedy(report: &Report) -> Option<&'static str> {
-    let record = report.downcast_ref().and_then(of_record);
-    let mesh = report.downcast_ref().and_then(of_mesh);
-    let picture = matches!(report.downcast_ref(), Some(RenderError::NoForces))
-        .then_some("limits of the exact method come with forces: maille characterize … --method exact");
-    record.or(mesh).or(picture)
+/// The exit code of an error of the library, and what to do next.
+pub fn remedy(report: &Report) -> Option<(u8, Option<&'static str>)> {
+    let record = report.downcast_ref().map(of_record);
+    record.or_else(|| report.downcast_ref().map(of_mesh)).or_else(|| report.downcast_ref().map(of_picture))
 }
 
-fn of_record(error: &RecordError) -> Option<&'static str> {
-    match error {
-        RecordError::Malformed { .. } => Some(DAMAGED),
-        RecordError::Edited { .. } => Some("restore the file, or compute it again; a record with --overwrite"),
-        RecordError::OtherInputs { .. } => {
-            Some("name another folder with --out, or replace this record with --overwrite")
-        }
-        RecordError::NotARecord { .. } => {
-            Some("name a new or empty folder with --out; files of others are never replaced")
-        }
-        RecordError::InUse { .. } => Some("wait until it has ended, or name another folder with --out"),
-        RecordError::Io { .. } | RecordError::NotFinite { .. } => None,
-    }
+fn of_record(error: &RecordError) -> (u8, Option<&'static str>) {
+    let help = match error {
+        RecordError::Io { action, .. } => return (if *action == "read" { RECORD } else { FAILED }, None),
+        RecordError::NotFinite { .. } => return (RECORD, None),
+        RecordError::Malformed { .. } => DAMAGED,
+        RecordError::Edited { .. } => "restore the file, or compute it again; a record with --overwrite",
+        RecordError::OtherInputs { .. } => "name another folder with --out, or replace this record with --overwrite",
+        RecordError::NotARecord { .. } => "name a new or empty folder with --out; files of others are never replaced",
+        RecordError::InUse { .. } => "wait until it has ended, or name another folder with --out",
+    };
+    (RECORD, Some(help))
 }
 
-fn of_mesh(error: &MeshError) -> Option<&'static str> {
-    match error {
-        MeshError::TooFine { .. } => Some("take a coarser --tolerance; it counts in the design file's unit of length"),
-        MeshError::TooCoarse => Some("give --segments 48, or 48x16 for 48 around the ring and 16 across the wire"),
-        MeshError::TooManyRings { .. } => Some("take a smaller --tile"),
-        MeshError::TooManyTriangles { .. } => {
-            Some("take 3mf or glb, which store each ring once, a smaller --tile, or a coarser --tolerance")
-        }
+fn of_mesh(error: &MeshError) -> (u8, Option<&'static str>) {
+    let help = match error {
+        MeshError::Write(_) => return (FAILED, None),
         MeshError::OtherElements { .. } => {
-            Some("the record's files do not belong together: compute it again with --overwrite")
+            return (RECORD, Some("the record's files do not belong together: compute it again with --overwrite"));
         }
-        MeshError::Write(_) => None,
-    }
+        MeshError::TooFine { .. } => "take a coarser --tolerance; it counts in the design file's unit of length",
+        MeshError::TooCoarse => "give --segments 48, or 48x16 for 48 around the ring and 16 across the wire",
+        MeshError::TooManyRings { .. } => "take a smaller --tile",
+        MeshError::TooManyTriangles { .. } => {
+            "take 3mf or glb, which store each ring once, a smaller --tile, or a coarser --tolerance"
+        }
+    };
+    (USAGE, Some(help))
+}
+
+fn of_picture(error: &RenderError) -> (u8, Option<&'static str>) {
+    let forces = matches!(error, RenderError::NoForces);
+    (USAGE, forces.then_some("limits of the exact method come with forces: maille characterize … --method exact"))
 }
 
 /// A report with a help of its own.
