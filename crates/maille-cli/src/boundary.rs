@@ -1,11 +1,11 @@
 //! `maille boundary`: the surface of all in-plane strains of a sheet, as a table, meshes and a figure.
 
 use crate::{
-    exit::{self, wrong},
+    exit,
     input::{Input, file_name},
     interrupt,
     map::{RunArgs, pool},
-    numbers::{parse_cell, positive},
+    numbers::{positive, read},
     output::{self, say},
     progress::Progress,
 };
@@ -54,7 +54,7 @@ pub struct Args {
     #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=1000))]
     starts: u32,
     /// Cell: 1x1, 2x1, …, or an integer matrix as "1,0;-1,2"
-    #[arg(long, default_value = "1x1", value_parser = parse_cell)]
+    #[arg(long, default_value = "1x1", value_parser = read::<Cell>)]
     cell: Cell,
     /// Minor radius of every ring that gives none, in the file's unit
     #[arg(long, value_parser = positive)]
@@ -82,10 +82,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let usual = || PathBuf::from("maille-out").join(format!("{}-boundary", file_name(&input.design.name)));
     let out = args.run.out.clone().unwrap_or_else(usual);
     let head = BoundaryHead::new(&input.design, args.cell, &options);
-    if out.is_file() {
-        let problem = format!("{} is a file; the surface is a folder", out.display());
-        return Err(wrong(exit::USAGE, problem, "name another folder with --out"));
-    }
+    output::folder(&out, "the surface is a folder")?;
     let (folder, known) = SurfaceFolder::open(&out, &head, args.run.overwrite)?;
     if !known.is_empty() && !args.quiet {
         eprintln!("{} rays are in {} already", known.len(), out.display());
@@ -119,16 +116,8 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if !args.quiet {
         summary(&out, &input, &surface, &options, now, begun.elapsed().as_secs_f64());
     }
-    let interrupted = !surface.complete;
-    if interrupted && !args.quiet {
-        eprintln!("interrupted; the same command goes on from here");
-    }
     let certified = |v: &BoundaryVertex| matches!(v.status, Status::Global | Status::Local);
-    Ok(ExitCode::from(match () {
-        () if interrupted => exit::INTERRUPTED,
-        () if !surface.vertices.iter().all(certified) => exit::INCOMPLETE,
-        () => exit::DONE,
-    }))
+    Ok(exit::ended(!surface.complete, !surface.vertices.iter().all(certified), args.quiet))
 }
 
 fn write(out: &Path, input: &Input, surface: &Boundary, options: &BoundaryOptions) -> Result<()> {

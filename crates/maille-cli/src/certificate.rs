@@ -1,6 +1,13 @@
-//! A certificate on the screen and in JSON.
+//! What an answer rests on, on the screen.
 
-use maille::solver::certificate::Certificate;
+use maille::{answer::Answer, solver::certificate::Certificate};
+
+/// What the search came to.
+pub fn search(found: &Answer) -> String {
+    let (starts, distinct) = (found.n_starts.unwrap_or(0), found.n_distinct.unwrap_or(0));
+    let kept = if found.links_ok == Some(true) { "kept" } else { "LOST" };
+    format!("{starts} starts led to {distinct} certified values; links {kept}")
+}
 
 /// One line of what was checked.
 pub fn line(c: &Certificate) -> String {

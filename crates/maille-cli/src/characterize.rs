@@ -1,20 +1,19 @@
 //! `maille characterize`: limits over directions and lateral strains, written as a record.
 
 use crate::{
-    exit::{self, wrong},
+    exit::{self, refused},
     input::{Input, file_name},
-    interrupt,
-    map::{self, RunArgs, Tally, pool, unanswered},
-    numbers::{Numbers, parse, parse_cell, parse_l2, positive},
+    map::{self, RunArgs, Solved, unanswered},
+    numbers::{Numbers, one_of, parse, parse_l2, positive, read},
     output,
     plot::Shown,
-    progress::Progress,
     summary::Summary,
     watch::watch,
 };
+use clap::builder::PossibleValue;
 use maille::{
+    error::InvalidInput,
     lattice::Across,
-    record::LimitRow,
     relaxation::{
         HessianMethod, MinimaMethod,
         barrier::ContactLaw,
@@ -22,13 +21,10 @@ use maille::{
         target::Protocol,
     },
     search::ExactOptions,
-    survey::{CellChoice, Method},
+    survey::{CellChoice, MapQuestion, Method},
 };
-use maille_io::{
-    numbers::{USUAL_DIRECTIONS, USUAL_L2},
-    run::Map,
-};
-use miette::{Result, miette};
+use maille_io::run::Map;
+use miette::Result;
 use std::{ops::RangeInclusive, path::PathBuf, process::ExitCode, time::Instant};
 
 /// How far a sheet stretches in each direction before it locks
@@ -55,7 +51,7 @@ pub struct Args {
     /// A built-in design (see `maille designs`), a TOML file, or - for standard input
     design: String,
     /// Directions of the pull, degrees counter-clockwise from x: a list, or first:last:step
-    #[arg(long, default_value = USUAL_DIRECTIONS, value_parser = parse, allow_hyphen_values = true)]
+    #[arg(long, default_value = "0:180:5", value_parser = parse, allow_hyphen_values = true)]
     directions: Numbers,
     /// Stretch - 1 held across the pull: a list, or first:last:step [default: -0.25:0.25:0.125; none with --lateral free]
     #[arg(long, value_parser = parse_l2, allow_hyphen_values = true)]
@@ -78,7 +74,7 @@ pub struct Args {
     method: MethodArg,
     /// Cell: 1x1, 2x1, 2x2, …, an integer matrix as "1,0;-1,2", or auto: 1x1, and larger cells where an element
     /// presses on its own image (exact method)
-    #[arg(long, default_value = "auto", value_parser = cell_choice)]
+    #[arg(long, default_value = "auto", value_parser = read::<CellChoice>)]
     cell: CellChoice,
     /// What polar.svg and polar.png show
     #[arg(long, value_enum, default_value_t = Shown::Stretch)]
@@ -107,8 +103,8 @@ pub struct Args {
 #[derive(clap::Args)]
 struct EnergyArgs {
     /// How the deformation is imposed: on F itself, or on the cell's corners as in the thesis (biased in sheared cells)
-    #[arg(long, value_enum, default_value_t = ProtocolArg::Strain)]
-    protocol: ProtocolArg,
+    #[arg(long, default_value = "strain", value_parser = one_of::<Protocol>(["strain", "corners"]))]
+    protocol: Protocol,
     /// Weight of the contacts against the targets, alpha/beta
     #[arg(long, default_value_t = EnergyOptions::default().alpha, value_parser = positive)]
     alpha: f64,
@@ -128,17 +124,17 @@ struct EnergyArgs {
     #[arg(long, value_parser = positive)]
     sample_spacing: Option<f64>,
     /// Second derivatives: formulas, or the thesis's finite differences
-    #[arg(long, value_enum, default_value_t = HessianArg::Analytic)]
-    hessian: HessianArg,
+    #[arg(long, default_value = "analytic", value_parser = one_of::<HessianMethod>(["analytic", "finite-difference"]))]
+    hessian: HessianMethod,
     /// Minima of the circle-circle distance: complete enumeration, or the thesis's polynomial
-    #[arg(long, value_enum, default_value_t = MinimaArg::Enumeration)]
-    minima: MinimaArg,
+    #[arg(long, default_value = "enumeration", value_parser = one_of::<MinimaMethod>(["enumeration", "polynomial"]))]
+    minima: MinimaMethod,
     /// What an overlap costs: the barrier, or the square that the thesis rejects
-    #[arg(long, value_enum, default_value_t = ContactLawArg::Barrier)]
-    contact_law: ContactLawArg,
+    #[arg(long, default_value = "barrier", value_parser = one_of::<ContactLaw>(["barrier", "quadratic"]))]
+    contact_law: ContactLaw,
     /// How the energy is minimised
-    #[arg(long, value_enum, default_value_t = MinimiserArg::Newton)]
-    minimiser: MinimiserArg,
+    #[arg(long, default_value = "newton", value_parser = one_of::<Minimiser>(minimisers()))]
+    minimiser: Minimiser,
     /// Keep every step of every run, with its size and time, in states.jsonl; `maille plot --kind step-times` draws them
     #[arg(long)]
     steps: bool,
@@ -159,22 +155,15 @@ struct EnergyArgs {
     max_iterations: usize,
 }
 
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum ContactLawArg {
-    Barrier,
-    Quadratic,
-}
-
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum MinimiserArg {
-    /// Newton's method with floored eigenvalues
-    Newton,
-    /// Newton's method with growing shifts of the Hessian (the thesis's Algorithm 4.3.2)
-    NewtonShifted,
-    /// Algorithm 4.3.2 to the letter: trial steps add up
-    NewtonPrinted,
-    /// Gradient descent, which the thesis rejects
-    GradientDescent,
+/// Ways to minimise, and what they are.
+fn minimisers() -> [PossibleValue; 4] {
+    [
+        ("newton", "Newton's method with floored eigenvalues"),
+        ("newton-shifted", "Newton's method with growing shifts of the Hessian (the thesis's Algorithm 4.3.2)"),
+        ("newton-printed", "Algorithm 4.3.2 to the letter: trial steps add up"),
+        ("gradient-descent", "Gradient descent, which the thesis rejects"),
+    ]
+    .map(|(name, words)| PossibleValue::new(name).help(words))
 }
 
 /// 0, or as many points as can follow a circle.
@@ -185,14 +174,6 @@ fn flat_points(text: &str) -> Result<usize, String> {
             let range = EnergyOptions::FLAT_POINTS;
             Err(format!("\"{text}\" is neither 0 nor a whole number from {} to {}", range.start(), range.end()))
         }
-    }
-}
-
-/// `auto`, or one cell.
-fn cell_choice(text: &str) -> Result<CellChoice, String> {
-    match text {
-        "auto" => Ok(CellChoice::Auto),
-        _ => parse_cell(text).map(CellChoice::One),
     }
 }
 
@@ -210,27 +191,16 @@ enum Held {
     Free,
 }
 
-/// What is left to the sheet, and the lateral strains that are held.
-fn held(args: &Args) -> Result<(Across, Vec<f64>)> {
+/// What is asked.
+fn question(args: &Args) -> Result<MapQuestion, InvalidInput> {
     let across = Across { lateral_free: args.lateral == Held::Free, shear_free: args.shear == Held::Free };
-    if args.compression && matches!(args.method, MethodArg::Energy) {
-        let help = "leave out --compression, or --method energy";
-        return Err(wrong(exit::USAGE, "the energy method finds largest limits alone", help));
-    }
-    if across.any() && matches!(args.method, MethodArg::Energy) {
-        let help = "leave out --lateral and --shear, or --method energy";
-        return Err(wrong(exit::USAGE, "the energy method holds width and shear", help));
-    }
-    match (&args.l2, across.lateral_free) {
-        (Some(_), true) => Err(wrong(
-            exit::USAGE,
-            "--l2 holds the width that --lateral free leaves to the sheet",
-            "leave one of them out",
-        )),
-        (None, true) => Ok((across, vec![0.0])),
-        (Some(l2), false) => Ok((across, l2.0.clone())),
-        (None, false) => Ok((across, parse_l2(USUAL_L2).map_err(|e| miette!(e))?.0)),
-    }
+    let Args { starts, seed, compression, .. } = *args;
+    let method = match args.method {
+        MethodArg::Exact => Method::Exact(ExactOptions { starts, seed, across, compression }),
+        MethodArg::Energy => Method::energy(args.energy.options(seed), across, compression)?,
+    };
+    let l2 = args.l2.clone().map(|l2| l2.0);
+    MapQuestion::new(method, args.cell.clone(), Some(args.directions.0.clone()), l2)
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
@@ -241,56 +211,21 @@ enum MethodArg {
     Energy,
 }
 
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum ProtocolArg {
-    Strain,
-    Corners,
-}
-
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum HessianArg {
-    Analytic,
-    FiniteDifference,
-}
-
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum MinimaArg {
-    Enumeration,
-    Polynomial,
-}
-
 impl EnergyArgs {
     fn options(&self, seed: u64) -> EnergyOptions {
         EnergyOptions {
-            protocol: match self.protocol {
-                ProtocolArg::Strain => Protocol::Strain,
-                ProtocolArg::Corners => Protocol::Corners,
-            },
+            protocol: self.protocol,
             alpha: self.alpha,
             tau: self.tau,
             l1_step: self.l1_step,
             l1_resolution: self.l1_resolution,
             samples: self.samples,
             sample_spacing_rad: self.sample_spacing,
-            hessian: match self.hessian {
-                HessianArg::Analytic => HessianMethod::Analytic,
-                HessianArg::FiniteDifference => HessianMethod::FiniteDifference,
-            },
-            minima: match self.minima {
-                MinimaArg::Enumeration => MinimaMethod::Enumeration,
-                MinimaArg::Polynomial => MinimaMethod::Polynomial,
-            },
-            contact_law: match self.contact_law {
-                ContactLawArg::Barrier => ContactLaw::Barrier,
-                ContactLawArg::Quadratic => ContactLaw::Quadratic,
-            },
+            hessian: self.hessian,
+            minima: self.minima,
+            contact_law: self.contact_law,
             steps: self.steps,
-            minimiser: match self.minimiser {
-                MinimiserArg::Newton => Minimiser::Newton,
-                MinimiserArg::NewtonShifted => Minimiser::NewtonShifted,
-                MinimiserArg::NewtonPrinted => Minimiser::NewtonPrinted,
-                MinimiserArg::GradientDescent => Minimiser::GradientDescent,
-            },
+            minimiser: self.minimiser,
             side_signs: self.side_signs,
             max_iterations: self.max_iterations,
             gradient_tolerance: self.gradient_tolerance,
@@ -310,63 +245,37 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 }
 
 fn once(args: &Args) -> Result<ExitCode> {
-    let (across, l2) = held(args)?;
+    let question = question(args).map_err(|e| refused(&e))?;
     let input = Input::read(&args.design, args.minor_radius)?;
     let folder = file_name(&input.design.name) + if args.compression { "-compression" } else { "" };
     let out = args.run.out.clone().unwrap_or_else(|| PathBuf::from("maille-out").join(folder));
-    let map = Map {
-        method: match args.method {
-            MethodArg::Exact => Method::Exact(ExactOptions {
-                starts: args.starts,
-                seed: args.seed,
-                across,
-                compression: args.compression,
-            }),
-            MethodArg::Energy => Method::Energy(args.energy.options(args.seed)),
-        },
-        cell: args.cell,
-        directions_deg: args.directions.0.clone(),
-        l2,
-        quantity: args.quantity.into(),
-        out: Some(out.clone()),
-        overwrite: args.run.overwrite || args.watch,
-    };
+    let overwrite = args.run.overwrite || args.watch;
+    let map = Map { question, quantity: args.quantity.into(), out: Some(out.clone()), overwrite };
     let begun = Instant::now();
     let open = map::open(&map, &input)?;
-    if !args.quiet {
-        if open.is_unlinked() {
-            eprintln!("warning: no chain of links joins the cells of this design; no pull has a bound");
-        }
-        if open.left() < open.total() {
-            eprintln!("{} of {} limits are in {} already", open.total() - open.left(), open.total(), out.display());
-        }
+    if !args.quiet && open.is_unlinked() {
+        eprintln!("warning: no chain of links joins the cells of this design; no pull has a bound");
     }
-    let cancel = interrupt::flag()?;
-    let pool = pool(args.run.threads)?;
-    let (left, total) = (open.left(), open.total());
-    let progress = Progress::new(left as u64, args.quiet);
-    let found = |row: &LimitRow| {
-        let width = if across.lateral_free { "width free".into() } else { format!("l2 = {}", row.l2) };
-        progress.step(format!("{}°, {width}", row.direction_deg));
-    };
-    let rows = pool.install(|| map::run(open, &cancel, &found));
-    progress.finish();
-    let rows = rows?;
-
-    let interrupted = cancel.load(std::sync::atomic::Ordering::Relaxed);
-    let tally = Tally::of(&rows, total - left);
-    let summary = Summary::new(&input.design.name, &rows, tally.now, begun.elapsed(), interrupted, &out);
+    let Solved { records, tally, interrupted, .. } = map::solve(vec![("", open)], &out, args.run.threads, args.quiet)?;
+    let rows = &records[0].rows;
+    let summary = Summary::new(&input.design.name, rows, tally.now, begun.elapsed(), interrupted, &out);
     if args.json {
         output::print_json(&summary)?;
     } else if !args.quiet {
         summary.print();
     }
-    if interrupted && !args.quiet {
-        eprintln!("interrupted; the same command goes on from here");
+    Ok(exit::ended(interrupted, rows.iter().any(unanswered), args.quiet))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The help names what a map takes where nothing is named.
+    #[test]
+    fn usual_directions_and_l2_are_those_of_the_library() {
+        let usual = MapQuestion::new(Method::Exact(ExactOptions::default()), CellChoice::Auto, None, None).unwrap();
+        assert_eq!(parse("0:180:5").unwrap().0, usual.directions_deg);
+        assert_eq!(parse_l2("-0.25:0.25:0.125").unwrap().0, usual.l2);
     }
-    Ok(ExitCode::from(match () {
-        () if interrupted => exit::INTERRUPTED,
-        () if rows.iter().any(unanswered) => exit::INCOMPLETE,
-        () => exit::DONE,
-    }))
 }

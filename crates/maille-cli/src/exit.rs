@@ -1,9 +1,10 @@
 //! Exit codes by cause, for scripts.
 
-use maille::error::InvalidInput;
-use maille_io::{DesignError, mesh::MeshError, record::RecordError, render::RenderError, study::StudyError};
+use crate::remedy::remedy;
+use maille::{error::InvalidInput, record::Status};
+use maille_io::{DesignError, study::StudyError};
 use miette::{Diagnostic, Report};
-use std::fmt;
+use std::{fmt, process::ExitCode};
 
 /// All done.
 pub const DONE: u8 = 0;
@@ -47,30 +48,40 @@ pub fn wrong(code: u8, problem: impl Into<String>, help: impl Into<String>) -> R
     Report::new(Wrong { code, problem: problem.into(), help: help.into() })
 }
 
-/// A question that was refused.
+/// A question that was refused. Options that it names in backticks are those of the command line.
 pub fn refused(problem: &InvalidInput) -> Report {
-    wrong(USAGE, &problem.problem, &problem.help)
+    let flags = |text: &str| {
+        let part = |(k, part): (usize, &str)| if k % 2 == 1 { format!("--{part}") } else { part.to_owned() };
+        text.split('`').enumerate().map(part).collect::<String>()
+    };
+    wrong(USAGE, flags(&problem.problem), flags(&problem.help))
+}
+
+/// How a run ends with which the same command can go on.
+pub fn ended(interrupted: bool, incomplete: bool, quiet: bool) -> ExitCode {
+    if interrupted && !quiet {
+        eprintln!("interrupted; the same command goes on from here");
+    }
+    ExitCode::from(match (interrupted, incomplete) {
+        (true, _) => INTERRUPTED,
+        (false, true) => INCOMPLETE,
+        (false, false) => DONE,
+    })
+}
+
+/// How a single question ends.
+pub fn of_answer(status: Status) -> ExitCode {
+    ExitCode::from(match status {
+        Status::Global | Status::Local | Status::L2Unreachable => DONE,
+        Status::Interrupted => INTERRUPTED,
+        _ => INCOMPLETE,
+    })
 }
 
 /// The exit code of what went wrong.
 pub fn code(report: &Report) -> u8 {
-    if let Some(wrong) = report.downcast_ref::<Wrong>() {
-        return wrong.code;
-    }
-    if report.downcast_ref::<DesignError>().is_some() {
-        return DESIGN;
-    }
-    match report.downcast_ref::<RecordError>() {
-        Some(RecordError::Io { action, .. }) if *action != "read" => return FAILED,
-        Some(_) => return RECORD,
-        None => {}
-    }
-    match report.downcast_ref::<MeshError>() {
-        Some(MeshError::Write(_)) => return FAILED,
-        Some(MeshError::OtherElements { .. }) => return RECORD,
-        Some(_) => return USAGE,
-        None => {}
-    }
-    let of_arguments = report.downcast_ref::<RenderError>().is_some() || report.downcast_ref::<StudyError>().is_some();
-    if of_arguments { USAGE } else { FAILED }
+    let of_design = report.downcast_ref::<DesignError>().map(|_| DESIGN);
+    let of_study = report.downcast_ref::<StudyError>().map(|_| USAGE);
+    let own = report.downcast_ref::<Wrong>().map(|wrong| wrong.code);
+    own.or(of_design).or(of_study).or(remedy(report).map(|(code, _)| code)).unwrap_or(FAILED)
 }

@@ -19,7 +19,6 @@ use maille::{
     record::Status,
     search::extreme::{Extreme, Size},
     sheet::Sheet,
-    survey::CellChoice,
 };
 use maille_io::{answer, write_design};
 use miette::Result;
@@ -122,11 +121,7 @@ fn run(args: &Common, what: Extreme) -> Result<ExitCode> {
         output::write(file, write_design(&what.design(found, &input.design, answer.model())).as_bytes())?;
         eprintln!("{}", file.display());
     }
-    Ok(ExitCode::from(match found.status {
-        Status::Local => exit::DONE,
-        Status::Interrupted => exit::INTERRUPTED,
-        _ => exit::INCOMPLETE,
-    }))
+    Ok(exit::of_answer(found.status))
 }
 
 fn search<'a>(
@@ -136,7 +131,7 @@ fn search<'a>(
     (starts, seed): (u32, u64),
     threads: Option<u16>,
 ) -> Result<Found<'a>> {
-    let sheet = input.sheet(CellChoice::One(Cell::PRIMITIVE))?;
+    let sheet = input.sheet(Cell::PRIMITIVE.into())?;
     if sheet.model().links.is_empty() {
         let help = "`maille inspect` shows links; rings that hold each other bound the wire, and nothing else does";
         return Err(wrong(exit::DESIGN, "no rings of this design are linked", help));
@@ -228,9 +223,7 @@ impl Found<'_> {
         for (name, a) in [("a1", found.state.a1), ("a2", found.state.a2)].map(|(n, a)| (n, a * self.model().unit)) {
             say!("  {name}              {:.6}, {:.6}{unit}", a.x, a.y);
         }
-        let (starts, distinct) = (found.n_starts.unwrap_or(0), found.n_distinct.unwrap_or(0));
-        let kept = if found.links_ok == Some(true) { "kept" } else { "LOST" };
-        say!("  {starts} starts led to {distinct} certified values; links {kept}; {wall_s:.1} s");
+        say!("  {}; {wall_s:.1} s", certificate::search(found));
         if let Some(c) = &found.certificate {
             say!("  {}", certificate::line(c));
         }

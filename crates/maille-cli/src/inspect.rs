@@ -3,7 +3,7 @@
 use crate::{
     exit::{self, wrong},
     input::Input,
-    numbers::{parse_cell, positive},
+    numbers::{positive, read},
     output,
     source::tolerant,
     units::parse_density,
@@ -40,7 +40,7 @@ pub struct Args {
     #[arg(long, value_parser = positive)]
     minor_radius: Option<f64>,
     /// Cell: 1x1, 2x1, … or an integer matrix as "1,0;-1,2"
-    #[arg(long, default_value = "1x1", value_parser = parse_cell)]
+    #[arg(long, default_value = "1x1", value_parser = read::<Cell>)]
     cell: Cell,
     /// Density of the wire, as 7.85g/cm3 or 7850kg/m3: adds the weight
     #[arg(long, value_parser = parse_density)]

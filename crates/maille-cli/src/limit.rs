@@ -5,10 +5,10 @@ use crate::{
     exit::{self, refused, wrong},
     input::Input,
     interrupt,
-    numbers::{finite, parse_cell, positive},
+    numbers::{finite, one_of, positive, read},
     output::{self, say},
 };
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::TypedValueParser;
 use maille::{
     question::{Goal, Question, Sense, Strain},
     record::Status,
@@ -59,7 +59,7 @@ pub struct Args {
     minor_radius: Option<f64>,
     /// Cell: 1x1, 2x1, …, an integer matrix as "1,0;-1,2", or auto: larger cells where an element presses on its own image, and all
     /// up to 3x3 with --minimize
-    #[arg(long, default_value = "auto", value_parser = cell_choice)]
+    #[arg(long, default_value = "auto", value_parser = read::<CellChoice>)]
     cell: CellChoice,
     /// Starts of a query whose bound is not attained; with --minimize of each cell [default: 8, and those of `characterize` where
     /// the question is a pull]
@@ -93,13 +93,8 @@ impl FromStr for Held {
 }
 
 /// One of the names of strains.
-fn strain() -> impl clap::builder::TypedValueParser<Value = Strain> {
-    let known = |name: String| Strain::ALL.into_iter().find(|strain| strain.name() == name).ok_or("no strain");
-    PossibleValuesParser::new(Strain::ALL.map(Strain::name)).try_map(known)
-}
-
-fn cell_choice(text: &str) -> Result<CellChoice, String> {
-    if text == "auto" { Ok(CellChoice::Auto) } else { parse_cell(text).map(CellChoice::One) }
+fn strain() -> impl TypedValueParser<Value = Strain> {
+    one_of(Strain::ALL.map(Strain::name))
 }
 
 fn question(args: &Args) -> Result<Question> {
@@ -123,7 +118,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let question = question(args)?;
     question.check().map_err(|e| refused(&e))?;
     let input = Input::read(&args.design, args.minor_radius)?;
-    let sheet = input.sheet(args.cell)?;
+    let sheet = input.sheet(args.cell.clone())?;
     let cancel = interrupt::flag()?;
     let begun = Instant::now();
     let found = sheet.answer_until(&question, &cancel).map_err(|e| refused(&e))?;
@@ -136,11 +131,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         true => output::print_json(&output::timed(answer.json(), wall_s))?,
         false => print(&answer, wall_s),
     }
-    Ok(ExitCode::from(match found.status {
-        Status::Global | Status::Local | Status::L2Unreachable => exit::DONE,
-        Status::Interrupted => exit::INTERRUPTED,
-        _ => exit::INCOMPLETE,
-    }))
+    Ok(exit::of_answer(found.status))
 }
 
 /// A free strain with a wider range than this has no value of its own: what the slack of a millionth alone can make is its root.
@@ -186,12 +177,7 @@ fn print(answer: &StrainAnswer<'_>, wall_s: f64) {
     if let Some(bound) = found.bound {
         say!("  bound {:>15.9}  proved by the chains of links", bound);
     }
-    let kept = if found.links_ok == Some(true) { "kept" } else { "LOST" };
-    let (starts, distinct) = (found.n_starts.unwrap_or(0), found.n_distinct.unwrap_or(0));
-    say!(
-        "  cell {}; {starts} starts led to {distinct} certified values; links {kept}; {wall_s:.2} s",
-        answer.model.cell
-    );
+    say!("  cell {}; {}; {wall_s:.2} s", answer.model.cell, certificate::search(found));
     if found.by_cell.len() > 1 || answer.question.sense == Sense::Least {
         for cell in &found.by_cell {
             say!("    {}", cell.label());

@@ -25,6 +25,7 @@ mod output;
 mod plot;
 mod progress;
 mod records;
+mod remedy;
 mod render;
 mod replay;
 mod reproduce;
@@ -133,8 +134,9 @@ fn main() -> ExitCode {
         Command::View(args) => done(view::run(&args)),
     };
     ended.unwrap_or_else(|report| {
-        eprintln!("{report:?}");
-        ExitCode::from(exit::code(&report))
+        let code = exit::code(&report);
+        eprintln!("{:?}", remedy::added(report));
+        ExitCode::from(code)
     })
 }
 

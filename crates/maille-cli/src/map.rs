@@ -1,15 +1,16 @@
 //! Maps on the command line: from a design as read to the open record, and several side by side.
 
-use crate::{
-    exit::{self, wrong},
-    input::Input,
-    progress::Progress,
-};
+use crate::{input::Input, interrupt, output, progress::Progress};
 use maille::record::{LimitRow, Status};
-use maille_io::run::{Map, MapError, OpenMap};
+use maille_io::{
+    record::Record,
+    run::{Map, MapError, OpenMap, run_all},
+};
 use miette::{IntoDiagnostic, Report, Result, WrapErr};
-use rayon::prelude::*;
-use std::{path::PathBuf, sync::atomic::AtomicBool};
+use std::{
+    path::{Path, PathBuf},
+    sync::atomic::Ordering,
+};
 
 /// Where a run writes, and on how many threads.
 #[derive(clap::Args)]
@@ -29,37 +30,47 @@ pub struct RunArgs {
 pub fn open(map: &Map, input: &Input) -> Result<OpenMap> {
     let compile = |cell| input.compile(&input.design, cell);
     let models = map.cells(&input.design).into_iter().map(compile).collect::<Result<_>>()?;
-    if let Some(out) = map.out.as_ref().filter(|out| out.is_file()) {
-        let help = "name another folder with --out";
-        return Err(wrong(exit::USAGE, format!("{} is a file; a record is a folder", out.display()), help));
-    }
+    map.out.as_ref().map_or(Ok(()), |out| output::folder(out, "a record is a folder"))?;
     Ok(map.open(&input.design, models)?)
 }
 
-/// Finds the limits that are left on the current thread pool, and gives all rows of the record.
-pub fn run(open: OpenMap, cancel: &AtomicBool, found: &(dyn Fn(&LimitRow) + Sync)) -> Result<Vec<LimitRow>> {
-    let failed = |error: MapError| {
+/// What came of maps.
+pub struct Solved {
+    /// The record of each.
+    pub records: Vec<Record>,
+    /// What is in them.
+    pub tally: Tally,
+    /// Limits that were asked for.
+    pub total: usize,
+    /// Whether Ctrl-C stopped the run.
+    pub interrupted: bool,
+}
+
+/// Finds the limits that are left in maps, each with its name, side by side. Says which are there already, and shows progress.
+pub fn solve(open: Vec<(&str, OpenMap)>, out: &Path, threads: Option<u16>, quiet: bool) -> Result<Solved> {
+    let (left, total) = open.iter().fold((0, 0), |(l, t), (_, map)| (l + map.left(), t + map.total()));
+    if !quiet && left < total {
+        eprintln!("{} of {total} limits are in {} already", total - left, out.display());
+    }
+    let (cancel, pool) = (interrupt::flag()?, pool(threads)?);
+    let progress = Progress::new(left as u64, quiet);
+    let found = |name: &str, row: &LimitRow| {
+        let name = if name.is_empty() { String::new() } else { format!("{name}: ") };
+        let free = row.lateral.as_deref() == Some("free");
+        let width = if free { "width free".into() } else { format!("l2 = {}", row.l2) };
+        progress.step(format!("{name}{}°, {width}", row.direction_deg));
+    };
+    let records = pool.install(|| run_all(open, &cancel, &found));
+    progress.finish();
+    let records = records.map_err(|error| {
         let words = error.to_string();
         match error {
             MapError::Record(error) => Report::new(error).wrap_err(words),
             MapError::Plot(error) => Err::<(), _>(error).into_diagnostic().unwrap_err().wrap_err(words),
         }
-    };
-    open.run(cancel, &|row, _| found(row)).map(|record| record.rows).map_err(failed)
-}
-
-/// Runs maps side by side, so that no thread waits for the last limit of a map, and gives the rows of each.
-pub fn run_all(
-    open: Vec<(&str, OpenMap)>,
-    pool: &rayon::ThreadPool,
-    cancel: &AtomicBool,
-    progress: &Progress,
-) -> Result<Vec<Vec<LimitRow>>> {
-    let each = |(name, open): (&str, OpenMap)| {
-        let found = |row: &LimitRow| progress.step(format!("{name}: {}°, l2 = {}", row.direction_deg, row.l2));
-        run(open, cancel, &found)
-    };
-    pool.install(|| open.into_par_iter().with_max_len(1).map(each).collect())
+    })?;
+    let tally = Tally::of(records.iter().flat_map(|record| &record.rows), total - left);
+    Ok(Solved { records, tally, total, interrupted: cancel.load(Ordering::Relaxed) })
 }
 
 /// Whether a row has no answer; a proof that there is no limit is one.

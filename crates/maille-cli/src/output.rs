@@ -1,5 +1,6 @@
 //! Where results go: a file, whole or not at all, or standard output.
 
+use crate::exit::{USAGE, wrong};
 use maille_io::files;
 use miette::{IntoDiagnostic, Report, Result, WrapErr};
 use std::{
@@ -19,15 +20,20 @@ pub fn remove_leftovers(folder: &Path) -> Result<()> {
     removed.map_err(|(path, e)| Report::msg(e).wrap_err(format!("cannot remove {}", path.display())))
 }
 
+/// Refuses a file where a folder is written; `what` says so of the folder.
+pub fn folder(out: &Path, what: &str) -> Result<()> {
+    match out.is_file() {
+        true => Err(wrong(USAGE, format!("{} is a file; {what}", out.display()), "name another folder with --out")),
+        false => Ok(()),
+    }
+}
+
 /// Writes under a temporary name in the same folder and renames: whatever happens, a file of this name is whole.
 pub fn replace(path: &Path, write: impl FnOnce(&mut BufWriter<&mut fs::File>) -> Result<()>) -> Result<()> {
     let context = || format!("cannot write {}", path.display());
     if path.is_dir() {
-        return Err(crate::exit::wrong(
-            crate::exit::USAGE,
-            format!("{} is a folder; a file is written here", path.display()),
-            "give the name of a file",
-        ));
+        let problem = format!("{} is a folder; a file is written here", path.display());
+        return Err(wrong(USAGE, problem, "give the name of a file"));
     }
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     fs::create_dir_all(folder)

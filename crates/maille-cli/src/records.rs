@@ -20,12 +20,17 @@ pub fn folder(named: &Path) -> PathBuf {
     }
 }
 
+/// The name of a record: its folder, without a slash at the end.
+pub fn name(folder: &Path) -> String {
+    folder.components().collect::<PathBuf>().display().to_string()
+}
+
 /// Reads records, each with its folder as a name.
 pub fn read(named: &[PathBuf]) -> Result<Vec<NamedRecord>> {
     let mut out: Vec<NamedRecord> = Vec::new();
     for path in named {
-        let folder: PathBuf = folder(path).components().collect(); // without a slash at the end
-        let name = folder.display().to_string();
+        let folder = folder(path);
+        let name = name(&folder);
         if out.iter().any(|known| known.name == name) {
             return Err(wrong(exit::USAGE, format!("the record {name} is given twice"), "name each record once"));
         }

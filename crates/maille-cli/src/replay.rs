@@ -3,20 +3,15 @@
 use crate::{
     at::{At, parse_at},
     exit::{self, wrong},
-    output, records,
+    output::say,
+    records,
+    remedy::DAMAGED,
     source::read_record,
 };
-use maille::{
-    model::Model,
-    record::{LimitRow, Status},
-    survey::{Finished, MapQuestion, Task, characterize},
-};
+use maille::record::{LimitRow, Status};
+use maille_io::run::{ReplayError, Replayed, replay};
 use miette::{Report, Result};
-use std::{
-    path::PathBuf,
-    process::ExitCode,
-    sync::{Mutex, atomic::AtomicBool},
-};
+use std::{path::PathBuf, process::ExitCode, sync::atomic::AtomicBool};
 
 /// Solve rows of a record again, by default those without a limit, and compare
 ///
@@ -39,69 +34,33 @@ pub struct Args {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let record = read_record(&records::folder(&args.record))?;
-    let MapQuestion { method, cells, l2, .. } = record.run.question()?;
-    let design = &record.run.design;
-    let models: Vec<Model> = cells
-        .iter()
-        .map(|cell| {
-            Model::compile(design, *cell).map_err(|p| damaged(format!("the record's design cannot be used: {}", p[0])))
-        })
-        .collect::<Result<_>>()?;
     let rows: Vec<&LimitRow> = match args.at {
         Some(at) => record.rows.iter().filter(|r| at.fits(r.direction_deg, r.l2)).collect(),
         None => record.rows.iter().filter(|r| r.l1.is_none()).collect(),
     };
-    if rows.is_empty() {
-        match args.at {
-            Some(at) => {
-                let rows =
-                    record.rows.iter().take(6).map(|r| format!("  --at direction={},l2={}", r.direction_deg, r.l2));
-                let help = format!("it has, among others:\n{}", rows.collect::<Vec<_>>().join("\n"));
-                return Err(wrong(exit::RECORD, format!("the record has no row at {at}"), help));
-            }
-            None => output::say!("every row of the record has a limit; name one with --at direction=…,l2=…"),
+    match args.at {
+        Some(at) if rows.is_empty() => {
+            let rows = record.rows.iter().take(6).map(|r| format!("  --at direction={},l2={}", r.direction_deg, r.l2));
+            let help = format!("it has, among others:\n{}", rows.collect::<Vec<_>>().join("\n"));
+            return Err(wrong(exit::RECORD, format!("the record has no row at {at}"), help));
         }
+        None if rows.is_empty() => say!("every row of the record has a limit; name one with --at direction=…,l2=…"),
+        _ => {}
     }
-    let mut directions: Vec<f64> = rows.iter().map(|r| r.direction_deg).collect();
-    directions.dedup();
-    let wanted = |task: Task| rows.iter().any(|r| (r.direction_deg, r.l2) == (task.direction_deg, task.l2));
-    let found = Mutex::new(Vec::<Finished>::new());
-    let cancel = AtomicBool::new(false);
-    characterize(&models, design.minor_radius, &method, &directions, &l2, &wanted, &cancel, &|row| {
-        found.lock().unwrap_or_else(|e| e.into_inner()).push(row);
-    });
-    let found = found.into_inner().unwrap_or_else(|e| e.into_inner());
-    let mut same = true;
-    for then in rows {
-        let Some(now) = found.iter().find(|f| (f.row.direction_deg, f.row.l2) == (then.direction_deg, then.l2)) else {
-            continue;
-        };
-        let agrees = then.status == now.row.status && close(then.l1, now.row.l1);
-        same &= agrees;
-        output::say!("{}°, l2 = {}", then.direction_deg, then.l2);
-        output::say!("  recorded  {}", line(then));
-        output::say!("  now       {}{}", line(&now.row), if agrees { "" } else { "   DIFFERS" });
+    let replayed = replay(&record, &rows, &AtomicBool::new(false)).map_err(|error| match error {
+        ReplayError::Record(error) => Report::new(error),
+        ReplayError::Design(_) => wrong(exit::RECORD, error.to_string(), DAMAGED),
+    })?;
+    for row in &replayed {
+        let Replayed { then, now } = row;
+        say!("{}°, l2 = {}", then.direction_deg, then.l2);
+        say!("  recorded  {}", line(then));
+        say!("  now       {}{}", line(&now.row), if row.agrees() { "" } else { "   DIFFERS" });
         if let Some(note) = &now.state.note {
-            output::say!("  note      {note}");
+            say!("  note      {note}");
         }
     }
-    Ok(ExitCode::from(if same { exit::DONE } else { exit::INCOMPLETE }))
-}
-
-/// A record whose run.json is not what `characterize` writes.
-fn damaged(problem: String) -> Report {
-    wrong(
-        exit::RECORD,
-        problem,
-        "the file is damaged or was edited: restore it, or compute the record again with --overwrite",
-    )
-}
-
-fn close(a: Option<f64>, b: Option<f64>) -> bool {
-    match (a, b) {
-        (Some(a), Some(b)) => (a - b).abs() <= 1e-9,
-        (a, b) => a.is_none() && b.is_none(),
-    }
+    Ok(exit::ended(false, !replayed.iter().all(Replayed::agrees), true))
 }
 
 fn line(row: &LimitRow) -> String {

@@ -3,10 +3,8 @@
 use crate::{
     exit::{self, wrong},
     input::Input,
-    interrupt,
-    map::{self, Tally, pool, run_all},
+    map::{self, Solved, Tally, pool},
     output::{self, say},
-    progress::Progress,
     records,
 };
 use maille::{
@@ -15,7 +13,7 @@ use maille::{
     model::Model,
     relaxation::{limit::EnergyOptions, target::Protocol},
     search::ExactOptions,
-    survey::{CellChoice, Method},
+    survey::{CellChoice, MapQuestion, Method},
 };
 use maille_io::{
     DesignSource, chapter6,
@@ -29,7 +27,6 @@ use serde_json::json;
 use std::{
     path::{Path, PathBuf},
     process::ExitCode,
-    sync::atomic::Ordering,
 };
 
 /// Chapter 6 of the thesis computed anew, as one page
@@ -114,24 +111,13 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let chosen = chosen(&args.only, args.designs.as_deref())?;
     let usual = if args.quick { "reproduction-quick" } else { "reproduction" };
     let out = args.out.clone().unwrap_or_else(|| usual.into());
-    if out.is_file() {
-        let help = "name another folder with --out";
-        return Err(wrong(exit::USAGE, format!("{} is a file; a folder is written", out.display()), help));
-    }
+    output::folder(&out, "a folder is written")?;
     let plan = plan(&chosen, args.quick, &out)?;
     let _lock = FolderLock::take(&out)?;
     let open = plan.iter().map(|p| Ok((p.name.as_str(), map::open(&p.map, &p.input)?))).collect::<Result<Vec<_>>>()?;
-    let (left, total) = open.iter().fold((0, 0), |(l, t), (_, map)| (l + map.left(), t + map.total()));
-    if !args.quiet && left < total {
-        eprintln!("{} of {total} limits are in {} already", total - left, out.display());
-    }
-    let cancel = interrupt::flag()?;
-    let pool = pool(args.threads)?;
-    let progress = Progress::new(left as u64, args.quiet);
-    let rows = run_all(open, &pool, &cancel, &progress);
-    progress.finish();
-    let Tally { there, now, unanswered } = Tally::of(rows?.iter().flatten(), total - left);
-    if cancel.load(Ordering::Relaxed) {
+    let Solved { tally: Tally { there, now, unanswered }, total, interrupted, .. } =
+        map::solve(open, &out, args.threads, args.quiet)?;
+    if interrupted {
         if !args.quiet {
             eprintln!("{there} of {total} limits are in the records, {now} of them now");
             eprintln!("interrupted; the same command goes on from here");
@@ -139,7 +125,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         return Ok(ExitCode::from(exit::INTERRUPTED));
     }
     let records = records::read(&plan.iter().filter_map(|p| p.map.out.clone()).collect::<Vec<_>>())?;
-    let findings = pool.install(|| write(&out, &chosen, args.quick, &records))?;
+    let findings = pool(args.threads)?.install(|| write(&out, &chosen, args.quick, &records))?;
     if !args.quiet {
         for finding in &findings {
             say!("statement {}: {}", finding.number, finding.verdict.words());
@@ -222,10 +208,7 @@ fn plan(chosen: &[Chosen], quick: bool, out: &Path) -> Result<Vec<Planned>> {
             let minor_radius = design.reference_radius / f64::from(divisor);
             let input = Input::of(design.with_minor_radius(minor_radius));
             let map = Map {
-                method,
-                cell: CellChoice::One(cell),
-                directions_deg,
-                l2: l2.to_vec(),
+                question: MapQuestion { method, cells: CellChoice::from(cell), directions_deg, l2: l2.to_vec() },
                 quantity: Quantity::Lambda1,
                 out: Some(records.join(&name)),
                 overwrite: false,

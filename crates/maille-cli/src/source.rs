@@ -15,6 +15,7 @@ use maille::{
     record::{ContactRecord, FrameRecord, StateRecord, Status},
     search::extreme::Extreme,
     state::State,
+    survey::CellChoice,
 };
 use maille_io::{
     mesh,
@@ -265,7 +266,9 @@ impl SourceArgs {
         if let Some(question) = record.and_then(|r| r.run.question().ok()) {
             line += &format!(" --method {}", question.method.name());
             // Several cells are those of the default, auto.
-            if let [cell] = question.cells[..] {
+            if let CellChoice::These(cells) = question.cells
+                && let [cell] = cells[..]
+            {
                 line += &format!(" --cell {}", quoted(&cell.to_string()));
             }
         }

@@ -3,15 +3,13 @@
 use crate::{
     exit::{self, wrong},
     input::{Input, file_name},
-    interrupt,
-    map::{self, RunArgs, Tally, pool, run_all},
+    map::{self, RunArgs, Solved, Tally},
     output::{self, say},
-    progress::Progress,
     records,
 };
 use maille_io::{
     builtin,
-    record::FolderLock,
+    record::{FolderLock, NamedRecord},
     run::{Map, OpenMap},
     study::{Study, StudyDesign},
     table::{Field, Table},
@@ -20,7 +18,6 @@ use miette::{IntoDiagnostic, Result, WrapErr};
 use std::{
     path::{Path, PathBuf},
     process::ExitCode,
-    sync::atomic::Ordering,
     time::Instant,
 };
 
@@ -96,10 +93,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     let out = args.run.out.clone().unwrap_or_else(|| Path::new("maille-out").join(file_name(&stem)));
     let plan = plan(&study, path.parent().unwrap_or(Path::new("")), &out, args.run.overwrite)?;
-    if out.is_file() {
-        let help = "name another folder with --out";
-        return Err(wrong(exit::USAGE, format!("{} is a file; a folder is written", out.display()), help));
-    }
+    output::folder(&out, "a folder is written")?;
     let _lock = FolderLock::take(&out)?;
     let mut open: Vec<(&str, OpenMap)> = Vec::new();
     let mut unused = Vec::new();
@@ -110,24 +104,16 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             Err(report) => return Err(report),
         }
     }
-    let (left, total) = open.iter().fold((0, 0), |(l, t), (_, map)| (l + map.left(), t + map.total()));
-    if !args.quiet && left < total {
-        eprintln!("{} of {total} limits are in {} already", total - left, out.display());
-    }
     let used: Vec<PathBuf> = open.iter().filter_map(|(_, map)| map.folder().map(Path::to_owned)).collect();
-    let cancel = interrupt::flag()?;
-    let pool = pool(args.run.threads)?;
-    let progress = Progress::new(left as u64, args.quiet);
     let begun = Instant::now();
-    let rows = run_all(open, &pool, &cancel, &progress);
-    progress.finish();
-    let rows = rows?;
+    let Solved { records, tally, total, interrupted } = map::solve(open, &out, args.run.threads, args.quiet)?;
     if !used.is_empty() {
-        let records = records::read(&used)?;
-        output::write(&out.join("limits.csv"), Table::new(&records, Field::all(true)).csv().as_bytes())?;
+        let name = |(folder, record): (&PathBuf, _)| NamedRecord { name: records::name(folder), record };
+        let named: Vec<NamedRecord> = used.iter().zip(records).map(name).collect();
+        let table = Table::new(&named, Field::all(true));
+        output::write(&out.join("limits.csv"), table.csv().as_bytes())?;
     }
-    let interrupted = cancel.load(Ordering::Relaxed);
-    let Tally { there, now, unanswered } = Tally::of(rows.iter().flatten(), total - left);
+    let Tally { there, now, unanswered } = tally;
     if !args.quiet {
         for (name, report) in &unused {
             eprintln!("{name} could not be used:\n{report:?}");
@@ -139,15 +125,8 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             used.len()
         );
         say!("all rows are in {}", out.join("limits.csv").display());
-        if interrupted {
-            eprintln!("interrupted; the same command goes on from here");
-        }
     }
-    Ok(ExitCode::from(match () {
-        () if interrupted => exit::INTERRUPTED,
-        () if unanswered > 0 || !unused.is_empty() => exit::INCOMPLETE,
-        () => exit::DONE,
-    }))
+    Ok(exit::ended(interrupted, unanswered > 0 || !unused.is_empty(), args.quiet))
 }
 
 fn read(path: &Path) -> Result<Study> {

@@ -5,6 +5,7 @@ use crate::{
     map, output,
     progress::Progress,
     records,
+    remedy::DAMAGED,
     source::is_record,
 };
 use maille_verify::{Check, Finding, RowReport, Texts, Verdict, Verifier};
@@ -93,8 +94,7 @@ fn verified(folder: &Path, pool: &rayon::ThreadPool, quiet: bool) -> Result<Veri
     let (limits, states) = (text(folder, "limits.csv")?, text(folder, "states.jsonl")?);
     let texts = Texts { run: &run, limits: limits.as_deref(), states: states.as_deref() };
     let verifier = Verifier::new(&texts).map_err(|e| {
-        let help = "the file is damaged or was edited: restore it, or compute the record again with --overwrite";
-        wrong(exit::RECORD, format!("{}:{}: {}", folder.join(e.file).display(), e.line, e.problem), help)
+        wrong(exit::RECORD, format!("{}:{}: {}", folder.join(e.file).display(), e.line, e.problem), DAMAGED)
     })?;
     let progress = Progress::new(verifier.len() as u64, quiet);
     let row = |k: usize| {
@@ -129,8 +129,7 @@ fn text(folder: &Path, name: &str) -> Result<Option<String>> {
         Ok(text) => Ok(Some(text)),
         Err(e) if e.kind() == ErrorKind::NotFound => Ok(None),
         Err(e) if e.kind() == ErrorKind::InvalidData => {
-            let help = "the file is damaged or was edited: restore it, or compute the record again with --overwrite";
-            Err(wrong(exit::RECORD, format!("{} is no text", path.display()), help))
+            Err(wrong(exit::RECORD, format!("{} is no text", path.display()), DAMAGED))
         }
         Err(e) => Err(e).into_diagnostic().wrap_err_with(|| format!("cannot read {}", path.display())),
     }

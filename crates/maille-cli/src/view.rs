@@ -1,7 +1,6 @@
 //! `maille view`: the viewer in the browser.
 
 use crate::numbers::{Numbers, parse, parse_l2};
-use maille_io::numbers::USUAL_L2;
 use std::path::PathBuf;
 
 /// See it lock: the sheet, its limits and its locked states in the browser
@@ -37,7 +36,7 @@ pub struct Args {
     #[arg(long, default_value = "0:180:15", value_parser = parse, allow_hyphen_values = true)]
     directions: Numbers,
     /// Stretch - 1 held across the pull, of a bundle's map: a list, or first:last:step
-    #[arg(long, default_value = USUAL_L2, value_parser = parse_l2, allow_hyphen_values = true)]
+    #[arg(long, default_value = "-0.25:0.25:0.125", value_parser = parse_l2, allow_hyphen_values = true)]
     l2: Numbers,
     /// Threads of solves [default: all cores]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
@@ -113,7 +112,7 @@ mod with_viewer {
             input.compile(&input.design, maille::lattice::Cell::PRIMITIVE)?;
             let map = map_of_bundle(args.directions.0.clone(), args.l2.0.clone()).map_err(report)?;
             let cancel = interrupt::flag()?;
-            let total = map.directions_deg.len() * map.l2.len();
+            let total = map.question.tasks().len();
             let progress = Progress::new(total as u64, false);
             let found =
                 |row: &maille::record::LimitRow| progress.step(format!("{}°, l2 = {}", row.direction_deg, row.l2));

@@ -2,7 +2,7 @@
 
 use crate::{
     exit::{self, wrong},
-    interrupt,
+    interrupt, remedy,
 };
 use maille_io::builtin;
 use miette::{IntoDiagnostic, Result, WrapErr};
@@ -45,7 +45,7 @@ pub fn watch(designs: &[String], mut command: impl FnMut() -> Result<ExitCode>) 
     loop {
         let seen = contents(designs);
         if let Err(report) = command() {
-            eprintln!("{report:?}");
+            eprintln!("{:?}", remedy::added(report));
         }
         eprintln!("watching {}; Ctrl-C ends", designs.join(", "));
         loop {

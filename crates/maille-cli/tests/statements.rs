@@ -8,7 +8,7 @@ use maille::{
     model::Model,
     record::LimitRow,
     search::ExactOptions,
-    survey::{MapQuestion, Method, characterize},
+    survey::{CellChoice, MapQuestion, Method, characterize},
 };
 use maille_io::{
     record::{Counters, NamedRecord, Record, RunRecord},
@@ -27,12 +27,11 @@ fn limits(design: &Design, l2: &[f64]) -> Map {
 fn limits_along(design: &Design, directions: &[f64], l2: &[f64], words: &str) -> Map {
     let model = Model::compile(design, Cell::PRIMITIVE).unwrap();
     let rows: Mutex<Vec<LimitRow>> = Mutex::new(Vec::new());
-    let method = Method::Exact(ExactOptions::default());
-    let (directions_deg, cells) = (directions.to_vec(), vec![Cell::PRIMITIVE]);
-    let question = MapQuestion { method: method.clone(), cells, directions_deg, l2: l2.to_vec() };
+    let (method, cells) = (Method::Exact(ExactOptions::default()), CellChoice::Auto);
+    let question = MapQuestion { method, cells, directions_deg: directions.to_vec(), l2: l2.to_vec() };
     let found = |finished: maille::survey::Finished| rows.lock().unwrap().push(finished.row);
     let cancel = AtomicBool::new(false);
-    characterize(&[model], design.minor_radius, &method, directions, l2, &|_| true, &cancel, &found);
+    characterize(&[model], design.minor_radius, &question, &|_| true, &cancel, &found);
     let mut rows = rows.into_inner().unwrap();
     rows.sort_by(|a, b| a.l2.total_cmp(&b.l2).then(a.direction_deg.total_cmp(&b.direction_deg)));
     let run = RunRecord {

@@ -83,6 +83,25 @@ fn the_energy_method_claims_no_certificate_and_its_states_are_verified() {
     assert_eq!(said(&found, "deformation", "proved").len(), 2, "{found:#}");
 }
 
+/// F of the cell's four corners is not that of the lattice: what the lattice fixes of it is compared, the rest left open.
+#[test]
+fn strains_of_corners_are_left_open_and_false_ones_found() {
+    let dir = tempfile::tempdir().unwrap();
+    let line =
+        "characterize 3.1 --directions 30 --l2 0 --method energy --protocol corners --tau 0.1 --out record --quiet";
+    maille(dir.path(), line);
+    let (code, found) = verified(dir.path(), "record");
+    assert_eq!(code, 5, "{found:#}");
+    assert!(said(&found, "deformation", "open")[0].contains("of the fourth corner"), "{found:#}");
+    let specimen = Specimen { dir };
+    let l1: f64 = specimen.cell("l1").parse().unwrap();
+    specimen.forge_row(&[("l1", &(l1 + 1e-6).to_string())]);
+    specimen.found_by(4, "deformation", "l1 is");
+    specimen.forge_row(&[("l1", &l1.to_string())]);
+    specimen.forge_state(|state| state["a1"][0] = json!(state["a1"][0].as_f64().unwrap() + 1e-6));
+    specimen.found_by(4, "deformation", "along a diagonal of the cell");
+}
+
 /// Two chains of rings along x, not linked with each other.
 const CHAINS: &str = "schema = 1\nname = \"chains\"\nminor_radius = 0.1\nreference_radius = 1.0\n\
     [lattice]\na1 = [2.5, 0.0, 0.0]\na2 = [0.0, 2.5, 0.0]\n\

@@ -1,13 +1,10 @@
 //! Lists and ranges of numbers, as on the command line and in studies.
 
+use maille::question::Question;
+
 /// Numbers of `--directions` or `--l2`, in the order given, without repetition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Numbers(pub Vec<f64>);
-
-/// Directions of a map where none are named, degrees.
-pub const USUAL_DIRECTIONS: &str = "0:180:5";
-/// Lateral strains that are held where none are named.
-pub const USUAL_L2: &str = "-0.25:0.25:0.125";
 
 /// Most numbers in one list.
 const MOST: usize = 100_000;
@@ -99,15 +96,12 @@ pub fn distinct(values: impl IntoIterator<Item = f64>) -> Numbers {
     Numbers(out)
 }
 
-/// As [`parse`], for l2: a stretch of 0 or less is no sheet.
+/// As [`parse`], for l2.
 pub fn parse_l2(text: &str) -> Result<Numbers, String> {
     let numbers = parse(text)?;
-    match numbers.0.iter().find(|l2| **l2 <= -1.0) {
-        Some(l2) => {
-            Err(format!("l2 = {l2} would press the sheet to nothing; give values above -1 (0 holds the width)"))
-        }
-        None => Ok(numbers),
-    }
+    let check = |l2: &f64| Question::stretch_along(0.0).with_lateral(*l2).check();
+    numbers.0.iter().try_for_each(check).map_err(|e| format!("{}; {}", e.problem, e.help))?;
+    Ok(numbers)
 }
 
 #[cfg(test)]

@@ -1,5 +1,9 @@
-//! What is run for all doors: limits are asked for, records kept, plots drawn.
+//! What is run for all doors: limits are asked for, records kept, plots drawn, rows of records solved again.
 
 mod map;
+mod replay;
+mod side_by_side;
 
 pub use map::{Chain, Map, MapError, OpenMap, save_record};
+pub use replay::{ReplayError, Replayed, replay};
+pub use side_by_side::run_all;

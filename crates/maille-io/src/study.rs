@@ -9,9 +9,8 @@ use crate::{
 use maille::{
     design::Design,
     error::InvalidInput,
-    lattice::Cell,
     search::ExactOptions,
-    survey::{CellChoice, Method},
+    survey::{CellChoice, MapQuestion, Method},
 };
 use miette::{Diagnostic, NamedSource, SourceSpan};
 use serde::Deserialize;
@@ -26,8 +25,8 @@ pub struct Study {
     pub directions_deg: Vec<f64>,
     /// Stretch − 1 held across it.
     pub l2: Vec<f64>,
-    /// The cell to solve; `None` where it is chosen by need.
-    pub cell: Option<Cell>,
+    /// The cells to solve.
+    pub cell: CellChoice,
     /// Starts of a limit whose bound is not attained, where given.
     pub starts: Option<usize>,
     /// Seed of everything random.
@@ -176,23 +175,21 @@ impl Study {
         })
     }
 
-    /// How limits are found: starts and seed of the study, the rest as usual.
-    pub fn options(&self) -> ExactOptions {
+    /// What is asked of each design: starts and seed of the study, the rest as usual.
+    pub fn question(&self) -> MapQuestion {
         let usual = ExactOptions::default();
-        ExactOptions { starts: self.starts.unwrap_or(usual.starts), seed: self.seed, ..usual }
+        let starts = self.starts.unwrap_or(usual.starts);
+        MapQuestion {
+            method: Method::Exact(ExactOptions { starts, seed: self.seed, ..usual }),
+            cells: self.cell.clone(),
+            directions_deg: self.directions_deg.clone(),
+            l2: self.l2.clone(),
+        }
     }
 
     /// The map that each design gets, with its record in `out`.
     pub fn map(&self, out: Option<PathBuf>, overwrite: bool) -> Map {
-        Map {
-            method: Method::Exact(self.options()),
-            cell: self.cell.map_or(CellChoice::Auto, CellChoice::One),
-            directions_deg: self.directions_deg.clone(),
-            l2: self.l2.clone(),
-            quantity: Quantity::Stretch,
-            out,
-            overwrite,
-        }
+        Map { question: self.question(), quantity: Quantity::Stretch, out, overwrite }
     }
 
     fn parsed(text: &str) -> Result<Study, Wrong> {
@@ -205,10 +202,8 @@ impl Study {
             return Err(wrong(&raw.designs, "the study has no design", "add [[designs]] with design = \"1.1\""));
         }
         let cell = match &raw.cell {
-            Some(cell) if cell.get_ref() != "auto" => {
-                Some(cell.get_ref().parse().map_err(|e: InvalidInput| wrong(cell, e.problem, e.help))?)
-            }
-            _ => None,
+            Some(cell) => cell.get_ref().parse().map_err(|e: InvalidInput| wrong(cell, e.problem, e.help))?,
+            None => CellChoice::Auto,
         };
         let mut designs = Vec::new();
         for RawDesign { design, minor_radius, spacing, vary } in raw.designs.get_ref() {
@@ -299,7 +294,7 @@ mod tests {
         let text =
             "l2 = \"-0.25:0:0.125\"\n[[designs]]\ndesign = \"1.1\"\nspacing = 1\n[[designs]]\ndesign = \"a.toml\"\n";
         let study = Study::read("s", text).unwrap();
-        assert_eq!((study.directions_deg.len(), study.l2.len(), study.cell, study.seed), (13, 3, None, 1));
+        assert_eq!((study.directions_deg.len(), study.l2.len(), study.cell, study.seed), (13, 3, CellChoice::Auto, 1));
         assert_eq!(study.designs[0].spacing, [1.0]);
         assert!(study.designs[1].minor_radius.is_empty());
     }

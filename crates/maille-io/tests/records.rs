@@ -2,13 +2,24 @@
 
 use maille::design::Design;
 use maille::record::{ForceRow, LIMIT_COLUMNS, LimitRow, PoseRecord, StateRecord, Status};
+use maille::{
+    lattice::Cell,
+    model::Model,
+    search::ExactOptions,
+    survey::{MapQuestion, Method},
+};
 use maille_io::record::{
     Counters, ForceTable, Record, RecordError, RecordFolder, input_hash, read_forces, read_limits, read_run,
     read_states, write_forces, write_limits, write_states,
 };
+use maille_io::{
+    plot::Quantity,
+    run::{Map, OpenMap, ReplayError, Replayed, replay, run_all},
+};
 use serde_json::{Value, json};
 use std::fs;
 use std::path::Path;
+use std::sync::{Mutex, atomic::AtomicBool};
 
 fn design() -> Design {
     maille_io::read_design("1.1", maille_io::builtin("1.1").unwrap()).unwrap()
@@ -351,4 +362,48 @@ fn tables_of_forces_are_read_as_they_were_written() {
     }
     assert!(read_forces("forces.csv", "").unwrap_err().to_string().contains("the header is missing"));
     assert!(read_forces("forces.csv", &plain[..plain.len() - 1]).unwrap_err().to_string().contains("ends within"));
+}
+
+/// A map of 1.1 in its own cell, open, with its record in memory.
+fn open_map(directions_deg: &[f64]) -> OpenMap {
+    let (method, cells) = (Method::Exact(ExactOptions::default()), Cell::PRIMITIVE.into());
+    let question = MapQuestion::new(method, cells, Some(directions_deg.to_vec()), Some(vec![-0.125, 0.0])).unwrap();
+    let map = Map { question, quantity: Quantity::default(), out: None, overwrite: false };
+    let models = map.cells(&design()).into_iter().map(|cell| Model::compile(&design(), cell).unwrap()).collect();
+    map.open(&design(), models).unwrap()
+}
+
+#[test]
+fn maps_run_side_by_side_as_each_by_itself() {
+    let heard = Mutex::new(Vec::new());
+    let found = |name: &str, row: &LimitRow| heard.lock().unwrap().push((name.to_owned(), row.direction_deg, row.l2));
+    let cancel = AtomicBool::new(false);
+    let records = run_all(vec![("a", open_map(&[0.0, 25.0])), ("b", open_map(&[45.0]))], &cancel, &found).unwrap();
+    let mut heard = heard.into_inner().unwrap();
+    heard.sort_by(|a, b| a.partial_cmp(b).unwrap());
+    let of = |name: &str, direction_deg, l2| (name.to_owned(), direction_deg, l2);
+    let all = [("a", 0.0), ("a", 25.0), ("b", 45.0)].map(|(name, d)| [of(name, d, -0.125), of(name, d, 0.0)]).concat();
+    assert_eq!(heard, all);
+    let alone = open_map(&[45.0]).run(&cancel, &|_, _| ()).unwrap();
+    assert_eq!((records.len(), &records[1].states, &records[1].run), (2, &alone.states, &alone.run));
+}
+
+#[test]
+fn rows_of_a_record_come_out_again_and_an_edited_one_does_not() {
+    let cancel = AtomicBool::new(false);
+    let mut record = open_map(&[0.0, 25.0]).run(&cancel, &|_, _| ()).unwrap();
+    let l1 = record.rows[1].l1.as_mut().unwrap();
+    *l1 += 1e-8;
+    record.rows[3].status = Status::Uncertified;
+    // The order is that of the question, and a row may be asked for twice.
+    let rows: Vec<&LimitRow> = [3, 0, 1, 2, 0].map(|k| &record.rows[k]).to_vec();
+    let replayed = replay(&record, &rows, &cancel).unwrap();
+    assert_eq!(replayed.iter().map(Replayed::agrees).collect::<Vec<_>>(), [false, true, false, true, true]);
+    for (row, asked) in replayed.iter().zip(rows) {
+        assert_eq!((row.then, row.now.row.direction_deg, row.now.row.l2), (asked, asked.direction_deg, asked.l2));
+        assert_eq!(row.now.state.poses.len(), design().elements.len());
+    }
+    assert!(replay(&record, &[], &cancel).unwrap().is_empty());
+    record.run.parameters["method"] = json!("guess");
+    assert!(matches!(replay(&record, &[&record.rows[0]], &cancel), Err(ReplayError::Record(_))));
 }

@@ -3,7 +3,7 @@
 use crate::{
     design::Design,
     error,
-    map::{Asked, Record},
+    map::{self, Record},
 };
 use maille::record::{LimitRow, StateRecord};
 use maille_io::{
@@ -39,8 +39,14 @@ fn closed() -> PyErr {
 impl OpenMap {
     /// Opens the record in `out`, with what an earlier run has left there.
     #[new]
-    fn new(design: &Design, asked: Asked, out: Option<PathBuf>, overwrite: bool) -> PyResult<Self> {
-        let open = asked.open(design, out, overwrite)?;
+    fn new(
+        design: &Design,
+        question: &str,
+        quantity_name: &str,
+        out: Option<PathBuf>,
+        overwrite: bool,
+    ) -> PyResult<Self> {
+        let open = map::open(design, question, quantity_name, out, overwrite)?;
         Ok(Self { name: design.design.name.clone(), open: Mutex::new(Some(open)), finished: Mutex::new(None) })
     }
 

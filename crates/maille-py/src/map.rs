@@ -6,14 +6,15 @@ use crate::{
     wait::{Step, wait},
 };
 use maille::{
+    error::InvalidInput,
     lattice::Across,
     record::{Cell, Kind, LIMIT_COLUMNS},
     relaxation::limit::EnergyOptions,
     search::ExactOptions,
-    survey::{CellChoice, Method},
+    survey::{MapQuestion, Method},
 };
 use maille_io::{
-    numbers::{USUAL_DIRECTIONS, USUAL_L2, distinct, parse, parse_l2},
+    numbers::{distinct, parse},
     plot::Quantity,
     record::NamedRecord,
     run::{Map, save_record},
@@ -26,14 +27,7 @@ use pyo3::{
 use serde_json::Value;
 use std::path::PathBuf;
 
-/// Directions and lateral strains of a map where none are named, as lists in text.
-#[pyfunction]
-pub fn usual() -> (&'static str, &'static str) {
-    (USUAL_DIRECTIONS, USUAL_L2)
-}
-
-/// Numbers in a list or a range, as on the command line, or in a sequence; each once. `name` is that of the argument:
-/// values of l2 must be above −1.
+/// Numbers in a list or a range, as on the command line, or in a sequence; each once. `name` is that of the argument.
 #[pyfunction]
 #[pyo3(signature = (name, text=None, values=None))]
 pub fn numbers(name: &str, text: Option<&str>, values: Option<Vec<f64>>) -> PyResult<Vec<f64>> {
@@ -48,10 +42,6 @@ pub fn numbers(name: &str, text: Option<&str>, values: Option<Vec<f64>>) -> PyRe
     if let Some(k) = list.0.iter().position(|x| !x.is_finite()) {
         return Err(error::element(name, k, &[list.0[k]], "is not finite", "give finite numbers"));
     }
-    if name == "l2" {
-        let text: Vec<String> = list.0.iter().map(|x| format!("{x:?}")).collect();
-        return Ok(parse_l2(&text.join(",")).map_err(wrong)?.0);
-    }
     Ok(list.0)
 }
 
@@ -61,14 +51,6 @@ fn quantity(name: &str) -> PyResult<Quantity> {
         "l1" => Ok(Quantity::L1),
         "lambda1" => Ok(Quantity::Lambda1),
         _ => Err(error::argument("quantity", format!("\"{name}\" is none"), "give stretch, l1 or lambda1")),
-    }
-}
-
-/// `auto`, or a cell.
-pub fn cell_choice(text: &str) -> PyResult<CellChoice> {
-    match text {
-        "auto" => Ok(CellChoice::Auto),
-        _ => text.parse().map(CellChoice::One).map_err(|e| error::invalid(&e)),
     }
 }
 
@@ -87,86 +69,78 @@ fn energy_options(named: &str, seed: u64) -> PyResult<EnergyOptions> {
         }
         all[key] = value.clone();
     }
-    let options: EnergyOptions = serde_json::from_value(all.clone()).map_err(|e| wrong(e.to_string(), &all))?;
-    let positive = [
-        ("alpha", options.alpha),
-        ("corner_weight", options.corner_weight),
-        ("gradient_tolerance", options.gradient_tolerance),
-        ("tau", options.tau),
-        ("l1_step", options.l1_step),
-        ("l1_resolution", options.l1_resolution),
-        ("sample_spacing_rad", options.sample_spacing_rad.unwrap_or(1.0)),
-    ];
-    if options.flat_points != 0 && !EnergyOptions::FLAT_POINTS.contains(&options.flat_points) {
-        let range = EnergyOptions::FLAT_POINTS;
-        let problem = format!("flat_points = {} is out of range", options.flat_points);
-        let remedy = format!("give 0, or a whole number from {} to {}", range.start(), range.end());
-        return Err(error::argument("energy", problem, remedy));
-    }
-    match positive.into_iter().find(|(_, x)| !(x.is_finite() && *x > 0.0)) {
-        Some((name, x)) => {
-            Err(error::argument("energy", format!("{name} = {x} is not positive"), "give a positive number"))
-        }
-        None => Ok(options),
-    }
+    serde_json::from_value(all.clone()).map_err(|e| wrong(e.to_string(), &all))
 }
 
-/// What a map is asked for, a dictionary in Python.
-#[derive(FromPyObject)]
-#[pyo3(from_item_all)]
-pub struct Asked {
-    directions: Vec<f64>,
-    l2: Vec<f64>,
+/// A question that was refused, with the names of arguments.
+fn refused(wrong: &InvalidInput) -> PyErr {
+    let plain = |text: &str| text.replace('`', "");
+    let field = match wrong.field.as_str() {
+        "direction_deg" | "directions_deg" => "directions",
+        field @ ("method" | "l2" | "starts" | "cell") => field,
+        _ => "energy",
+    };
+    error::argument(field, plain(&wrong.problem), plain(&wrong.help))
+}
+
+/// What a map asks, as JSON. `energy` has options of the energy method, as JSON.
+#[pyfunction]
+#[pyo3(signature = (*, directions, l2, lateral_free, shear_free, compression, method, cell, starts, seed, energy))]
+pub fn map_question(
+    directions: Option<Vec<f64>>,
+    l2: Option<Vec<f64>>,
     lateral_free: bool,
     shear_free: bool,
     compression: bool,
-    method: String,
-    cell: String,
+    method: &str,
+    cell: &str,
     starts: usize,
     seed: u64,
-    energy: String,
-    quantity_name: String,
+    energy: &str,
+) -> PyResult<String> {
+    let across = Across { lateral_free, shear_free };
+    let method = match method {
+        "exact" => Ok(Method::Exact(ExactOptions { starts, seed, across, compression })),
+        "energy" => Method::energy(energy_options(energy, seed)?, across, compression),
+        other => return Err(error::argument("method", format!("\"{other}\" is none"), "give exact or energy")),
+    };
+    let question = method.and_then(|method| MapQuestion::new(method, cell.parse()?, directions, l2));
+    Ok(write(&question.map_err(|e| refused(&e))?))
 }
 
-impl Asked {
-    /// The map of a design, open.
-    pub fn open(self, design: &Design, out: Option<PathBuf>, overwrite: bool) -> PyResult<maille_io::run::OpenMap> {
-        let across = Across { lateral_free: self.lateral_free, shear_free: self.shear_free };
-        let (starts, seed) = (self.starts, self.seed);
-        let method = match self.method.as_str() {
-            "exact" => Method::Exact(ExactOptions { starts, seed, across, compression: self.compression }),
-            "energy" if self.compression => {
-                let remedy = "leave compression out, or take method=\"exact\"";
-                return Err(error::argument("method", "the energy method has no limits in compression", remedy));
-            }
-            "energy" if across.any() => {
-                let remedy = "leave lateral and shear fixed, or take method=\"exact\"";
-                return Err(error::argument("method", "the energy method holds width and shear", remedy));
-            }
-            "energy" => Method::Energy(energy_options(&self.energy, seed)?),
-            other => return Err(error::argument("method", format!("\"{other}\" is none"), "give exact or energy")),
-        };
-        let quantity = quantity(&self.quantity_name)?;
-        let (cell, directions_deg, l2) = (cell_choice(&self.cell)?, self.directions, self.l2);
-        let map = Map { method, cell, directions_deg, l2, quantity, out, overwrite };
-        let models = map.cells(&design.design).into_iter().map(|cell| design.compile(cell)).collect::<PyResult<_>>()?;
-        map.open(&design.design, models).map_err(|e| error::record(&e))
-    }
+/// The map of a design, open; `question` is what [`map_question`] gives.
+pub fn open(
+    design: &Design,
+    question: &str,
+    quantity_name: &str,
+    out: Option<PathBuf>,
+    overwrite: bool,
+) -> PyResult<maille_io::run::OpenMap> {
+    let question = serde_json::from_str(question).map_err(|e| error::other(&format!("no question: {e}")))?;
+    let map = Map { question, quantity: quantity(quantity_name)?, out, overwrite };
+    let models = map.cells(&design.design).into_iter().map(|cell| design.compile(cell)).collect::<PyResult<_>>()?;
+    map.open(&design.design, models).map_err(|e| error::record(&e))
+}
+
+/// As JSON.
+pub fn write(value: &impl serde::Serialize) -> String {
+    serde_json::to_string(value).expect("what maille writes has no map with odd keys")
 }
 
 /// Finds the limits of a map, as `maille characterize` does.
 #[pyfunction]
-#[pyo3(signature = (design, asked, *, out, overwrite, progress, threads))]
+#[pyo3(signature = (design, question, quantity_name, *, out, overwrite, progress, threads))]
 pub fn characterize(
     py: Python<'_>,
     design: &Design,
-    asked: Asked,
+    question: &str,
+    quantity_name: &str,
     out: Option<PathBuf>,
     overwrite: bool,
     progress: Option<Bound<'_, PyAny>>,
     threads: Option<usize>,
 ) -> PyResult<Record> {
-    let open = asked.open(design, out, overwrite)?;
+    let open = open(design, question, quantity_name, out, overwrite)?;
     let run = wait(py, threads, progress.as_ref(), |cancel, tell| {
         tell(Step::More(open.left()));
         open.run(cancel, &|_, _| tell(Step::Done))
@@ -220,14 +194,12 @@ impl Record {
 
     /// Rows with their states, both as JSON.
     fn limits(&self) -> Vec<(String, String)> {
-        let row = |row| serde_json::to_string(row).expect("a row has no map with odd keys");
-        self.record.rows.iter().map(row).zip(self.states()).collect()
+        self.record.rows.iter().map(write).zip(self.states()).collect()
     }
 
     /// The states, each a JSON document as in `states.jsonl`.
     fn states(&self) -> Vec<String> {
-        let json = |state| serde_json::to_string(state).expect("a state has no map with odd keys");
-        self.record.states.iter().map(json).collect()
+        self.record.states.iter().map(write).collect()
     }
 
     /// `run.json`.

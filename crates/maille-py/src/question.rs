@@ -1,13 +1,12 @@
 //! Single questions: one strain as large or small as can be, the thickest wire, the widest gap.
 
-use crate::{design::Design, error, map::cell_choice, wait::wait};
+use crate::{design::Design, error, wait::wait};
 use maille::{
     answer::Answer,
     lattice::Cell,
     question::{Goal, Question, Sense, Strain},
     search::extreme::Extreme,
     sheet::Sheet,
-    survey::CellChoice,
 };
 use maille_io::answer::{self, StrainAnswer};
 use pyo3::prelude::*;
@@ -44,7 +43,7 @@ pub fn limit(
     let goal = Goal::Strain { component: goal, direction_deg, fix, free };
     let question = Question { starts, seed, ..Question::new(goal, sense) };
     question.check().map_err(|e| error::invalid(&e))?;
-    let sheet = design.sheet(cell_choice(cell)?)?;
+    let sheet = design.sheet(cell.parse().map_err(|e| error::invalid(&e))?)?;
     let found = ask(py, &sheet, &question, Some(1))?;
     let model = sheet.model_of(&found);
     let Some(answer) = StrainAnswer::new(&design.design.name, &question, &model, &found) else {
@@ -66,7 +65,7 @@ pub fn extreme(
     seed: u64,
     threads: Option<usize>,
 ) -> PyResult<(String, Option<Design>)> {
-    let sheet = design.sheet(CellChoice::One(Cell::PRIMITIVE))?;
+    let sheet = design.sheet(Cell::PRIMITIVE.into())?;
     let model = sheet.model();
     if model.links.is_empty() {
         let remedy = "rings that hold each other bound the wire, and nothing else does";

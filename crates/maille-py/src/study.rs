@@ -10,7 +10,6 @@ use serde_json::json;
 #[pyfunction]
 pub fn study(name: &str, text: &str) -> PyResult<String> {
     let study = Study::read(name, text).map_err(|e| error::study(name, &e))?;
-    let exact = study.options();
     let designs = study.designs.iter().map(|design| {
         let variants = design.variants();
         let variants = variants.iter().map(|v| {
@@ -20,11 +19,7 @@ pub fn study(name: &str, text: &str) -> PyResult<String> {
         json!({ "design": design.design, "variants": variants.collect::<Vec<_>>() })
     });
     Ok(json!({
-        "directions": study.directions_deg,
-        "l2": study.l2,
-        "cell": study.cell.map_or("auto".to_owned(), |cell| cell.to_string()),
-        "starts": exact.starts,
-        "seed": exact.seed,
+        "question": study.question(),
         "designs": designs.collect::<Vec<_>>(),
     })
     .to_string())

@@ -3,6 +3,7 @@
 use crate::{
     design::Design,
     error,
+    map::write,
     wait::{Step, wait},
 };
 use maille::{
@@ -35,17 +36,13 @@ fn cell_of(text: &str) -> PyResult<Cell> {
     text.parse().map_err(|e| error::invalid(&e))
 }
 
-fn json(value: &impl serde::Serialize) -> String {
-    serde_json::to_string(value).expect("a vertex has no map with odd keys")
-}
-
 fn read<T: DeserializeOwned>(texts: &[String]) -> PyResult<Vec<T>> {
     let read = |text: &String| serde_json::from_str(text).map_err(|e| error::other(&format!("no ray: {e}")));
     texts.iter().map(read).collect()
 }
 
 fn surface(found: maille::survey::surface::Boundary) -> Surface {
-    (found.vertices.iter().map(json).collect(), found.triangles, found.arch)
+    (found.vertices.iter().map(write).collect(), found.triangles, found.arch)
 }
 
 /// The surface, as `maille boundary` finds it.
@@ -94,7 +91,7 @@ impl SurfaceFolder {
         let head = BoundaryHead::new(&design.design, cell_of(cell)?, &options);
         let opened = maille_io::boundary::SurfaceFolder::open(&folder, &head, overwrite);
         let (open, known) = opened.map_err(|e| error::record(&e))?;
-        Ok((Self { open: Mutex::new(Some(open)) }, known.iter().map(json).collect()))
+        Ok((Self { open: Mutex::new(Some(open)) }, known.iter().map(write).collect()))
     }
 
     /// Keeps the ends of rays, each as JSON.
@@ -127,7 +124,7 @@ pub fn solve_rays(
         let solver = RaySolver::new(&model, &options);
         rays.iter().map_while(|ray| solver.solve(ray, cancel)).collect::<Vec<_>>()
     })?;
-    Ok(ends.iter().map(json).collect())
+    Ok(ends.iter().map(write).collect())
 }
 
 /// The surface with rays solved by `solve`: it gets the rays of a pass, and whether they are new, and gives their ends. `known` are
@@ -151,7 +148,7 @@ pub fn boundary_by(
         if rays.is_empty() || cancel.load(Ordering::Relaxed) {
             return vec![None; rays.len()];
         }
-        let texts: Vec<String> = rays.iter().map(json).collect();
+        let texts: Vec<String> = rays.iter().map(write).collect();
         let ends = solve.call1((texts, new)).and_then(|ends| read::<BoundaryVertex>(&ends.extract::<Vec<String>>()?));
         match ends {
             Ok(ends) => ends.into_iter().map(Some).collect(),

@@ -113,7 +113,7 @@ impl Verifier {
             ..row.clone()
         };
         let found = gaps_and_links(&limit, &here, start, unit);
-        strain::deformation(&limit, state, here.lattice, start.sheet.lattice, &cell).is_ok()
+        strain::deformation(&limit, state, here.lattice, start.sheet.lattice, &cell, false).is_ok()
             && found.iter().all(|finding| finding.verdict == Verdict::Proved)
     }
 

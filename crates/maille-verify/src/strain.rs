@@ -37,14 +37,21 @@ fn condition(lattice: [Vec3; 2]) -> f64 {
 }
 
 /// Compares the state's lattice with all that the row says of it; gives the largest difference, or what does not fit.
+///
+/// With the thesis's `corners` as targets, F is that of the middle of the cell's four corners, F (A1 + A2) = x4 − x1 for the
+/// fourth corner x4, which no record has, and F (A1 − A2) = A1′ − A2′: the row is compared with the F that the state names, and that
+/// with the lattice along the one diagonal.
 pub(crate) fn deformation(
     row: &Row,
     state: &State,
     now: [Vec3; 2],
     then: [Vec3; 2],
     cell: &Cell,
+    corners: bool,
 ) -> Result<f64, String> {
-    let f = gradient(now, then).ok_or("the design's lattice vectors are parallel")?;
+    let of_lattice = gradient(now, then).ok_or("the design's lattice vectors are parallel")?;
+    let written = Matrix2::from(state.deformation_gradient).transpose();
+    let f = if corners { written } else { of_lattice };
     let (d, side) = axes(row.direction_deg);
     let (l1, l2) = (d.dot(&(f * d)) - 1.0, side.dot(&(f * side)) - 1.0);
     let (shear, lean) = (d.dot(&(f * side)), side.dot(&(f * d)));
@@ -81,9 +88,16 @@ pub(crate) fn deformation(
     if mean - half > 1e-4 {
         compare("stretch2", row.stretch2, (mean - half).sqrt())?;
     }
-    let entries = [f[(0, 0)], f[(0, 1)], f[(1, 0)], f[(1, 1)]];
-    for (written, found) in state.deformation_gradient.as_flattened().iter().zip(entries) {
-        compare("an entry of deformation_gradient", Some(*written), found)?;
+    if corners {
+        let diagonal = columns(then) * Vector2::new(1.0, -1.0);
+        let (written, found) = (written * diagonal, of_lattice * diagonal);
+        for k in 0..2 {
+            compare("deformation_gradient along a diagonal of the cell", Some(written[k]), found[k])?;
+        }
+    } else {
+        for (written, found) in written.iter().zip(&of_lattice) {
+            compare("an entry of deformation_gradient", Some(*written), *found)?;
+        }
     }
     // The exact method keeps the lattice in its plane. The energy method leaves a little, which counts in C by its square.
     let z = now[0].z.abs().max(now[1].z.abs());

@@ -23,7 +23,7 @@ pub use refusal::Refusal;
 pub use routes::router;
 
 use api::Subject;
-use maille::{lattice::Cell, record::LimitRow};
+use maille::record::LimitRow;
 use maille_io::{record::Record, run::Map};
 use std::{
     net::{Ipv4Addr, SocketAddr},
@@ -79,10 +79,7 @@ pub fn solve_map(
     found: &(dyn Fn(&LimitRow) + Sync),
 ) -> Result<Record, ViewError> {
     let subject = Subject { name: opened.name.clone(), text: opened.text.clone(), minor_radius: None, spacing: None };
-    let read = subject.read()?;
-    let models = map.cells(&read.design).into_iter().map(|cell: Cell| read.compile(&read.design, cell));
-    let models = models.collect::<Result<Vec<_>, _>>()?;
-    let open = map.open(&read.design, models).map_err(Refusal::fault)?;
+    let (.., open) = solve::open(map, &subject)?;
     Ok(open.run(cancel, &|row, _| found(row)).map_err(Refusal::fault)?)
 }
 

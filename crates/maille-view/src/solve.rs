@@ -1,9 +1,9 @@
 //! Maps that are asked for, sent as they are found.
 
 use crate::{
-    api::{Refused, Solve, SolveEvent},
+    api::{Refused, Solve, SolveEvent, Subject},
     refusal::Refusal,
-    sheet::{limit, sheet},
+    sheet::{Read, limit, sheet},
     work::{CancelOnDrop, Ticket, Work},
 };
 use axum::{
@@ -16,9 +16,12 @@ use maille::{
     model::Model,
     record::{LimitRow, StateRecord},
     search::ExactOptions,
-    survey::{CellChoice, Method},
+    survey::{CellChoice, MapQuestion, Method},
 };
-use maille_io::{plot::Quantity, run::Map};
+use maille_io::{
+    plot::Quantity,
+    run::{Map, OpenMap},
+};
 use std::{
     borrow::Cow,
     convert::Infallible,
@@ -35,30 +38,17 @@ const MOST_LIMITS: usize = 2_000;
 /// The stream says something at least this often, so that a socket that has closed is found.
 const HEARTBEAT: Duration = Duration::from_millis(500);
 
-/// The map that is asked for: as `maille characterize` without `--out`.
+/// The map that is asked for: as `maille characterize` without `--out`. With a free width, l2 is `[0]`.
 pub fn map_of(directions_deg: Vec<f64>, l2: Vec<f64>, lateral_free: bool) -> Result<Map, Refusal> {
-    if directions_deg.is_empty() || l2.is_empty() || directions_deg.len().saturating_mul(l2.len()) > MOST_LIMITS {
-        return Err(Refusal::wrong("there are no limits to find, or too many", format!("ask for 1 to {MOST_LIMITS}")));
-    }
-    if let Some(d) = directions_deg.iter().find(|d| d.is_nan() || d.abs() > 1e6) {
-        return Err(Refusal::wrong(format!("{d} is no direction"), "give degrees from −1000000 to 1000000"));
-    }
-    if let Some(x) = l2.iter().find(|x| x.is_nan() || **x <= -1.0 || **x > 1e6) {
-        return Err(Refusal::wrong(format!("l2 = {x} is no lateral strain"), "give numbers above −1"));
-    }
-    if lateral_free && l2 != [0.0] {
-        return Err(Refusal::wrong("l2 is held, and the width is free", "with a free width, l2 is [0]"));
+    if directions_deg.len().saturating_mul(l2.len()) > MOST_LIMITS {
+        return Err(Refusal::wrong("there are too many limits to find", format!("ask for {MOST_LIMITS} at most")));
     }
     let across = Across { lateral_free, shear_free: false };
-    Ok(Map {
-        method: Method::Exact(ExactOptions { across, ..ExactOptions::default() }),
-        cell: CellChoice::Auto,
-        directions_deg,
-        l2,
-        quantity: Quantity::default(),
-        out: None,
-        overwrite: false,
-    })
+    let method = Method::Exact(ExactOptions { across, ..ExactOptions::default() });
+    let l2 = Some(l2).filter(|l2| !(lateral_free && *l2 == [0.0]));
+    let question = MapQuestion::new(method, CellChoice::Auto, Some(directions_deg), l2)
+        .map_err(|e| Refusal::wrong(e.to_string(), e.help))?;
+    Ok(Map { question, quantity: Quantity::default(), out: None, overwrite: false })
 }
 
 /// Starts the solve and answers with its events. It ends when the answer is dropped.
@@ -125,11 +115,17 @@ fn with_cell<'a>(models: &'a [Model], cell: &str) -> Cow<'a, [Model]> {
     }
 }
 
-fn solve(map: &Map, request: &Solve, cancel: &AtomicBool, send: &UnboundedSender<SolveEvent>) -> Result<(), Refusal> {
-    let read = request.subject.read()?;
-    let models = map.cells(&read.design).into_iter().map(|cell: Cell| read.compile(&read.design, cell));
+/// The subject with its models, and the map of it, open.
+pub fn open(map: &Map, subject: &Subject) -> Result<(Read, Vec<Model>, OpenMap), Refusal> {
+    let read = subject.read()?;
+    let models = map.cells(&read.design).into_iter().map(|cell| read.compile(&read.design, cell));
     let models = models.collect::<Result<Vec<_>, _>>()?;
     let open = map.open(&read.design, models.clone()).map_err(Refusal::fault)?;
+    Ok((read, models, open))
+}
+
+fn solve(map: &Map, request: &Solve, cancel: &AtomicBool, send: &UnboundedSender<SolveEvent>) -> Result<(), Refusal> {
+    let (read, models, open) = open(map, &request.subject)?;
     let say = |event| drop(send.send(event));
     say(SolveEvent::Begun(open.total()));
     // Sheets come before their limits, and each once.

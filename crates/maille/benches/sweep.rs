@@ -5,7 +5,7 @@ use maille::{
     lattice::Cell,
     model::Model,
     search::ExactOptions,
-    survey::{Method, characterize, tasks},
+    survey::{CellChoice, MapQuestion, Method, characterize},
 };
 use maille_io::{builtin, read_design};
 use std::sync::atomic::AtomicBool;
@@ -19,12 +19,11 @@ fn main() {
 fn map(bencher: Bencher<'_, '_>, threads: usize) {
     let design = read_design("1.1", builtin("1.1").expect("built in")).expect("valid");
     let models = [Model::compile(&design, Cell::PRIMITIVE).expect("compiles")];
-    let directions: Vec<f64> = (0..37).map(|k| 5.0 * f64::from(k)).collect();
-    let l2 = [-0.25, -0.125, 0.0, 0.125, 0.25];
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
     let method = Method::Exact(ExactOptions::default());
-    bencher.counter(ItemsCount::new(tasks(&directions, &l2).len())).bench_local(|| {
+    let question = MapQuestion::new(method, CellChoice::Auto, None, None).expect("the usual map");
+    bencher.counter(ItemsCount::new(question.tasks().len())).bench_local(|| {
         let (all, cancel) = (|_| true, AtomicBool::new(false));
-        pool.install(|| characterize(&models, None, &method, &directions, &l2, &all, &cancel, &|found| drop(found)));
+        pool.install(|| characterize(&models, None, &question, &all, &cancel, &|found| drop(found)));
     });
 }

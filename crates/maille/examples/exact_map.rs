@@ -10,7 +10,7 @@ use maille::{
     model::Model,
     record::Status,
     search::ExactOptions,
-    survey::{Finished, Method, characterize},
+    survey::{CellChoice, Finished, MapQuestion, Method, characterize},
 };
 use maille_io::{chapter6, read_design};
 use std::{
@@ -50,19 +50,12 @@ fn main() {
             let rows = Mutex::new(Vec::<Finished>::new());
             let starts = option("starts", "4").parse().expect("a number");
             let method = Method::Exact(ExactOptions { starts, ..ExactOptions::default() });
+            let map = MapQuestion::new(method, CellChoice::Auto, Some(directions.clone()), Some(L2.to_vec()));
+            let question = map.expect("a map that can be asked");
             let started = Instant::now();
-            characterize(
-                &models,
-                Some(radius),
-                &method,
-                &directions,
-                &L2,
-                &|_| true,
-                &AtomicBool::new(false),
-                &|row| {
-                    rows.lock().expect("no panic").push(row);
-                },
-            );
+            characterize(&models, Some(radius), &question, &|_| true, &AtomicBool::new(false), &|row| {
+                rows.lock().expect("no panic").push(row);
+            });
             let took = started.elapsed().as_secs_f64();
             let rows = rows.into_inner().expect("no panic");
             let mut line = format!("{name:>4} r = {radius:<5}");

@@ -165,8 +165,8 @@ impl Question {
                 finite("direction_deg", *direction_deg)?;
                 finite("l2", *l2)?;
                 if *l2 <= -1.0 {
-                    let help = "a width of 0 is l2 = -1; give a larger l2";
-                    return Err(InvalidInput::new("l2", format!("no sheet has l2 = {l2}"), help));
+                    let problem = format!("l2 = {l2} would press the sheet to nothing");
+                    return Err(InvalidInput::new("l2", problem, "give values above -1 (0 holds the width)"));
                 }
             }
             Goal::Strain { direction_deg, fix, .. } => {

@@ -12,7 +12,7 @@ use maille::{
         target::Protocol,
     },
     search::ExactOptions,
-    survey::{Finished, Method, Task, characterize, tasks},
+    survey::{CellChoice, Finished, MapQuestion, Method, Task, characterize, tasks},
 };
 use std::sync::{Mutex, atomic::AtomicBool};
 
@@ -23,19 +23,11 @@ fn rows(model: &Model, options: &EnergyOptions, tasks: &[Task]) -> Vec<Finished>
         list.sort_by(f64::total_cmp);
         list.dedup();
     }
-    let method = Method::Energy(options.clone());
-    characterize(
-        std::slice::from_ref(model),
-        None,
-        &method,
-        &directions,
-        &l2,
-        &|_| true,
-        &AtomicBool::new(false),
-        &|row| {
-            out.lock().unwrap().push(row);
-        },
-    );
+    let (cells, directions_deg) = (CellChoice::Auto, directions);
+    let question = MapQuestion { method: Method::Energy(options.clone()), cells, directions_deg, l2 };
+    characterize(std::slice::from_ref(model), None, &question, &|_| true, &AtomicBool::new(false), &|row| {
+        out.lock().unwrap().push(row);
+    });
     let mut out = out.into_inner().unwrap();
     let key = |f: &Finished| tasks.iter().position(|t| t.l2 == f.row.l2 && t.direction_deg == f.row.direction_deg);
     out.sort_by_key(key);

@@ -1,16 +1,20 @@
 //! What a question refuses, what it stores, and that it is answered as a map answers it.
 
+mod common;
+
+use common::map;
 use maille::{
     Across, CellChoice, Goal, Question, Sense, Sheet, Status, Strain,
     lattice::Cell,
+    relaxation::limit::EnergyOptions,
     search::ExactOptions,
-    survey::{Method, characterize},
+    survey::{Finished, MapQuestion, Method},
 };
-use std::sync::{Mutex, atomic::AtomicBool};
+use std::sync::atomic::AtomicBool;
 
 fn sheet(name: &str) -> Sheet {
     let design = maille_io::read_design(name, maille_io::builtin(name).unwrap()).unwrap();
-    Sheet::in_cells(&design, CellChoice::One(Cell::PRIMITIVE)).unwrap()
+    Sheet::in_cells(&design, Cell::PRIMITIVE.into()).unwrap()
 }
 
 #[test]
@@ -38,6 +42,55 @@ fn what_cannot_be_asked_is_refused_with_its_field() {
     assert_eq!(stretch.check(), Ok(()));
 }
 
+/// A map is refused where one of its limits is, and for what its method cannot do.
+#[test]
+fn what_a_map_cannot_ask_is_refused_with_its_field() {
+    let map = |method: &Method, directions: &[f64], l2: Option<&[f64]>| {
+        MapQuestion::new(method.clone(), CellChoice::Auto, Some(directions.to_vec()), l2.map(<[f64]>::to_vec))
+    };
+    let exact = Method::Exact(ExactOptions::default());
+    let free = Across { lateral_free: true, shear_free: false };
+    let width_free = Method::Exact(ExactOptions { across: free, ..ExactOptions::default() });
+    let without_starts = Method::Exact(ExactOptions { starts: 0, ..ExactOptions::default() });
+    let energy = |change: fn(&mut EnergyOptions)| {
+        let mut options = EnergyOptions::default();
+        change(&mut options);
+        Method::Energy(options)
+    };
+    for (asked, field) in [
+        (map(&exact, &[], None), "directions_deg"),
+        (map(&exact, &[0.0], Some(&[])), "l2"),
+        (map(&exact, &[0.0, f64::NAN], None), "direction_deg"),
+        (map(&exact, &[0.0], Some(&[0.0, -1.0])), "l2"),
+        (map(&width_free, &[0.0], Some(&[0.0])), "l2"),
+        (map(&without_starts, &[0.0], None), "starts"),
+        (map(&energy(|o| o.tau = 0.0), &[0.0], None), "tau"),
+        (map(&energy(|o| o.sample_spacing_rad = Some(f64::NAN)), &[0.0], None), "sample_spacing_rad"),
+        (map(&energy(|o| o.flat_points = 15), &[0.0], None), "flat_points"),
+    ] {
+        assert_eq!(asked.expect_err(field).field, field);
+    }
+    let refused =
+        |across, compression| Method::energy(EnergyOptions::default(), across, compression).unwrap_err().field;
+    assert_eq!([refused(Across::HELD, true), refused(free, false)], ["method", "method"]);
+    assert_eq!(map(&width_free, &[0.0], None).unwrap().l2, [0.0]);
+    assert_eq!(map(&energy(|o| o.flat_points = 0), &[0.0], None).unwrap().l2.len(), 5);
+}
+
+/// As run.json has it: cells by name, or as a list of those that were compiled.
+#[test]
+fn a_map_is_what_was_written() {
+    let usual = MapQuestion::new(Method::Exact(ExactOptions::default()), CellChoice::Auto, None, None).unwrap();
+    assert_eq!((usual.directions_deg.len(), usual.directions_deg[36]), (37, 180.0));
+    for (cells, text) in [("auto".parse().unwrap(), "\"auto\""), ("1,0;-1,2".parse().unwrap(), "[\"1,0;-1,2\"]")] {
+        let question = MapQuestion { cells, ..usual.clone() };
+        let written = serde_json::to_string(&question).unwrap();
+        assert!(written.contains(&format!("\"cells\":{text}")), "{written}");
+        assert_eq!(serde_json::from_str::<MapQuestion>(&written).unwrap(), question);
+    }
+    assert!("2y1".parse::<CellChoice>().is_err());
+}
+
 #[test]
 fn a_question_is_what_was_written() {
     let free = Across { lateral_free: true, shear_free: false };
@@ -56,14 +109,8 @@ fn a_question_is_what_was_written() {
 #[test]
 fn a_stretch_is_answered_as_in_a_map() {
     let sheet = sheet("3.1");
-    let found = Mutex::new(Vec::new());
-    let method = Method::Exact(ExactOptions::default());
     let models = std::slice::from_ref(sheet.model());
-    let cancel = AtomicBool::new(false);
-    characterize(models, None, &method, &[20.0, 80.0], &[-0.125], &|_| true, &cancel, &|f| {
-        found.lock().unwrap().push(f.row)
-    });
-    for row in found.into_inner().unwrap() {
+    for Finished { row, .. } in map(models, &[20.0, 80.0], &[-0.125], &ExactOptions::default()) {
         let answer = sheet.answer(&Question::stretch_along(row.direction_deg).with_lateral(-0.125)).unwrap();
         assert_eq!((answer.status, answer.limit()), (row.status, row.l1));
         assert_eq!((answer.bound, answer.n_starts, answer.n_distinct), (row.bound_l1, row.n_starts, row.n_distinct));

@@ -9,11 +9,10 @@ use maille::{
     model::Model,
     record::Status,
     search::ExactOptions,
-    survey::{Finished, Method, characterize},
+    survey::Finished,
 };
 use maille_geometry::Vec3;
 use nalgebra::{Quaternion, UnitQuaternion};
-use std::sync::{Mutex, atomic::AtomicBool};
 
 /// Two pairs of rings lying on each other, each pair shifted in its plane.
 const DOUBLED: &str = r#"
@@ -42,12 +41,7 @@ rings = [{ major_radius = 1.0, normal = [0.14, 0.95, 0.27] }]
 
 fn limits(design: &Design, directions: &[f64], l2: &[f64]) -> Vec<Finished> {
     let models = [Model::compile(design, Cell::PRIMITIVE).unwrap()];
-    let out = Mutex::new(Vec::new());
-    let method = Method::Exact(ExactOptions::default());
-    characterize(&models, None, &method, directions, l2, &|_| true, &AtomicBool::new(false), &|row| {
-        out.lock().unwrap().push(row)
-    });
-    out.into_inner().unwrap()
+    common::map(&models, directions, l2, &ExactOptions::default())
 }
 
 /// Checks the forces of a limit in the design's own cell; elements of one ring each.

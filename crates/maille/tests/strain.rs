@@ -1,5 +1,8 @@
 //! Limits with width or shear free, and queries in the space of strains.
 
+mod common;
+
+use common::map;
 use maille::{
     answer::Answer,
     lattice::{Across, Cell},
@@ -11,10 +14,7 @@ use maille::{
         strain::{StrainMethod, StrainOptions},
     },
     sheet::Sheet,
-    survey::{
-        CellChoice, Method, characterize,
-        surface::{BoundaryOptions, BoundaryVertex, boundary},
-    },
+    survey::surface::{BoundaryOptions, BoundaryVertex, boundary},
 };
 use nalgebra::Matrix2;
 use std::sync::{Mutex, atomic::AtomicBool};
@@ -25,12 +25,8 @@ fn model(name: &str) -> Model {
 }
 
 fn rows(model: &Model, directions: &[f64], l2: &[f64], across: Across) -> Vec<LimitRow> {
-    let method = Method::Exact(ExactOptions { across, ..ExactOptions::default() });
-    let found = Mutex::new(Vec::new());
-    let models = std::slice::from_ref(model);
-    let cancel = AtomicBool::new(false);
-    characterize(models, None, &method, directions, l2, &|_| true, &cancel, &|f| found.lock().unwrap().push(f.row));
-    found.into_inner().unwrap()
+    let options = ExactOptions { across, ..ExactOptions::default() };
+    map(std::slice::from_ref(model), directions, l2, &options).into_iter().map(|f| f.row).collect()
 }
 
 const LATERAL: Across = Across { lateral_free: true, shear_free: false };
@@ -179,10 +175,8 @@ fn the_least_l1_is_that_of_the_query_and_falls_with_the_cell() {
     assert!(query.by_cell.iter().all(|t| t.n_starts >= 6 && t.n_distinct >= 1));
     assert!(query.by_cell[1..].iter().all(|t| t.value.unwrap() <= query.by_cell[0].value.unwrap() + 1e-7));
     let across = Across { lateral_free: true, shear_free: true };
-    let method = Method::Exact(ExactOptions { starts: 6, across, compression: true, ..ExactOptions::default() });
-    let found = Mutex::new(Vec::new());
-    characterize(&models, None, &method, &[0.0], &[0.0], &|_| true, &cancel, &|f| found.lock().unwrap().push(f));
-    let found = found.into_inner().unwrap().remove(0);
+    let options = ExactOptions { starts: 6, across, compression: true, ..ExactOptions::default() };
+    let found = map(&models, &[0.0], &[0.0], &options).remove(0);
     let (row, l1) = (&found.row, found.row.l1.unwrap());
     let strain = l1 + 0.5 * l1 * l1;
     assert!((strain - query.value.unwrap()).abs() < 1e-7, "{strain}, query {:?}", query.value);
@@ -266,7 +260,7 @@ fn a_limit_has_the_lattice_of_the_design_s_own_cell() {
 #[test]
 fn the_least_strain_is_the_compression_of_a_map() {
     let design = maille_io::read_design("1.1", maille_io::builtin("1.1").unwrap()).unwrap();
-    let sheet = Sheet::in_cells(&design, CellChoice::One(Cell::PRIMITIVE)).unwrap();
+    let sheet = Sheet::in_cells(&design, Cell::PRIMITIVE.into()).unwrap();
     for (free, across) in [
         (vec![], Across::HELD),
         (vec![Strain::Eyy], LATERAL),
@@ -274,13 +268,8 @@ fn the_least_strain_is_the_compression_of_a_map() {
     ] {
         let goal = Goal::Strain { component: Strain::Exx, direction_deg: 60.0, fix: vec![], free };
         let answer = sheet.answer(&Question::new(goal, Sense::Least)).unwrap();
-        let method = Method::Exact(ExactOptions { across, compression: true, ..ExactOptions::default() });
-        let found = Mutex::new(Vec::new());
-        let cancel = AtomicBool::new(false);
-        characterize(std::slice::from_ref(sheet.model()), None, &method, &[60.0], &[0.0], &|_| true, &cancel, &|f| {
-            found.lock().unwrap().push(f.row)
-        });
-        let row = found.into_inner().unwrap().remove(0);
+        let options = ExactOptions { across, compression: true, ..ExactOptions::default() };
+        let row = map(std::slice::from_ref(sheet.model()), &[60.0], &[0.0], &options).remove(0).row;
         let l1 = row.l1.unwrap_or_else(|| panic!("{across:?}: {:?}", row.status));
         assert_eq!(answer.status, row.status);
         assert!((answer.value.unwrap() - l1 - 0.5 * l1 * l1).abs() < 1e-12, "{across:?}: {l1}, {:?}", answer.value);

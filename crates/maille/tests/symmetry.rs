@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{design, map, model, shaken};
+use common::{design, exact_map, map, model, shaken};
 use maille::{
     design::Design,
     lattice::Cell,
@@ -236,7 +236,7 @@ fn images_of_limits_are_limits() {
     for (name, l2, auto) in cases {
         let design = design_as_written(name);
         let method = Method::Exact(ExactOptions { starts: 2, ..ExactOptions::default() });
-        let cell = if auto { CellChoice::Auto } else { CellChoice::One(Cell::PRIMITIVE) };
+        let cell = if auto { CellChoice::Auto } else { CellChoice::from(Cell::PRIMITIVE) };
         let models: Vec<Model> = cell
             .cells(&method, design.elements.len())
             .into_iter()
@@ -245,7 +245,7 @@ fn images_of_limits_are_limits() {
         let Method::Exact(options) = &method else { unreachable!() };
         let directions = [20.0, 160.0, 70.0, 110.0, 80.0, 40.0, 140.0, 100.0];
         let found = map(&models, &directions, &[l2], options);
-        let chains = chains(&models[0], &method, &directions);
+        let chains = chains(&models[0], &exact_map(options, &directions, &[l2]));
         assert!(chains.len() < directions.len(), "{name}: {chains:?}");
         for chain in &chains {
             let of = |degrees: f64| found.iter().find(|f| f.row.direction_deg == degrees).unwrap();

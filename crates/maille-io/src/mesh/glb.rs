@@ -214,7 +214,7 @@ fn container(document: &Value, binary: &[u8], out: &mut impl Write) -> io::Resul
     text.resize(text.len().next_multiple_of(4), b' ');
     let total = 12 + 8 + text.len() + 8 + binary.len();
     let number =
-        |n: usize| u32::try_from(n).map_err(|_| io::Error::other("a GLB file ends at 4 GiB: take a smaller --tile"));
+        |n: usize| u32::try_from(n).map_err(|_| io::Error::other("a GLB file ends at 4 GiB: take a smaller tile"));
     out.write_all(b"glTF")?;
     for n in [2, number(total)?, number(text.len())?] {
         out.write_all(&n.to_le_bytes())?;

@@ -19,7 +19,6 @@ pub enum RecordError {
     },
     /// A file of the record does not hold what it should.
     #[error("{file}:{line}: {problem}")]
-    #[diagnostic(help("the file is damaged or was edited: restore it, or compute the record again with --overwrite"))]
     Malformed {
         /// Path or name of the file.
         file: String,
@@ -30,7 +29,6 @@ pub enum RecordError {
     },
     /// A file of the record is not the one that was written.
     #[error("{file} was edited or cut off: its SHA-256 is {found}, {by} has {expected}")]
-    #[diagnostic(help("restore the file, or compute it again; a record with --overwrite"))]
     Edited {
         /// Path of the file.
         file: String,
@@ -43,7 +41,6 @@ pub enum RecordError {
     },
     /// The folder holds the record of another computation.
     #[error("{} holds a record of other inputs: {difference}", folder.display())]
-    #[diagnostic(help("name another folder with --out, or replace this record with --overwrite"))]
     OtherInputs {
         /// The folder.
         folder: PathBuf,
@@ -52,7 +49,6 @@ pub enum RecordError {
     },
     /// The folder holds files, but no record.
     #[error("{} is not empty and holds no record of maille (found {found})", folder.display())]
-    #[diagnostic(help("name a new or empty folder with --out; files of others are never replaced"))]
     NotARecord {
         /// The folder.
         folder: PathBuf,
@@ -61,7 +57,6 @@ pub enum RecordError {
     },
     /// Another run writes to the folder.
     #[error("another run is writing to {}", folder.display())]
-    #[diagnostic(help("wait until it has ended, or name another folder with --out"))]
     InUse {
         /// The folder.
         folder: PathBuf,

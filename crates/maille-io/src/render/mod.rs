@@ -62,7 +62,6 @@ pub enum RenderError {
     },
     /// Loads or arrows are asked for where no contact forces are known.
     #[error("no contact forces are known of this state")]
-    #[diagnostic(help("limits of the exact method come with forces: maille characterize … --method exact"))]
     NoForces,
     /// The pixels could not be written as PNG.
     #[error("the picture cannot be written as PNG: {0}")]

@@ -6,7 +6,7 @@ use maille::design::Design;
 use maille::lattice::Cell;
 use maille::model::Model;
 use maille::record::{LimitRow, StateRecord};
-use maille::survey::{CellChoice, Finished, MapQuestion, Method, Task, chains, characterize, tasks};
+use maille::survey::{CellChoice, Finished, MapQuestion, Method, Task, chains, characterize};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -30,14 +30,8 @@ pub enum MapError {
 /// A map of one design, and where its record is.
 #[derive(Clone, Debug)]
 pub struct Map {
-    /// How limits are found.
-    pub method: Method,
-    /// Cells that are solved.
-    pub cell: CellChoice,
-    /// Directions of the pull.
-    pub directions_deg: Vec<f64>,
-    /// Stretch − 1 held across it.
-    pub l2: Vec<f64>,
+    /// What is asked.
+    pub question: MapQuestion,
     /// What the record's plot shows.
     pub quantity: Quantity,
     /// Folder of the record; without one it stays in memory.
@@ -49,25 +43,20 @@ pub struct Map {
 impl Map {
     /// The cells to compile a design for, in the order of the models of [`Self::open`].
     pub fn cells(&self, design: &Design) -> Vec<Cell> {
-        self.cell.cells(&self.method, design.elements.len())
+        self.question.cells.cells(&self.question.method, design.elements.len())
     }
 
     /// Opens the record, with what an earlier run has left there. `models` are the design compiled for
     /// [`Self::cells`].
     pub fn open(&self, design: &Design, models: Vec<Model>) -> Result<OpenMap, RecordError> {
-        let question = MapQuestion {
-            method: self.method.clone(),
-            cells: models.iter().map(|model| model.cell).collect(),
-            directions_deg: self.directions_deg.clone(),
-            l2: self.l2.clone(),
-        };
-        let mut parameters = json!(question);
+        let cells = CellChoice::These(models.iter().map(|model| model.cell).collect());
+        let mut parameters = json!(MapQuestion { cells, ..self.question.clone() });
         // With all that is fixed, so that the record says how it was found.
-        parameters["options"] = match &self.method {
+        parameters["options"] = match &self.question.method {
             Method::Exact(options) => json!(options.parameters()),
             Method::Energy(options) => json!(options.parameters(&models[0])),
         };
-        let all = tasks(&self.directions_deg, &self.l2);
+        let all = self.question.tasks();
         let mut rows: Vec<Option<(LimitRow, StateRecord)>> = vec![None; all.len()];
         let mut folder = None;
         if let Some(path) = &self.out {
@@ -129,8 +118,7 @@ impl OpenMap {
             let left = self.open().filter(|task| directions_deg.contains(&task.direction_deg)).count();
             Chain { directions_deg, left, hash: input_hash(&self.design, &inputs) }
         };
-        let Map { method, directions_deg, .. } = &self.map;
-        chains(&self.models[0], method, directions_deg).into_iter().map(move |orbit| chain(orbit.directions_deg))
+        chains(&self.models[0], &self.map.question).into_iter().map(move |orbit| chain(orbit.directions_deg))
     }
 
     /// The parameters of a map of these directions.
@@ -177,8 +165,8 @@ impl OpenMap {
             }
         };
         let wanted = |task: Task| open.contains(&task);
-        let Map { method, directions_deg, l2, .. } = &self.map;
-        characterize(&self.models, self.design.minor_radius, method, directions_deg, l2, &wanted, cancel, &receive);
+        let radius = self.design.minor_radius;
+        characterize(&self.models, radius, &self.map.question, &wanted, cancel, &receive);
         self.finish()
     }
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, TypedDict
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,26 +49,26 @@ def open_simulation(folder: Path) -> tuple[str, str, str | None]: ...
 def save_simulation(folder: Path, record: str, frames: str, forces: str | None) -> None: ...
 def builtin_names() -> list[str]: ...
 def nearest_builtin_name(name: str) -> str | None: ...
-def usual() -> tuple[str, str]: ...
 def numbers(name: str, text: str | None = None, values: list[float] | None = None) -> list[float]: ...
 def read_record(folder: str) -> Record: ...
 
-class Asked(TypedDict):
-    directions: list[float]
-    l2: list[float]
-    lateral_free: bool
-    shear_free: bool
-    compression: bool
-    method: str
-    cell: str
-    starts: int
-    seed: int
-    energy: str
-    quantity_name: str
-
+def map_question(
+    *,
+    directions: list[float] | None,
+    l2: list[float] | None,
+    lateral_free: bool,
+    shear_free: bool,
+    compression: bool,
+    method: str,
+    cell: str,
+    starts: int,
+    seed: int,
+    energy: str,
+) -> str: ...
 def characterize(
     design: Design,
-    asked: Asked,
+    question: str,
+    quantity_name: str,
     *,
     out: str | None,
     overwrite: bool,
@@ -77,7 +77,7 @@ def characterize(
 ) -> Record: ...
 
 class OpenMap:
-    def __init__(self, design: Design, asked: Asked, out: str | None, overwrite: bool) -> None: ...
+    def __init__(self, design: Design, question: str, quantity_name: str, out: str | None, overwrite: bool) -> None: ...
     def count(self) -> tuple[int, int]: ...
     def chains(self) -> list[tuple[list[float], int, str]]: ...
     def chain(self, directions_deg: list[float]) -> Record: ...

@@ -195,7 +195,7 @@ def characterize(
     >>> record.to_numpy()["l1"].round(9).tolist(), record.to_numpy()["status"].tolist()
     ([0.44], ['global'])
     """
-    asked = _asked(
+    question = _question(
         directions,
         l2,
         lateral=lateral,
@@ -206,12 +206,12 @@ def characterize(
         starts=starts,
         seed=seed,
         energy=energy,
-        quantity=quantity,
     )
     with _Bar(progress) as told:
         native = _native.characterize(
             chosen(design, minor_radius)._inner,
-            asked,
+            question,
+            quantity,
             out=None if out is None else os.fspath(out),
             overwrite=overwrite,
             progress=told,
@@ -220,7 +220,7 @@ def characterize(
     return Record(native)
 
 
-def _asked(
+def _question(
     directions: str | ArrayLike | None = None,
     l2: str | ArrayLike | None = None,
     *,
@@ -232,30 +232,22 @@ def _asked(
     starts: int = 4,
     seed: int = 1,
     energy: dict[str, Any] | None = None,
-    quantity: Quantity = "stretch",
-) -> _native.Asked:
-    """What a map is asked for, as the native part takes it."""
-    lateral_free, shear_free = _free("lateral", lateral), _free("shear", shear)
-    usual_directions, usual_l2 = _native.usual()
-    if lateral_free:
-        if l2 is not None:
-            raise ArgumentError("l2", 'holds the width that lateral="free" leaves to the sheet', "leave one of them out")
-        l2 = [0.0]
+) -> str:
+    """What a map asks, as the native part takes it."""
     if energy is not None and method != "energy":
         raise ArgumentError("energy", "is for the energy method", 'leave it out, or give method="energy"')
-    return {
-        "directions": _numbers("directions", usual_directions if directions is None else directions),
-        "l2": _numbers("l2", usual_l2 if l2 is None else l2),
-        "lateral_free": lateral_free,
-        "shear_free": shear_free,
-        "compression": compression,
-        "method": method,
-        "cell": cell,
-        "starts": _whole("starts", starts, 1),
-        "seed": _whole("seed", seed, 0),
-        "energy": json.dumps(energy or {}),
-        "quantity_name": quantity,
-    }
+    return _native.map_question(
+        directions=None if directions is None else _numbers("directions", directions),
+        l2=None if l2 is None else _numbers("l2", l2),
+        lateral_free=_free("lateral", lateral),
+        shear_free=_free("shear", shear),
+        compression=compression,
+        method=method,
+        cell=cell,
+        starts=_whole("starts", starts, 1),
+        seed=_whole("seed", seed, 0),
+        energy=json.dumps(energy or {}),
+    )
 
 
 def _whole(name: str, value: int, least: int) -> int:

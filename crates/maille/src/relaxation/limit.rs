@@ -3,6 +3,7 @@
 
 use crate::{
     answer::Answer,
+    error::InvalidInput,
     lattice::Direction,
     model::Model,
     record::{Status, StepRecord},
@@ -143,6 +144,35 @@ pub struct EnergyParameters {
 impl EnergyOptions {
     /// As many points as can follow a flat pair's circle; 0 is allowed beside these.
     pub const FLAT_POINTS: std::ops::RangeInclusive<usize> = 16..=1024;
+
+    /// Whether they can be used.
+    ///
+    /// # Errors
+    /// For a length, weight or angle that is not positive, and a number of points out of range.
+    pub fn check(&self) -> Result<(), InvalidInput> {
+        let positive = [
+            ("alpha", self.alpha),
+            ("corner_weight", self.corner_weight),
+            ("gradient_tolerance", self.gradient_tolerance),
+            ("tau", self.tau),
+            ("l1_step", self.l1_step),
+            ("l1_resolution", self.l1_resolution),
+            ("sample_spacing_rad", self.sample_spacing_rad.unwrap_or(1.0)),
+        ];
+        if let Some((name, x)) = positive.into_iter().find(|(_, x)| !(x.is_finite() && *x > 0.0)) {
+            return Err(InvalidInput::new(name, format!("{name} = {x} is not positive"), "give a positive number"));
+        }
+        if self.flat_points != 0 && !Self::FLAT_POINTS.contains(&self.flat_points) {
+            let problem = format!("flat_points = {} is out of range", self.flat_points);
+            let (least, most) = (Self::FLAT_POINTS.start(), Self::FLAT_POINTS.end());
+            return Err(InvalidInput::new(
+                "flat_points",
+                problem,
+                format!("give 0, or a whole number from {least} to {most}"),
+            ));
+        }
+        Ok(())
+    }
 
     /// All parameters and tolerances of a run on `model`.
     pub fn parameters(&self, model: &Model) -> EnergyParameters {

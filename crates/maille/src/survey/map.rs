@@ -2,7 +2,7 @@
 
 use super::{
     image::image,
-    request::{Finished, Method, Task, tasks},
+    request::{Finished, MapQuestion, Method, Task},
     row::Asked,
 };
 use crate::{
@@ -26,8 +26,8 @@ use std::{
 /// direction that is solved, with the image of its state.
 ///
 /// The energy method repeats the thesis and checks the exact one, so it uses no symmetry: each direction is solved by itself.
-pub fn chains(model: &Model, method: &Method, directions_deg: &[f64]) -> Vec<Orbit> {
-    symmetric_chains(model, method, directions_deg).1
+pub fn chains(model: &Model, question: &MapQuestion) -> Vec<Orbit> {
+    symmetric_chains(model, &question.method, &question.directions_deg).1
 }
 
 fn symmetric_chains(model: &Model, method: &Method, directions_deg: &[f64]) -> (Vec<Operation>, Vec<Orbit>) {
@@ -55,17 +55,16 @@ fn symmetric_chains(model: &Model, method: &Method, directions_deg: &[f64]) -> (
 pub fn characterize(
     models: &[Model],
     minor_radius: Option<f64>,
-    method: &Method,
-    directions_deg: &[f64],
-    l2: &[f64],
+    question: &MapQuestion,
     wanted: &(dyn Fn(Task) -> bool + Sync),
     cancel: &AtomicBool,
     finished: &(dyn Fn(Finished) + Sync),
 ) {
+    let MapQuestion { method, directions_deg, l2, .. } = question;
     match method {
         Method::Energy(options) => {
             let energy = EnergyMethod::new(&models[0], options.clone(), cancel);
-            let open: Vec<Task> = tasks(directions_deg, l2).into_iter().filter(|t| wanted(*t)).collect();
+            let open: Vec<Task> = question.tasks().into_iter().filter(|t| wanted(*t)).collect();
             open.par_iter().with_max_len(1).for_each(|task| {
                 if !cancel.load(Ordering::Relaxed) {
                     let begun = Instant::now();

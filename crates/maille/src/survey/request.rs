@@ -1,12 +1,15 @@
 //! What a map asks, and what comes back of each limit.
 
 use crate::{
+    error::InvalidInput,
     lattice::{Across, Cell},
+    question::{Goal, Question, Sense},
     record::{LimitRow, StateRecord},
     relaxation::limit::EnergyOptions,
     search::ExactOptions,
 };
 use serde::{Deserialize, Serialize};
+use std::str::FromStr;
 
 /// How limits are found.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -19,6 +22,24 @@ pub enum Method {
 }
 
 impl Method {
+    /// The energy method, which holds width and shear and finds largest limits alone.
+    ///
+    /// # Errors
+    /// Where something else is asked of it.
+    pub fn energy(options: EnergyOptions, across: Across, compression: bool) -> Result<Self, InvalidInput> {
+        let refused = |problem: &str, help| Err(InvalidInput::new("method", problem, help));
+        match (compression, across.any()) {
+            (true, _) => {
+                refused("the energy method finds largest limits alone", "leave out `compression`, or `method` energy")
+            }
+            (_, true) => refused(
+                "the energy method holds width and shear",
+                "leave out `lateral` and `shear`, or `method` energy",
+            ),
+            (false, false) => Ok(Method::Energy(options)),
+        }
+    }
+
     /// What is left to the sheet.
     pub fn across(&self) -> Across {
         match self {
@@ -42,12 +63,30 @@ impl Method {
 }
 
 /// Which cells are solved.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum CellChoice {
     /// The design's own, and larger ones where the exact method asks for them.
+    #[default]
     Auto,
-    /// This one.
-    One(Cell),
+    /// These: the first one always, the others where the exact method asks for them.
+    #[serde(untagged)]
+    These(Vec<Cell>),
+}
+
+impl From<Cell> for CellChoice {
+    fn from(cell: Cell) -> Self {
+        CellChoice::These(vec![cell])
+    }
+}
+
+impl FromStr for CellChoice {
+    type Err = InvalidInput;
+
+    /// `auto`, or one cell.
+    fn from_str(text: &str) -> Result<Self, InvalidInput> {
+        if text == "auto" { Ok(CellChoice::Auto) } else { text.parse::<Cell>().map(CellChoice::from) }
+    }
 }
 
 /// Cells that `auto` may go on to, in this order.
@@ -57,9 +96,9 @@ const MOST_ELEMENTS: usize = 40;
 
 impl CellChoice {
     /// The cells to compile: for the energy method `auto` is the design's own.
-    pub fn cells(self, method: &Method, elements: usize) -> Vec<Cell> {
+    pub fn cells(&self, method: &Method, elements: usize) -> Vec<Cell> {
         match (self, method) {
-            (CellChoice::One(cell), _) => vec![cell],
+            (CellChoice::These(cells), _) => cells.clone(),
             (CellChoice::Auto, Method::Energy(_)) => vec![Cell::PRIMITIVE],
             (CellChoice::Auto, Method::Exact(_)) => {
                 let larger = LARGER.iter().filter_map(|text| text.parse::<Cell>().ok());
@@ -76,12 +115,77 @@ pub struct MapQuestion {
     /// How limits are found.
     #[serde(flatten)]
     pub method: Method,
-    /// The cells that may be solved, the first one always.
-    pub cells: Vec<Cell>,
+    /// The cells that may be solved.
+    pub cells: CellChoice,
     /// Directions of the pull, degrees counter-clockwise from x.
     pub directions_deg: Vec<f64>,
     /// Stretch − 1 held across it.
     pub l2: Vec<f64>,
+}
+
+/// Lateral strains that are held where none are named.
+const USUAL_L2: [f64; 5] = [-0.25, -0.125, 0.0, 0.125, 0.25];
+
+impl MapQuestion {
+    /// A map that can be asked. Without directions it has every fifth degree to 180, without l2 the usual ones, or only 0
+    /// where the width is left to the sheet. In messages, options stand in backticks.
+    ///
+    /// # Errors
+    /// Where l2 is given and the width is free, and what [`Self::check`] refuses.
+    pub fn new(
+        method: Method,
+        cells: CellChoice,
+        directions_deg: Option<Vec<f64>>,
+        l2: Option<Vec<f64>>,
+    ) -> Result<Self, InvalidInput> {
+        let l2 = match (l2, method.across().lateral_free) {
+            (Some(_), true) => {
+                let problem = "`l2` holds the width that `lateral` free leaves to the sheet";
+                return Err(InvalidInput::new("l2", problem, "leave one of them out"));
+            }
+            (None, true) => vec![0.0],
+            (l2, false) => l2.unwrap_or(USUAL_L2.to_vec()),
+        };
+        let directions_deg = directions_deg.unwrap_or_else(|| (0..=36).map(|k| 5.0 * f64::from(k)).collect());
+        let question = MapQuestion { method, cells, directions_deg, l2 };
+        question.check().map(|()| question)
+    }
+
+    /// Whether it can be asked.
+    ///
+    /// # Errors
+    /// Without directions or l2, for options of the energy method out of range, and where one of its limits is refused by
+    /// [`Question::check`].
+    pub fn check(&self) -> Result<(), InvalidInput> {
+        for (field, list) in [("directions_deg", &self.directions_deg), ("l2", &self.l2)] {
+            if list.is_empty() {
+                return Err(InvalidInput::new(field, "there is none", "give one or more"));
+            }
+        }
+        if let Method::Energy(options) = &self.method {
+            options.check()?;
+        }
+        let (first_deg, first_l2) = (self.directions_deg[0], self.l2[0]);
+        self.directions_deg.iter().try_for_each(|direction_deg| self.limit(*direction_deg, first_l2).check())?;
+        self.l2.iter().try_for_each(|l2| self.limit(first_deg, *l2).check())
+    }
+
+    /// One of its limits as a question by itself.
+    fn limit(&self, direction_deg: f64, l2: f64) -> Question {
+        let sense = if self.method.compression() { Sense::Least } else { Sense::Largest };
+        let question = Question::new(Goal::Stretch { direction_deg, l2, across: self.method.across() }, sense);
+        match &self.method {
+            Method::Energy(_) => question,
+            Method::Exact(ExactOptions { starts, seed, .. }) => {
+                Question { starts: Some(*starts), seed: *seed, ..question }
+            }
+        }
+    }
+
+    /// Its limits: every l2 with every direction, in the order of the table.
+    pub fn tasks(&self) -> Vec<Task> {
+        tasks(&self.directions_deg, &self.l2)
+    }
 }
 
 /// One limit to find.

@@ -126,7 +126,26 @@ impl<'a> RaySolver<'a> {
     /// Where the ray ends; `None` after `cancel`.
     pub fn solve(&self, ray: &Ray, cancel: &AtomicBool) -> Option<BoundaryVertex> {
         let from: Vec<State> = ray.from.iter().map(BoundaryVertex::state).collect();
-        solve_ray(&self.0, ray.direction.into(), &from, cancel)
+        let [xx, yy, xy] = ray.direction;
+        let query = StrainQuery { held: Matrix2::zeros(), free: vec![Matrix2::new(xx, xy, xy, yy)] };
+        let answer = self.0.solve(&query, &from, cancel);
+        if cancel.load(Ordering::Relaxed) || answer.status == Status::Interrupted {
+            return None;
+        }
+        let pose = |pose: &Pose| {
+            let (p, q) = (pose.position, pose.rotation.quaternion());
+            [p.x, p.y, p.z, q.w, q.i, q.j, q.k]
+        };
+        Some(BoundaryVertex {
+            direction: ray.direction,
+            status: answer.status,
+            distance: answer.value,
+            first: answer.first,
+            bound: answer.bound.filter(|bound| bound.is_finite()),
+            n_distinct: answer.n_distinct.unwrap_or(0),
+            lattice: [answer.state.a1, answer.state.a2].map(Into::into),
+            poses: answer.state.poses.iter().map(pose).collect(),
+        })
     }
 }
 
@@ -248,33 +267,4 @@ fn hand_on(sphere: &Sphere, tolerance: f64, vertices: &mut [BoundaryVertex], sol
             return;
         }
     }
-}
-
-/// One ray; `None` after `cancel`.
-fn solve_ray(
-    method: &StrainMethod<'_>,
-    direction: Vec3,
-    from: &[State],
-    cancel: &AtomicBool,
-) -> Option<BoundaryVertex> {
-    let along = Matrix2::new(direction.x, direction.z, direction.z, direction.y);
-    let query = StrainQuery { held: Matrix2::zeros(), free: vec![along] };
-    let answer = method.solve(&query, from, cancel);
-    if cancel.load(Ordering::Relaxed) || answer.status == Status::Interrupted {
-        return None;
-    }
-    let pose = |pose: &Pose| {
-        let (p, q) = (pose.position, pose.rotation.quaternion());
-        [p.x, p.y, p.z, q.w, q.i, q.j, q.k]
-    };
-    Some(BoundaryVertex {
-        direction: direction.into(),
-        status: answer.status,
-        distance: answer.value,
-        first: answer.first,
-        bound: answer.bound.filter(|bound| bound.is_finite()),
-        n_distinct: answer.n_distinct.unwrap_or(0),
-        lattice: [answer.state.a1, answer.state.a2].map(Into::into),
-        poses: answer.state.poses.iter().map(pose).collect(),
-    })
 }

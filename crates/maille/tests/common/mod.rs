@@ -7,7 +7,7 @@ use maille::{
     model::Model,
     search::ExactOptions,
     state::State,
-    survey::{Finished, Method, characterize, tasks},
+    survey::{CellChoice, Finished, MapQuestion, Method, characterize},
 };
 use maille_geometry::Vec3;
 use rand::{RngExt, SeedableRng};
@@ -33,14 +33,18 @@ pub fn shaken(model: &Model, size: f64, seed: u64) -> State {
     State { poses, a1: model.start.a1 + vector(size), a2: model.start.a2 + vector(size) }
 }
 
+/// A map by the exact method.
+pub fn exact_map(options: &ExactOptions, directions: &[f64], l2: &[f64]) -> MapQuestion {
+    let (cells, directions_deg, l2) = (CellChoice::Auto, directions.to_vec(), l2.to_vec());
+    MapQuestion { method: Method::Exact(options.clone()), cells, directions_deg, l2 }
+}
+
 /// The rows of a map by the exact method, in the order of its table.
 pub fn map(models: &[Model], directions: &[f64], l2: &[f64], options: &ExactOptions) -> Vec<Finished> {
     let out = Mutex::new(Vec::new());
-    let method = Method::Exact(options.clone());
-    characterize(models, None, &method, directions, l2, &|_| true, &AtomicBool::new(false), &|row| {
-        out.lock().unwrap().push(row)
-    });
-    let order = tasks(directions, l2);
+    let question = exact_map(options, directions, l2);
+    characterize(models, None, &question, &|_| true, &AtomicBool::new(false), &|row| out.lock().unwrap().push(row));
+    let order = question.tasks();
     let mut out: Vec<Finished> = out.into_inner().unwrap();
     out.sort_by_key(|f| order.iter().position(|t| (t.direction_deg, t.l2) == (f.row.direction_deg, f.row.l2)));
     assert_eq!(out.len(), order.len());

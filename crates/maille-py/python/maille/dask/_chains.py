@@ -11,7 +11,6 @@ import json
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import pyarrow
 from pyarrow import parquet
@@ -19,9 +18,6 @@ from pyarrow import parquet
 from .. import _native
 from ..design import Design
 from ..errors import ChainError, MailleError
-
-if TYPE_CHECKING:
-    from .._native import Asked
 
 #: Column of the state beside those of `limits.csv`: the line of `states.jsonl`.
 STATE = "state"
@@ -37,13 +33,13 @@ class Solved:
     file: bytes
 
 
-def solve(design: Design, asked: Asked, directions_deg: list[float], version: str) -> Solved | MailleError:
+def solve(design: Design, question: str, directions_deg: list[float], version: str) -> Solved | MailleError:
     """Solves a chain; what is wrong with the question comes back and is not tried again."""
     if version != _native.__VERSION__:
         return ChainError(f"the worker has maille {_native.__VERSION__}, not {version}")
-    chain: Asked = {**asked, "directions": directions_deg}
+    chain = json.dumps({**json.loads(question), "directions_deg": directions_deg})
     try:
-        found = _native.characterize(design._inner, chain, out=None, overwrite=False, progress=None, threads=1)
+        found = _native.characterize(design._inner, chain, "stretch", out=None, overwrite=False, progress=None, threads=1)
     except MailleError as error:
         return error
     return Solved(found.limits(), found.parquet(True))

@@ -15,7 +15,7 @@ from .. import _native
 from .._files import PREFIX, write_whole
 from ..design import Design
 from ..errors import MailleError, OtherInputsError, RecordError
-from ..record import Held, Progress, Quantity, Record, _asked, _Bar, _whole
+from ..record import Held, Progress, Quantity, Record, _Bar, _question, _whole
 from ._chains import Solved, read_limits, solve
 from ._client import client_of, results
 from ._names import Designs, named
@@ -23,8 +23,6 @@ from ._results import CHAINS, RECORDS, TABLE, Failure, Results
 
 if TYPE_CHECKING:
     import distributed
-
-    from .._native import Asked
 
 
 def characterize(
@@ -55,7 +53,7 @@ def characterize(
     and stops nothing else. `client` is by default the current one of `dask.distributed`. `overwrite` replaces
     records of other inputs; chains that are part of both stay. The other arguments are those of `maille.characterize`.
     """
-    asked = _asked(
+    question = _question(
         directions,
         l2,
         lateral=lateral,
@@ -65,17 +63,19 @@ def characterize(
         starts=starts,
         seed=seed,
         energy=energy,
-        quantity=quantity,
     )
-    return run(named(designs), asked, out, client, overwrite=overwrite, retries=retries, progress=progress)
+    return run(
+        named(designs), question, out, client, quantity=quantity, overwrite=overwrite, retries=retries, progress=progress
+    )
 
 
 def run(
     designs: Mapping[str, Design | MailleError],
-    asked: Asked,
+    question: str,
     out: str | os.PathLike[str],
     client: distributed.Client | None,
     *,
+    quantity: Quantity,
     overwrite: bool,
     retries: int,
     progress: Progress,
@@ -90,7 +90,7 @@ def run(
         try:
             if isinstance(design, MailleError):
                 raise design
-            maps[name] = _Map.open(folder, name, design, asked, overwrite)
+            maps[name] = _Map.open(folder, name, design, question, quantity, overwrite)
         except RecordError:
             # No other run gets a folder as long as a map has it open, and the traceback keeps the maps.
             for map in maps.values():
@@ -110,7 +110,7 @@ def run(
             for chain in map.left.values():
                 key = f"maille-{chain.hash[:32]}"
                 tasks.setdefault(key, []).append((map, chain))
-                calls[key] = (map.design, asked, chain.directions_deg, _native.__VERSION__)
+                calls[key] = (map.design, question, chain.directions_deg, _native.__VERSION__)
         try:
             with closing(results(client, solve, calls, retries)) as found:
                 for key, value in found:
@@ -155,10 +155,10 @@ class _Map:
     record: Record | None = None
 
     @classmethod
-    def open(cls, out: Path, name: str, design: Design, asked: Asked, overwrite: bool) -> _Map:
+    def open(cls, out: Path, name: str, design: Design, question: str, quantity: Quantity, overwrite: bool) -> _Map:
         """Brings the record and the chains' files to the same state: what one of them has, the other gets."""
         folder = out / CHAINS / f"record={name}"
-        native = _native.OpenMap(design._inner, asked, os.fspath(out / RECORDS / name), overwrite)
+        native = _native.OpenMap(design._inner, question, quantity, os.fspath(out / RECORDS / name), overwrite)
         chains = [
             _Chain(directions, left, hash, folder / f"{directions[0]:g}-{hash[:32]}.parquet")
             for directions, left, hash in native.chains()

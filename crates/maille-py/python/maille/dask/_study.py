@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from .. import _native
 from ..design import Design, designs
 from ..errors import ArgumentError, MailleError
-from ..record import Progress, _asked
+from ..record import Progress
 from ._maps import run
 from ._results import Results
 
@@ -42,10 +42,13 @@ def sweep(
     except UnicodeDecodeError:
         raise ArgumentError("study", f"{file} is no text", "give a TOML file, encoded in UTF-8") from None
     read: dict[str, Any] = json.loads(_native.study(str(file), text))
-    asked = _asked(read["directions"], read["l2"], cell=read["cell"], starts=read["starts"], seed=read["seed"])
+    question = json.dumps(read["question"])
     if out is None:
         out = Path("maille-out") / _native.folder_name(file.stem)
-    return run(_plan(read["designs"], file.parent), asked, out, client, overwrite=overwrite, retries=retries, progress=progress)
+    plan = _plan(read["designs"], file.parent)
+    return run(
+        plan, question, out, client, quantity="stretch", overwrite=overwrite, retries=retries, progress=progress
+    )
 
 
 def _plan(of_study: list[dict[str, Any]], folder: Path) -> dict[str, Design | MailleError]:

@@ -1,0 +1,71 @@
+//! Rows of a record, solved again from the inputs that the record holds.
+
+use crate::{
+    numbers::distinct,
+    record::{Record, RecordError},
+};
+use maille::{
+    error::InvalidInput,
+    model::Model,
+    record::LimitRow,
+    survey::{Finished, MapQuestion, Task, characterize},
+};
+use std::sync::{Mutex, atomic::AtomicBool};
+use thiserror::Error;
+
+/// Limits that differ by no more are the same.
+const SAME_L1: f64 = 1e-9;
+
+/// A row as recorded, and as it comes out now.
+#[derive(Clone, Debug)]
+pub struct Replayed<'a> {
+    /// The row of the record.
+    pub then: &'a LimitRow,
+    /// The row and the state of now.
+    pub now: Finished,
+}
+
+impl Replayed<'_> {
+    /// Whether status and limit are those of the record, the limit to 1e-9.
+    pub fn agrees(&self) -> bool {
+        let same = match (self.then.l1, self.now.row.l1) {
+            (Some(then), Some(now)) => (then - now).abs() <= SAME_L1,
+            (then, now) => then == now,
+        };
+        same && self.then.status == self.now.row.status
+    }
+}
+
+/// A record whose rows cannot be solved again.
+#[derive(Debug, Error)]
+pub enum ReplayError {
+    /// It does not say what was asked.
+    #[error(transparent)]
+    Record(#[from] RecordError),
+    /// Its design does not compile.
+    #[error("the record's design cannot be used: {0}")]
+    Design(InvalidInput),
+}
+
+/// Solves these rows of the record again on the current thread pool; after `cancel` those that are finished come back.
+pub fn replay<'a>(
+    record: &'a Record,
+    rows: &[&'a LimitRow],
+    cancel: &AtomicBool,
+) -> Result<Vec<Replayed<'a>>, ReplayError> {
+    let (design, asked) = (&record.run.design, record.run.question()?);
+    let compile = |cell| Model::compile(design, cell).map_err(|problems| ReplayError::Design(problems[0].clone()));
+    let cells = asked.cells.cells(&asked.method, design.elements.len());
+    let models: Vec<Model> = cells.into_iter().map(compile).collect::<Result<_, _>>()?;
+    let directions_deg = distinct(rows.iter().map(|row| row.direction_deg)).0;
+    let question = MapQuestion { directions_deg, ..asked };
+    let wanted = |task: Task| rows.iter().any(|row| (row.direction_deg, row.l2) == (task.direction_deg, task.l2));
+    let found = Mutex::new(Vec::<Finished>::new());
+    characterize(&models, design.minor_radius, &question, &wanted, cancel, &|row| {
+        found.lock().unwrap_or_else(|e| e.into_inner()).push(row);
+    });
+    let found = found.into_inner().unwrap_or_else(|e| e.into_inner());
+    let now =
+        |then: &LimitRow| found.iter().find(|now| (now.row.direction_deg, now.row.l2) == (then.direction_deg, then.l2));
+    Ok(rows.iter().filter_map(|then| Some(Replayed { then, now: now(then)?.clone() })).collect())
+}
