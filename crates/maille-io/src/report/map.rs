@@ -49,7 +49,7 @@ impl Map {
             ratio: run.design.minor_radius.unwrap_or(f64::NAN) / run.design.reference_radius,
             method: question.method.name().to_owned(),
             corners: imposed_on_corners(&question),
-            rearranged: question.cells.first() != Some(&Cell::PRIMITIVE),
+            rearranged: question.cells.cells(&question.method, 1).first() != Some(&Cell::PRIMITIVE),
             minima: named.name.ends_with(MINIMA),
             steps: named.name.ends_with(STEPS),
             interlocking_deg: interlocking(&Model::compile(&run.design, Cell::PRIMITIVE)?),
