@@ -221,9 +221,6 @@ pub(crate) fn read_states(text: &str) -> Result<Vec<State>, Unreadable> {
     text.lines().enumerate().map(|(k, line)| json(STATES, k + 1, line)).collect()
 }
 
-/// Columns of free text.
-const TEXTS: [&str; 2] = ["design", "note"];
-
 /// The rows, and the names of the columns.
 pub(crate) fn read_rows(text: &str) -> Result<(Vec<Row>, BTreeSet<String>), Unreadable> {
     complete(LIMITS, text)?;
@@ -234,7 +231,8 @@ pub(crate) fn read_rows(text: &str) -> Result<(Vec<Row>, BTreeSet<String>), Unre
         let wrong = |problem: String| Unreadable { file: LIMITS, line: k + 2, problem };
         let record = record.map_err(|e| wrong(e.to_string()))?;
         let row: Row = record.deserialize(Some(&header)).map_err(|e| wrong(e.to_string()))?;
-        let fields = || header.iter().zip(&record).filter(|(name, text)| !text.is_empty() && !TEXTS.contains(name));
+        // A design may be named as a number.
+        let fields = || header.iter().zip(&record).filter(|(name, text)| *name != "design" && !text.is_empty());
         if fields().any(|(_, text)| text.parse().is_ok_and(|x: f64| !x.is_finite())) {
             return Err(wrong("a number is not finite".into()));
         }

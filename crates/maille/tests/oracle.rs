@@ -23,7 +23,9 @@ fn sparse(m: &DMatrix<f64>, upper: bool) -> CscMatrix<f64> {
     let entries = (0..m.nrows()).flat_map(|i| (0..m.ncols()).map(move |j| (i, j)));
     let (mut rows, mut columns, mut values) = (Vec::new(), Vec::new(), Vec::new());
     for (i, j) in entries.filter(|&(i, j)| m[(i, j)] != 0.0 && (!upper || i <= j)) {
-        (rows.push(i), columns.push(j), values.push(m[(i, j)]));
+        rows.push(i);
+        columns.push(j);
+        values.push(m[(i, j)]);
     }
     CscMatrix::new_from_triplets(m.nrows(), m.ncols(), rows, columns, values)
 }

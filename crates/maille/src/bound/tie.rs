@@ -89,10 +89,8 @@ struct Sheet<'a> {
 impl<'a> Sheet<'a> {
     fn new(model: &'a Model) -> Self {
         let mut through = vec![Vec::new(); model.rings.len()];
-        for link in &model.links {
-            let (a, b, [p, q]) = (link.pair.ring_a, link.pair.ring_b, link.pair.shift);
-            through[a].push((b, [p, q]));
-            through[b].push((a, [-p, -q]));
+        for pair in model.links.iter().flat_map(|link| link.pair.both_ways()) {
+            through[pair.ring_a].push((pair.ring_b, pair.shift));
         }
         Sheet { model, through }
     }

@@ -99,45 +99,26 @@ impl Model {
             // As `lattice::shifts_within` lists them; rows of the inverse are the dual vectors.
             let images = (0..2).map(|row| 4.0 * reach * inverse.row(row).norm() + 1.0).product::<f64>();
             let cells = (inverse * from_first.xy()).amax();
-            let mut refuse = |field: &str, problem: String, remedy: &str| {
-                out.push(InvalidInput::new(format!("elements[{k}].{field}"), problem, remedy));
-            };
             let nearer = "bring the rings nearer to the element's center, or take longer lattice vectors";
             let inwards = "move it by whole lattice vectors into the cell";
-            if beyond(reach, FARTHEST) {
-                refuse(
-                    "rings",
-                    format!(
-                        "the rings of \"{name}\" reach {reach:.1e} R from its center; at most {FARTHEST:.0e} can be solved"
-                    ),
-                    nearer,
-                );
+            let (field, problem, remedy) = if beyond(reach, FARTHEST) {
+                let far = format!("reach {reach:.1e} R from its center; at most {FARTHEST:.0e} can be solved");
+                ("rings", format!("the rings of \"{name}\" {far}"), nearer)
             } else if self.periodic && beyond(images, MOST_IMAGES) {
-                refuse(
-                    "rings",
-                    format!(
-                        "the rings of \"{name}\" reach over some {images:.1e} cells; at most {MOST_IMAGES:.0e} are tried"
-                    ),
-                    nearer,
-                );
+                let many = format!("reach over some {images:.1e} cells; at most {MOST_IMAGES:.0e} are tried");
+                ("rings", format!("the rings of \"{name}\" {many}"), nearer)
             } else if beyond(from_first.norm(), FARTHEST) {
-                refuse(
-                    "center",
-                    format!(
-                        "\"{name}\" lies {:.1e} R from the first element; at most {FARTHEST:.0e} can be solved",
-                        from_first.norm()
-                    ),
-                    inwards,
-                );
+                let way = from_first.norm();
+                let far = format!("lies {way:.1e} R from the first element; at most {FARTHEST:.0e} can be solved");
+                ("center", format!("\"{name}\" {far}"), inwards)
             } else if self.periodic && beyond(cells, MOST_IMAGES) {
-                refuse(
-                    "center",
-                    format!(
-                        "\"{name}\" lies {cells:.1e} cells from the first element; at most {MOST_IMAGES:.0e} are tried"
-                    ),
-                    inwards,
-                );
-            }
+                let many =
+                    format!("lies {cells:.1e} cells from the first element; at most {MOST_IMAGES:.0e} are tried");
+                ("center", format!("\"{name}\" {many}"), inwards)
+            } else {
+                continue;
+            };
+            out.push(InvalidInput::new(format!("elements[{k}].{field}"), problem, remedy));
         }
         if out.is_empty() { Ok(()) } else { Err(out) }
     }

@@ -86,6 +86,14 @@ pub struct RingPair {
     pub shift: Shift,
 }
 
+impl RingPair {
+    /// The pair seen from either ring, as the ring of the main cell.
+    pub fn both_ways(&self) -> [RingPair; 2] {
+        let back = RingPair { ring_a: self.ring_b, ring_b: self.ring_a, shift: self.shift.map(|s| -s) };
+        [*self, back]
+    }
+}
+
 /// Two linked rings with their signed linking number (the signs follow the normals given in the design).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Link {

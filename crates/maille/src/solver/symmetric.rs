@@ -210,22 +210,13 @@ impl Symmetric {
     /// Σ |A_ij| over j ≠ i, row by row.
     pub fn off_diagonal_sums(&self) -> Vec<f64> {
         let mut sums = vec![0.0; self.n];
-        match &self.at {
-            None => {
-                for (i, (sum, column)) in sums.iter_mut().zip(self.values.chunks_exact(self.n)).enumerate() {
-                    *sum = column.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, v)| v.abs()).sum();
+        for j in 0..self.n {
+            self.each_below(j, |i, value| {
+                if i != j {
+                    sums[i] += value.abs();
+                    sums[j] += value.abs();
                 }
-            }
-            Some(_) => {
-                for j in 0..self.n {
-                    self.each_below(j, |i, value| {
-                        if i != j {
-                            sums[i] += value.abs();
-                            sums[j] += value.abs();
-                        }
-                    });
-                }
-            }
+            });
         }
         sums
     }

@@ -105,13 +105,8 @@ pub struct Neighbour {
 pub fn neighbours(model: &Model, element: usize) -> Vec<Neighbour> {
     let mut found = BTreeMap::<(usize, Shift), Vec<i32>>::new();
     for link in &model.links {
-        let (i, j) = (model.rings[link.pair.ring_a].element, model.rings[link.pair.ring_b].element);
-        let [p, q] = link.pair.shift;
-        if i == element {
-            found.entry((j, [p, q])).or_default().push(link.number);
-        }
-        if j == element {
-            found.entry((i, [-p, -q])).or_default().push(link.number);
+        for pair in link.pair.both_ways().into_iter().filter(|pair| model.rings[pair.ring_a].element == element) {
+            found.entry((model.rings[pair.ring_b].element, pair.shift)).or_default().push(link.number);
         }
     }
     found.into_iter().map(|((element, shift), numbers)| Neighbour { element, shift, numbers }).collect()
@@ -131,11 +126,8 @@ pub struct LinkedPart {
 pub fn linked_parts(model: &Model) -> Vec<LinkedPart> {
     let n = model.elements.len();
     let mut edges = vec![Vec::new(); n];
-    for link in &model.links {
-        let (i, j) = (model.rings[link.pair.ring_a].element, model.rings[link.pair.ring_b].element);
-        let [p, q] = link.pair.shift;
-        edges[i].push((j, [p, q]));
-        edges[j].push((i, [-p, -q]));
+    for pair in model.links.iter().flat_map(|link| link.pair.both_ways()) {
+        edges[model.rings[pair.ring_a].element].push((model.rings[pair.ring_b].element, pair.shift));
     }
     let mut offset: Vec<Option<Shift>> = vec![None; n];
     let mut out = Vec::new();

@@ -63,8 +63,7 @@ impl SideSigns {
     pub fn new(model: &Model) -> Self {
         let mut sides = Vec::new();
         for link in &model.links {
-            let RingPair { ring_a, ring_b, shift: [p, q] } = link.pair;
-            for (through, neighbour, shift) in [(ring_a, ring_b, [p, q]), (ring_b, ring_a, [-p, -q])] {
+            for RingPair { ring_a: through, ring_b: neighbour, shift } in link.pair.both_ways() {
                 for plane in model.elements[model.rings[through].element].rings.clone() {
                     let pair = RingPair { ring_a: plane, ring_b: neighbour, shift };
                     if plane == through || !links(model, &model.start, &[pair]).is_empty() {
