@@ -14,7 +14,7 @@ use maille::{
 };
 use miette::{Diagnostic, NamedSource, SourceSpan};
 use serde::Deserialize;
-use std::{collections::BTreeMap, ops::Range, path::PathBuf};
+use std::{collections::BTreeMap, ops::Range, path::PathBuf, sync::Arc};
 use thiserror::Error;
 use toml::Spanned;
 
@@ -170,7 +170,7 @@ impl Study {
     /// ```
     pub fn read(source_name: &str, text: &str) -> Result<Study, StudyError> {
         Self::parsed(text).map_err(|Wrong { problem, help, span }| {
-            let source_code = NamedSource::new(source_name, text.to_owned());
+            let source_code = Arc::new(NamedSource::new(source_name, text.to_owned()));
             StudyError { source_code, problem, help, span: span.into() }
         })
     }
@@ -254,7 +254,7 @@ fn whole(number: &Spanned<i64>, least: u64) -> Result<u64, Wrong> {
 #[error("{problem}")]
 pub struct StudyError {
     #[source_code]
-    source_code: NamedSource<String>,
+    source_code: Arc<NamedSource<String>>,
     problem: String,
     #[help]
     help: String,

@@ -11,11 +11,13 @@ use std::cmp::Ordering;
 pub struct Condition {
     field: Field,
     sign: &'static str,
-    /// What the sign says of a cell's order to a value.
-    holds: fn(Ordering) -> bool,
+    holds: Holds,
     /// Any of these, for `=` and `!=`; one number otherwise.
     values: Vec<Value>,
 }
+
+/// What a sign says of a cell's order to a value.
+type Holds = fn(Ordering) -> bool;
 
 #[derive(Clone, Debug, PartialEq)]
 enum Value {
@@ -27,7 +29,7 @@ enum Value {
 }
 
 /// Longer signs first: `<=` begins with `<`.
-const OPERATORS: [(&str, fn(Ordering) -> bool); 7] = [
+const OPERATORS: [(&str, Holds); 7] = [
     (UNEQUAL, Ordering::is_ne),
     ("<=", Ordering::is_le),
     (">=", Ordering::is_ge),
