@@ -6,6 +6,7 @@ mod journal;
 
 pub use self::journal::{BoundaryHead, SurfaceFolder, read_surface, surface_line, write_surface};
 
+use crate::record::csv_number;
 use maille::{
     record::Status,
     survey::surface::{Boundary, BoundaryVertex},
@@ -22,12 +23,11 @@ pub fn boundary_csv(boundary: &Boundary) -> String {
     let mut out =
         "vertex,direction_xx,direction_yy,direction_xy,status,distance,exx,eyy,exy,first_exit,bound,n_distinct\n"
             .to_owned();
-    let cell = |x: Option<f64>| x.map_or(String::new(), |x| format!("{x:?}"));
     for (k, v) in boundary.vertices.iter().enumerate() {
         let [x, y, z] = v.direction;
         let at = v.distance.map(|distance| v.point(distance));
-        let [exx, eyy, exy] = std::array::from_fn(|i| cell(at.map(|p| p[i])));
-        let (distance, first, bound) = (cell(v.distance), cell(v.first), cell(v.bound));
+        let [exx, eyy, exy] = std::array::from_fn(|i| csv_number(at.map(|p| p[i])));
+        let (distance, first, bound) = (csv_number(v.distance), csv_number(v.first), csv_number(v.bound));
         let (status, distinct) = (v.status.name(), v.n_distinct);
         let _ = writeln!(out, "{k},{x:?},{y:?},{z:?},{status},{distance},{exx},{eyy},{exy},{first},{bound},{distinct}");
     }

@@ -2,7 +2,7 @@
 //!
 //! | file | content |
 //! | --- | --- |
-//! | `limits.csv` | one [`LimitRow`](maille::record::LimitRow) a line, [`LIMIT_COLUMNS`] first; text columns that could be taken for numbers are quoted |
+//! | `limits.csv` | one [`LimitRow`](maille::record::LimitRow) a line, [`LIMIT_COLUMNS`](maille::record::LIMIT_COLUMNS) first; text columns that could be taken for numbers are quoted |
 //! | `states.jsonl` | one [`StateRecord`](maille::record::StateRecord) a line |
 //! | `run.json` | a [`RunRecord`]: design, parameters, hash of both, counters |
 //! | `polar.svg`, `polar.png` | the plot |
@@ -12,7 +12,7 @@
 //!
 //! Numbers are written with the fewest digits that read back bit for bit.
 
-mod columns;
+mod csv;
 mod error;
 mod folder;
 mod forces;
@@ -25,10 +25,10 @@ mod run;
 mod simulation;
 mod states;
 
-pub use columns::{Cell, Column, LIMIT_COLUMNS, Unit, Values};
+pub(crate) use csv::csv_number;
 pub use error::RecordError;
 pub use folder::{NamedRecord, Record, RecordFolder, file_name};
-pub use forces::{FORCE_COLUMNS, ForceColumn, ForceTable, PLACE_COLUMNS, read_forces, write_forces};
+pub use forces::{FORCE_COLUMNS, ForceTable, PLACE_COLUMNS, read_forces, write_forces};
 pub(crate) use limits::csv_cell;
 pub use limits::{read_limits, write_limits};
 pub use lock::FolderLock;

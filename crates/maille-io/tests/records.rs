@@ -1,10 +1,10 @@
 //! Records: tables, states, and the folder's manners.
 
 use maille::design::Design;
-use maille::record::{ForceRow, LimitRow, PoseRecord, StateRecord, Status};
+use maille::record::{ForceRow, LIMIT_COLUMNS, LimitRow, PoseRecord, StateRecord, Status};
 use maille_io::record::{
-    Counters, ForceTable, LIMIT_COLUMNS, Record, RecordError, RecordFolder, input_hash, read_forces, read_limits,
-    read_run, read_states, write_forces, write_limits, write_states,
+    Counters, ForceTable, Record, RecordError, RecordFolder, input_hash, read_forces, read_limits, read_run,
+    read_states, write_forces, write_limits, write_states,
 };
 use serde_json::{Value, json};
 use std::fs;

@@ -6,8 +6,8 @@ mod foreign;
 mod rows;
 
 use foreign::{checkers, python, run};
-use maille::record::{RECORD_SCHEMA, Status};
-use maille_io::record::{LIMIT_COLUMNS, read_limits, write_limits};
+use maille::record::{Column, LIMIT_COLUMNS, RECORD_SCHEMA, Status};
+use maille_io::record::{read_limits, write_limits};
 use maille_io::table::{Field, Table};
 use serde_json::{Map, Value, json};
 use std::process::Command;
@@ -21,7 +21,7 @@ fn values(line: &[String]) -> Value {
         (text, "count") => text.parse::<u64>().unwrap().into(),
         (text, _) => text.parse::<f64>().unwrap().into(),
     };
-    let cells = line.iter().zip(LIMIT_COLUMNS.map(|c| c.values.kind()));
+    let cells = line.iter().zip(LIMIT_COLUMNS.map(|c| c.kind.name()));
     Value::Object(LIMIT_COLUMNS.iter().map(|c| c.name.to_owned()).zip(cells.map(value)).collect::<Map<_, _>>())
 }
 
@@ -47,7 +47,7 @@ fn other_programs_read_rows_types_and_units() {
     let lines = csv::Reader::from_reader(text.as_bytes()).into_records();
     let lines = lines.map(|line| line.unwrap().iter().map(str::to_owned).collect::<Vec<_>>());
     let run_record = &records[0].record.run;
-    let column = |c: &maille_io::record::Column| json!({ "name": c.name, "type": c.values.kind(), "unit": c.unit.name(Some("mm")), "meaning": c.meaning });
+    let column = |c: &Column| json!({ "name": c.name, "type": c.kind.name(), "unit": c.unit.name(Some("mm")), "meaning": c.meaning });
     let expected = json!({
         "schema": RECORD_SCHEMA,
         "columns": LIMIT_COLUMNS.iter().map(column).collect::<Vec<_>>(),

@@ -3,10 +3,8 @@
 #[path = "common/rows.rs"]
 mod rows;
 
-use maille::record::{RECORD_SCHEMA, Status};
-use maille_io::record::{
-    Column, FORCE_COLUMNS, ForceColumn, LIMIT_COLUMNS, NamedRecord, PLACE_COLUMNS, read_limits, write_limits,
-};
+use maille::record::{Column, LIMIT_COLUMNS, RECORD_SCHEMA, Status};
+use maille_io::record::{FORCE_COLUMNS, NamedRecord, PLACE_COLUMNS, read_limits, write_limits};
 use maille_io::table::{Condition, Extent, Field, SortKey, Table};
 use rows::{design, record, row};
 use serde_json::Value;
@@ -103,6 +101,11 @@ fn document(name: &str) -> String {
     std::fs::read_to_string(path).unwrap()
 }
 
+/// What stands in the first cells of the tables of a page.
+fn names(page: &str) -> Vec<&str> {
+    page.lines().filter_map(|line| line.strip_prefix("| `")?.split('`').next()).collect()
+}
+
 #[test]
 fn the_page_of_columns_says_what_the_program_says() {
     let page = document("docs/record.md");
@@ -111,13 +114,10 @@ fn the_page_of_columns_says_what_the_program_says() {
     let lines: Vec<&str> = page.lines().filter(|line| line.starts_with("| `")).collect();
     let line = |c: &Column| {
         let unit = c.unit.name(None).map(|unit| format!(" {unit}")).unwrap_or_default();
-        format!("| `{}` |{unit} | {} | {} | {} |", c.name, c.values.kind(), c.since, c.meaning)
+        format!("| `{}` |{unit} | {} | {} | {} |", c.name, c.kind.name(), c.since, c.meaning)
     };
     assert_eq!(lines, LIMIT_COLUMNS.iter().map(line).collect::<Vec<_>>());
-    let of_forces: Vec<&str> = forces.lines().filter(|line| line.starts_with("| `")).collect();
-    let line = |c: &ForceColumn| format!("| `{}` | {} | {} |", c.name, c.unit, c.meaning);
-    assert_eq!(of_forces, FORCE_COLUMNS.iter().chain(&PLACE_COLUMNS).map(line).collect::<Vec<_>>());
+    assert_eq!(names(forces), FORCE_COLUMNS.into_iter().chain(PLACE_COLUMNS).collect::<Vec<_>>());
     assert!(LIMIT_COLUMNS.iter().all(|c| (1..=RECORD_SCHEMA).contains(&c.since)));
-    let listed: Vec<&str> = statuses.lines().filter_map(|line| line.strip_prefix("| `")?.split('`').next()).collect();
-    assert_eq!(listed, Status::ALL.map(Status::name));
+    assert_eq!(names(statuses), Status::ALL.map(Status::name));
 }

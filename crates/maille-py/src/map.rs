@@ -7,6 +7,7 @@ use crate::{
 };
 use maille::{
     lattice::Across,
+    record::{Cell, Kind, LIMIT_COLUMNS},
     relaxation::limit::EnergyOptions,
     search::ExactOptions,
     survey::{CellChoice, Method},
@@ -14,7 +15,7 @@ use maille::{
 use maille_io::{
     numbers::{USUAL_DIRECTIONS, USUAL_L2, distinct, parse, parse_l2},
     plot::Quantity,
-    record::{LIMIT_COLUMNS, NamedRecord, Values},
+    record::NamedRecord,
     run::{Map, save_record},
     table::{Field, Table},
 };
@@ -190,14 +191,15 @@ impl Record {
         for column in &LIMIT_COLUMNS {
             let one = PyDict::new(py);
             one.set_item("name", column.name)?;
-            one.set_item("type", column.values.kind())?;
+            one.set_item("type", column.kind.name())?;
             one.set_item("unit", column.unit.name(length))?;
             one.set_item("meaning", column.meaning)?;
-            match column.values {
-                Values::Text(of) => one.set_item("values", rows.iter().map(of).collect::<Vec<_>>())?,
-                Values::Number(of) => one.set_item("values", rows.iter().map(of).collect::<Vec<_>>())?,
-                Values::Count(of) => one.set_item("values", rows.iter().map(of).collect::<Vec<_>>())?,
-                Values::Flag(of) => one.set_item("values", rows.iter().map(of).collect::<Vec<_>>())?,
+            let cells = rows.iter().map(column.get);
+            match column.kind {
+                Kind::Text => one.set_item("values", cells.map(Cell::text).collect::<Vec<_>>())?,
+                Kind::Number => one.set_item("values", cells.map(Cell::number).collect::<Vec<_>>())?,
+                Kind::Count => one.set_item("values", cells.map(Cell::count).collect::<Vec<_>>())?,
+                Kind::Flag => one.set_item("values", cells.map(Cell::flag).collect::<Vec<_>>())?,
             }
             out.append(one)?;
         }

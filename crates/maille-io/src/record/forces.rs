@@ -1,10 +1,11 @@
 //! `forces.csv`: what holds a simulated sheet in each of its frames.
 
 use super::{
-    error::{RecordError, complete},
+    csv::{csv_lines, csv_number, csv_text},
+    error::RecordError,
     plan::SheetPlan,
 };
-use csv::{ReaderBuilder, StringRecord};
+use ::csv::StringRecord;
 use maille::{
     error::InvalidInput,
     model::Model,
@@ -12,49 +13,12 @@ use maille::{
     relaxation::simulate::{Setup, Simulation, force::force_row},
 };
 
-/// A column of the table. Units: `1` is a plain number or a count, `β R/1000` that of `--gravity` and `--force`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ForceColumn {
-    /// Its name.
-    pub name: &'static str,
-    /// Its unit.
-    pub unit: &'static str,
-    /// What it says.
-    pub meaning: &'static str,
-}
-
-const fn column(name: &'static str, unit: &'static str, meaning: &'static str) -> ForceColumn {
-    ForceColumn { name, unit, meaning }
-}
-
-/// The columns before those of the places.
-pub const FORCE_COLUMNS: [ForceColumn; 10] = [
-    column("frame", "1", "line of frames.jsonl, from 0, as in --at frame=3"),
-    column("share", "1", "fraction of the pull that is done"),
-    column(
-        "stretch",
-        "1",
-        "distance between the first pulled place and the one opposite to it, along the pull, divided by that at the start",
-    ),
-    column(
-        "mean_force",
-        "β R/1000",
-        "mean force along the pull on an element of the first pulled place; negative where it compresses the sheet",
-    ),
-    column("f_xx", "1", "F, the linear map of the plane that best fits the motion of all elements"),
-    column("f_xy", "1", "its shear of lines along y towards x"),
-    column("f_yx", "1", "its shear of lines along x towards y"),
-    column("f_yy", "1", "its stretch of lines along y"),
-    column("energy", "β R²", "energy of contacts, targets and loads, as in frames.jsonl"),
-    column("floor_force", "β R/1000", "force of the floor on the sheet along z; empty without a floor"),
-];
+/// The columns before those of the places; `docs/record.md` has what they mean.
+pub const FORCE_COLUMNS: [&str; 10] =
+    ["frame", "share", "stretch", "mean_force", "f_xx", "f_xy", "f_yx", "f_yy", "energy", "floor_force"];
 
 /// The columns of a place, with its name for `PLACE`: the force that it exerts on the sheet.
-pub const PLACE_COLUMNS: [ForceColumn; 3] = [
-    column("force_PLACE_x", "β R/1000", "force of a fixed or pulled place on the sheet, the sum over its elements"),
-    column("force_PLACE_y", "β R/1000", "its y"),
-    column("force_PLACE_z", "β R/1000", "its z"),
-];
+pub const PLACE_COLUMNS: [&str; 3] = ["force_PLACE_x", "force_PLACE_y", "force_PLACE_z"];
 
 /// The table: a row for each frame.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -80,39 +44,30 @@ impl ForceTable {
     /// Names of the columns.
     pub fn columns(&self) -> Vec<String> {
         let of_places =
-            self.places.iter().flat_map(|place| PLACE_COLUMNS.map(|column| column.name.replacen("PLACE", place, 1)));
-        FORCE_COLUMNS.iter().map(|column| column.name.to_owned()).chain(of_places).collect()
+            self.places.iter().flat_map(|place| PLACE_COLUMNS.map(|column| column.replacen("PLACE", place, 1)));
+        FORCE_COLUMNS.iter().map(|column| (*column).to_owned()).chain(of_places).collect()
     }
 }
 
 /// The table as text; numbers with the fewest digits that read back bit for bit, nothing where there is none.
 pub fn write_forces(table: &ForceTable) -> String {
-    let quoted = |name: &String| match name.contains([',', '"', '\n', '\r']) {
-        true => format!("\"{}\"", name.replace('"', "\"\"")),
-        false => name.clone(),
-    };
-    let mut out = table.columns().iter().map(quoted).collect::<Vec<_>>().join(",") + "\n";
+    let names: Vec<String> = table.columns().iter().map(|name| csv_text(name)).collect();
+    let mut out = names.join(",") + "\n";
     for (frame, row) in table.rows.iter().enumerate() {
         let f = row.deformation.map(|[[xx, xy], [yx, yy]]| [xx, xy, yx, yy]);
         let f = (0..4).map(|k| f.map(|f| f[k]));
         let cells = [Some(row.share), row.stretch, row.mean_force].into_iter().chain(f);
         let cells = cells.chain([Some(row.energy), row.floor_force]);
         let cells = cells.chain(row.forces.iter().flatten().copied().map(Some));
-        let cells = cells.map(|x| x.map_or(String::new(), |x| format!("{x:?}")));
-        out += &(std::iter::once(frame.to_string()).chain(cells).collect::<Vec<_>>().join(",") + "\n");
+        let cells: Vec<String> = std::iter::once(frame.to_string()).chain(cells.map(csv_number)).collect();
+        out += &(cells.join(",") + "\n");
     }
     out
 }
 
 /// Reads the table; `file` is the name to show in errors.
 pub fn read_forces(file: &str, text: &str) -> Result<ForceTable, RecordError> {
-    complete(file, text)?;
-    let mut reader = ReaderBuilder::new().has_headers(false).flexible(true).from_reader(text.as_bytes());
-    let mut records = reader.records();
-    let header = match records.next() {
-        None => return Err(RecordError::malformed(file, 1, "the header is missing")),
-        Some(header) => header.map_err(|e| RecordError::malformed(file, 1, e.to_string()))?,
-    };
+    let (header, lines) = csv_lines(file, text)?;
     let mut table = ForceTable { places: places(&header), rows: Vec::new() };
     let columns = table.columns();
     let wrong = (0..columns.len().max(header.len())).find(|&i| header.get(i) != columns.get(i).map(String::as_str));
@@ -121,11 +76,9 @@ pub fn read_forces(file: &str, text: &str) -> Result<ForceTable, RecordError> {
         let problem = format!("column {} is \"{}\", expected {expected}", i + 1, header.get(i).unwrap_or_default());
         return Err(RecordError::malformed(file, 1, problem));
     }
-    for record in records {
-        let record = record.map_err(|e| RecordError::malformed(file, table.rows.len() + 2, e.to_string()))?;
-        let line = record.position().map_or(table.rows.len() + 2, |p| p.line() as usize);
-        let found = row(&columns, &record, table.rows.len());
-        table.rows.push(found.map_err(|problem| RecordError::malformed(file, line, problem))?);
+    for (frame, (line, cells)) in lines.iter().enumerate() {
+        let found = row(&columns, cells, frame);
+        table.rows.push(found.map_err(|problem| RecordError::malformed(file, *line, problem))?);
     }
     Ok(table)
 }

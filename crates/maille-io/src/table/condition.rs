@@ -2,27 +2,22 @@
 
 use super::{Field, Row, TableError};
 use crate::nearest::nearest;
-use crate::record::{Cell, NamedRecord, Values};
-use maille::record::Status;
+use crate::record::NamedRecord;
+use maille::record::{Cell, Kind, Status};
+use std::cmp::Ordering;
 
 /// One condition on the rows of a table.
 #[derive(Clone, Debug)]
 pub struct Condition {
     field: Field,
-    operator: Operator,
-    /// Any of these, for `=` and `!=`; one otherwise.
+    sign: &'static str,
+    holds: Holds,
+    /// Any of these, for `=` and `!=`; one number otherwise.
     values: Vec<Value>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Operator {
-    Equal,
-    Unequal,
-    Less,
-    LessOrEqual,
-    More,
-    MoreOrEqual,
-}
+/// What a sign says of a cell's order to a value.
+type Holds = fn(Ordering) -> bool;
 
 #[derive(Clone, Debug, PartialEq)]
 enum Value {
@@ -34,15 +29,17 @@ enum Value {
 }
 
 /// Longer signs first: `<=` begins with `<`.
-const OPERATORS: [(&str, Operator); 7] = [
-    ("!=", Operator::Unequal),
-    ("<=", Operator::LessOrEqual),
-    (">=", Operator::MoreOrEqual),
-    ("==", Operator::Equal),
-    ("=", Operator::Equal),
-    ("<", Operator::Less),
-    (">", Operator::More),
+const OPERATORS: [(&str, Holds); 7] = [
+    (UNEQUAL, Ordering::is_ne),
+    ("<=", Ordering::is_le),
+    (">=", Ordering::is_ge),
+    ("==", Ordering::is_eq),
+    ("=", Ordering::is_eq),
+    ("<", Ordering::is_lt),
+    (">", Ordering::is_gt),
 ];
+/// Holds of what equals none of its values; the others, of what fits one of them.
+const UNEQUAL: &str = "!=";
 /// What an empty value is called.
 const EMPTY: &str = "none";
 
@@ -70,19 +67,15 @@ impl Condition {
         let (name, rest) = text.split_at(at);
         let sign_end = rest.find(|c: char| !"=!<>~".contains(c)).unwrap_or(rest.len());
         let (sign, value) = rest.split_at(sign_end);
-        let Some((_, operator)) = OPERATORS.into_iter().find(|(known, _)| *known == sign) else {
-            let mut error = wrong(format!("\"{sign}\" in \"{text}\" is no comparison"));
-            let known = OPERATORS.map(|(known, _)| known);
-            if let Some(near) = nearest(sign, &known) {
-                error.help = format!("did you mean {near}? {}", error.help);
-            }
-            return Err(error);
+        let Some((sign, holds)) = OPERATORS.into_iter().find(|(known, _)| *known == sign) else {
+            let error = wrong(format!("\"{sign}\" in \"{text}\" is no comparison"));
+            return Err(with_nearest(sign, &OPERATORS.map(|(known, _)| known), error));
         };
         if name.trim().is_empty() {
             return Err(wrong(format!("\"{text}\" names no column")));
         }
         let field = Field::parse(name)?;
-        let either = matches!(operator, Operator::Equal | Operator::Unequal);
+        let either = [UNEQUAL, "==", "="].contains(&sign);
         let values = if either { value.split('|').collect() } else { vec![value] };
         let values = values.into_iter().map(|value| read(field, value)).collect::<Result<Vec<_>, _>>()?;
         let ordered = values.iter().all(|value| matches!(value, Value::Number(_)));
@@ -90,28 +83,15 @@ impl Condition {
             let help = format!("compare {} with = or !=", field.name());
             return Err(TableError { problem: format!("\"{text}\" has no order"), help });
         }
-        Ok(Self { field, operator, values })
+        Ok(Self { field, sign, holds, values })
     }
 
     /// Whether a row meets the condition. An empty value is neither less nor more than a number, and equals none.
     pub(super) fn holds(&self, row: &Row<'_>) -> bool {
         let cell = self.field.of(row);
-        let number = match cell {
-            Cell::Number(x) => Some(x),
-            Cell::Count(n) => Some(n as f64),
-            _ => None,
-        };
-        let ordered = |holds: fn(f64, f64) -> bool| match (number, &self.values[..]) {
-            (Some(x), [Value::Number(wanted)]) => holds(x, *wanted),
-            _ => false,
-        };
-        match self.operator {
-            Operator::Equal => self.values.iter().any(|value| value.is(cell)),
-            Operator::Unequal => !self.values.iter().any(|value| value.is(cell)),
-            Operator::Less => ordered(|x, wanted| x < wanted && !same(x, wanted)),
-            Operator::LessOrEqual => ordered(|x, wanted| x < wanted || same(x, wanted)),
-            Operator::More => ordered(|x, wanted| x > wanted && !same(x, wanted)),
-            Operator::MoreOrEqual => ordered(|x, wanted| x > wanted || same(x, wanted)),
+        match self.sign {
+            UNEQUAL => self.values.iter().all(|value| value.order(cell).is_none_or(self.holds)),
+            _ => self.values.iter().any(|value| value.order(cell).is_some_and(self.holds)),
         }
     }
 }
@@ -125,14 +105,17 @@ impl NamedRecord {
 }
 
 impl Value {
-    fn is(&self, cell: Cell<'_>) -> bool {
+    /// The order of a cell to this value; none where they cannot be compared.
+    fn order(&self, cell: Cell<'_>) -> Option<Ordering> {
+        let numbers =
+            |x: f64, wanted: f64| if same(x, wanted) { Some(Ordering::Equal) } else { x.partial_cmp(&wanted) };
         match (self, cell) {
-            (Value::Empty, cell) => cell == Cell::Empty,
-            (Value::Number(wanted), Cell::Number(x)) => same(x, *wanted),
-            (Value::Number(wanted), Cell::Count(n)) => n as f64 == *wanted,
-            (Value::Text(wanted), Cell::Text(text)) => wanted == text,
-            (Value::Flag(wanted), Cell::Flag(flag)) => *wanted == flag,
-            _ => false,
+            (Value::Empty, Cell::Empty) => Some(Ordering::Equal),
+            (Value::Number(wanted), Cell::Number(x)) => numbers(x, *wanted),
+            (Value::Number(wanted), Cell::Count(n)) => numbers(n as f64, *wanted),
+            (Value::Text(wanted), Cell::Text(text)) => Some(text.cmp(wanted)),
+            (Value::Flag(wanted), Cell::Flag(flag)) => Some(flag.cmp(wanted)),
+            _ => None,
         }
     }
 }
@@ -159,30 +142,27 @@ fn read(field: Field, text: &str) -> Result<Value, TableError> {
     };
     let word = |known: &[&str]| match known.contains(&text) {
         true => Ok(Value::Text(text.to_owned())),
-        false => {
-            let mut error = wrong(&format!("one of {}", known.join(", ")));
-            if let Some(near) = nearest(text, known) {
-                error.help = format!("did you mean {near}? {}", error.help);
-            }
-            Err(error)
-        }
+        false => Err(with_nearest(text, known, wrong(&format!("one of {}", known.join(", "))))),
     };
-    match field {
-        Field::Record => Ok(Value::Text(text.to_owned())),
-        Field::Limit(column) => match column.values {
-            Values::Number(_) | Values::Count(_) => match text.parse::<f64>() {
-                Ok(x) if x.is_finite() => Ok(Value::Number(x)),
-                _ => Err(wrong("a number")),
-            },
-            Values::Flag(_) => text.parse().map(Value::Flag).map_err(|_| wrong("true or false")),
-            Values::Text(_) => match column.name {
-                "status" => word(&Status::ALL.map(Status::name)),
-                "method" => word(&["exact", "energy"]),
-                "bound_kind" => word(&["chain", "link"]),
-                _ => Ok(Value::Text(text.to_owned())),
-            },
+    match (field.kind(), field.name()) {
+        (Kind::Number | Kind::Count, _) => match text.parse::<f64>() {
+            Ok(x) if x.is_finite() => Ok(Value::Number(x)),
+            _ => Err(wrong("a number")),
         },
+        (Kind::Flag, _) => text.parse().map(Value::Flag).map_err(|_| wrong("true or false")),
+        (Kind::Text, "status") => word(&Status::ALL.map(Status::name)),
+        (Kind::Text, "method") => word(&["exact", "energy"]),
+        (Kind::Text, "bound_kind") => word(&["chain", "link"]),
+        (Kind::Text, _) => Ok(Value::Text(text.to_owned())),
     }
+}
+
+/// The error with the known word that is nearest to one that is not.
+fn with_nearest(word: &str, known: &[&str], mut error: TableError) -> TableError {
+    if let Some(near) = nearest(word, known) {
+        error.help = format!("did you mean {near}? {}", error.help);
+    }
+    error
 }
 
 #[cfg(test)]

@@ -1,8 +1,7 @@
 //! Columns and rows of a table.
 
 use crate::nearest::nearest;
-use crate::record::{Cell, Column, LIMIT_COLUMNS, Unit};
-use maille::record::LimitRow;
+use maille::record::{Cell, Column, Kind, LIMIT_COLUMNS, LimitRow, Unit};
 use thiserror::Error;
 
 /// A column, condition or order that no table has.
@@ -81,10 +80,10 @@ impl Field {
         }
     }
 
-    pub(super) fn kind(self) -> &'static str {
+    pub(super) fn kind(self) -> Kind {
         match self {
-            Field::Record => "text",
-            Field::Limit(column) => column.values.kind(),
+            Field::Record => Kind::Text,
+            Field::Limit(column) => column.kind,
         }
     }
 
@@ -98,7 +97,7 @@ impl Field {
     pub(super) fn of<'a>(self, row: &Row<'a>) -> Cell<'a> {
         match self {
             Field::Record => Cell::Text(row.record),
-            Field::Limit(column) => column.values.of(row.limit),
+            Field::Limit(column) => (column.get)(row.limit),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! A table as JSON: columns with units, the records' inputs, and the rows.
 
 use super::{Row, Table};
-use crate::record::{Cell, NamedRecord};
+use crate::record::NamedRecord;
 use serde_json::{Map, Value, json};
 
 impl Table<'_> {
@@ -10,7 +10,7 @@ impl Table<'_> {
         let column = |field: &super::Field| {
             json!({
                 "name": field.name(),
-                "type": field.kind(),
+                "type": field.kind().name(),
                 "unit": self.unit(*field),
                 "meaning": field.meaning(),
             })
@@ -20,7 +20,7 @@ impl Table<'_> {
             if lines.is_empty() { "[]".to_owned() } else { format!("[\n{}\n  ]", lines.join(",\n")) }
         };
         let row = |row: &Row<'_>| {
-            let cells = self.fields.iter().map(|field| (field.name().to_owned(), value(field.of(row))));
+            let cells = self.fields.iter().map(|field| (field.name().to_owned(), json!(field.of(row))));
             Value::Object(cells.collect::<Map<_, _>>())
         };
         format!(
@@ -43,14 +43,4 @@ pub(super) fn inputs(named: &NamedRecord) -> Value {
         "design": run.design,
         "parameters": run.parameters,
     })
-}
-
-fn value(cell: Cell<'_>) -> Value {
-    match cell {
-        Cell::Empty => Value::Null,
-        Cell::Text(text) => text.into(),
-        Cell::Number(x) => x.into(),
-        Cell::Count(n) => n.into(),
-        Cell::Flag(flag) => flag.into(),
-    }
 }

@@ -1,7 +1,7 @@
 //! `l2,-l1`: the order of the rows.
 
 use super::{Field, Row, TableError};
-use crate::record::Cell;
+use maille::record::Cell;
 use std::cmp::Ordering;
 
 /// A column to sort by.

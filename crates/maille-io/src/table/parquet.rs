@@ -1,10 +1,9 @@
 //! A table as Apache Parquet, with units beside the columns and the records' inputs in the file.
 
 use super::{Field, Table, json};
-use crate::record::{Cell, Values};
 use arrow_array::{ArrayRef, BooleanArray, Float64Array, Int64Array, RecordBatch, StringArray};
 use arrow_schema::{ArrowError, DataType, Schema};
-use maille::record::{RECORD_SCHEMA, StateRecord};
+use maille::record::{Cell, Kind, RECORD_SCHEMA, StateRecord};
 use parquet::arrow::ArrowWriter;
 use parquet::basic::Compression;
 use parquet::file::metadata::KeyValue;
@@ -84,22 +83,18 @@ impl Table<'_> {
     /// The values of a column. A count is a signed integer, so that the difference of two is right in every reader.
     fn array(&self, field: Field) -> Result<ArrayRef, ArrowError> {
         let cells = self.rows.iter().map(|row| field.of(row));
-        let text = || cells.clone().map(|cell| if let Cell::Text(text) = cell { Some(text) } else { None });
-        Ok(match field {
-            Field::Record => Arc::new(text().collect::<StringArray>()),
-            Field::Limit(column) => match column.values {
-                Values::Text(_) => Arc::new(text().collect::<StringArray>()),
-                Values::Number(of) => Arc::new(self.rows.iter().map(|row| of(row.limit)).collect::<Float64Array>()),
-                Values::Flag(of) => Arc::new(self.rows.iter().map(|row| of(row.limit)).collect::<BooleanArray>()),
-                Values::Count(of) => {
-                    let signed = |n: u64| {
-                        let wide = |_| ArrowError::CastError(format!("{} is {n}, too large for Int64", column.name));
-                        i64::try_from(n).map_err(wide)
-                    };
-                    let counts = self.rows.iter().map(|row| of(row.limit).map(signed).transpose());
-                    Arc::new(counts.collect::<Result<Int64Array, _>>()?)
-                }
-            },
+        Ok(match field.kind() {
+            Kind::Text => Arc::new(cells.map(Cell::text).collect::<StringArray>()),
+            Kind::Number => Arc::new(cells.map(Cell::number).collect::<Float64Array>()),
+            Kind::Flag => Arc::new(cells.map(Cell::flag).collect::<BooleanArray>()),
+            Kind::Count => {
+                let signed = |n: u64| {
+                    let wide = |_| ArrowError::CastError(format!("{} is {n}, too large for Int64", field.name()));
+                    i64::try_from(n).map_err(wide)
+                };
+                let counts = cells.map(|cell| cell.count().map(signed).transpose());
+                Arc::new(counts.collect::<Result<Int64Array, _>>()?)
+            }
         })
     }
 }

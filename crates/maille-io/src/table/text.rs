@@ -1,7 +1,7 @@
 //! A table for the terminal: aligned, rounded, as wide as the terminal.
 
 use super::{Field, Table};
-use crate::record::Cell;
+use maille::record::{Cell, Kind};
 use std::fmt::Write;
 
 /// How much of a table is shown.
@@ -110,7 +110,7 @@ impl Table<'_> {
 
     fn drawn(&self, field: Field, shown: usize) -> Drawn {
         let values: Vec<Cell<'_>> = self.rows[..shown].iter().map(|row| field.of(row)).collect();
-        let numbers = || values.iter().filter_map(|cell| if let Cell::Number(x) = cell { Some(*x) } else { None });
+        let numbers = || values.iter().filter_map(|cell| cell.number());
         let largest = numbers().fold(0.0, |most: f64, x| most.max(x.abs()));
         let power = largest > 0.0 && !PLAIN.contains(&largest);
         let decimals = numbers().map(decimals).max().unwrap_or(0);
@@ -131,7 +131,7 @@ impl Table<'_> {
         let unit = self.unit(field).filter(|unit| *unit != "1").map(|unit| format!("[{unit}]")).unwrap_or_default();
         let lengths = cells.iter().map(String::as_str).chain([field.name(), &unit]).map(|text| text.chars().count());
         let width = lengths.max().unwrap_or(0);
-        Drawn { name: field.name(), unit, cells, left: field.kind() == "text", width }
+        Drawn { name: field.name(), unit, cells, left: field.kind() == Kind::Text, width }
     }
 }
 
