@@ -296,7 +296,7 @@ fn svg(args: &Args, records: &[NamedRecord], cells: &[ReferenceCell]) -> Result<
         (Kind::Polar, [one]) => {
             let (run, rows) = (&one.record.run, &one.record.rows);
             let quantity = args.quantity.map_or_else(Quantity::default, Into::into);
-            let plot = PolarPlot::from_rows(&run.design, rows, quantity, &parameter_words(&run.parameters));
+            let plot = PolarPlot::from_rows(&run.design, rows, quantity, &parameter_words(run));
             polar_svg(&measured(plot), Layout::Beside)
         }
         (Kind::Polar, several) => {

@@ -8,7 +8,7 @@ use maille::{
     model::Model,
     record::LimitRow,
     search::ExactOptions,
-    survey::{Method, characterize},
+    survey::{MapQuestion, Method, characterize},
 };
 use maille_io::{
     record::{Counters, NamedRecord, Record, RunRecord},
@@ -28,6 +28,8 @@ fn limits_along(design: &Design, directions: &[f64], l2: &[f64], words: &str) ->
     let model = Model::compile(design, Cell::PRIMITIVE).unwrap();
     let rows: Mutex<Vec<LimitRow>> = Mutex::new(Vec::new());
     let method = Method::Exact(ExactOptions::default());
+    let (directions_deg, cells) = (directions.to_vec(), vec![Cell::PRIMITIVE]);
+    let question = MapQuestion { method: method.clone(), cells, directions_deg, l2: l2.to_vec() };
     let found = |finished: maille::survey::Finished| rows.lock().unwrap().push(finished.row);
     let cancel = AtomicBool::new(false);
     characterize(&[model], design.minor_radius, &method, directions, l2, &|_| true, &cancel, &found);
@@ -38,7 +40,7 @@ fn limits_along(design: &Design, directions: &[f64], l2: &[f64], words: &str) ->
         program_version: String::new(),
         input_hash: String::new(),
         design: design.clone(),
-        parameters: serde_json::json!({ "method": "exact", "cells": ["1x1"] }),
+        parameters: serde_json::json!(question),
         counters: Counters::of(&rows),
         files: Default::default(),
     };

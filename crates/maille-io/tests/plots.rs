@@ -5,12 +5,14 @@ mod rows;
 
 use maille::record::{ForceRow, LimitRow, Status};
 use maille::relaxation::simulate::End;
+use maille::search::ExactOptions;
 use maille_io::plot::{
     Curve, CurveKind, Layout, NamedSimulation, PolarPlot, Quantity, Spread, difference_svg, force_svg, polar_svg,
     steps_svg, svg_to_png, times_svg,
 };
 use maille_io::record::{ForceTable, NamedRecord, SimulationRecord};
 use rows::{design, record};
+use serde_json::json;
 
 /// Rows of one l2, one of them without a limit.
 fn turn(l2: f64, missing: f64) -> Vec<LimitRow> {
@@ -172,7 +174,10 @@ fn three() -> Vec<NamedRecord> {
             row.lambda1 = row.l1.map(|l1| (1.0 + l1).powi(2));
         }
         let mut named = record(&format!("out/{method}-{r}"), design(), rows);
-        named.record.run.parameters["method"] = method.into();
+        if method == "exact" {
+            let parameters = &mut named.record.run.parameters;
+            (parameters["method"], parameters["options"]) = (method.into(), json!(ExactOptions::default()));
+        }
         named
     };
     vec![by("exact", 0.1, 7), by("energy", 0.1, 1000), by("exact", 0.05, 9)]

@@ -1,29 +1,25 @@
 //! Several records in one plot: what they have in common, and what tells them apart.
 
 use super::scale::signed;
-use crate::record::NamedRecord;
+use crate::record::{NamedRecord, RunRecord};
 use maille::design::Design;
 use maille::record::{LimitRow, Status};
-use serde_json::Value;
+use maille::relaxation::target::Protocol;
+use maille::survey::{MapQuestion, Method};
 
-/// What a record's `parameters` say about it in a caption: `τ = 0.01`.
-pub fn parameter_words(parameters: &Value) -> Vec<String> {
-    let options = &parameters["options"];
-    let number = |name: &str| options[name].as_f64();
-    let protocol = match options["protocol"].as_str() {
-        Some("corners") => Some("corner protocol".to_owned()),
-        Some(other) => Some(format!("{other} protocol")),
-        None => None,
+/// What a record's question says about it in a caption: `τ = 0.01`. Nothing of the exact method.
+pub fn parameter_words(run: &RunRecord) -> Vec<String> {
+    let Ok(MapQuestion { method: Method::Energy(options), .. }) = run.question() else { return Vec::new() };
+    let protocol = match options.protocol {
+        Protocol::Corners => "corner protocol",
+        Protocol::Strain => "strain protocol",
     };
-    [
-        protocol,
-        number("alpha").map(|x| format!("α/β = {x:.0e}")),
-        number("tau").map(|x| format!("τ = {x}")),
-        number("l1_resolution").map(|x| format!("l₁ to {x}")),
+    vec![
+        protocol.to_owned(),
+        format!("α/β = {:.0e}", options.alpha),
+        format!("τ = {}", options.tau),
+        format!("l₁ to {}", options.l1_resolution),
     ]
-    .into_iter()
-    .flatten()
-    .collect()
 }
 
 /// Name and title of a design.
@@ -96,7 +92,7 @@ fn significant(x: f64) -> String {
 /// What is different in a record, as `exact` or `3.1, r = 0.05`, and above all of them what it is: `Method`, or
 /// `Design, r`.
 pub(super) fn differences(records: &[NamedRecord]) -> (String, Vec<String>) {
-    let method = |named: &NamedRecord| named.record.run.parameters["method"].as_str().unwrap_or_default().to_owned();
+    let method = |named: &NamedRecord| named.record.run.question().map_or("", |asked| asked.method.name()).to_owned();
     let radius = |named: &NamedRecord| {
         let radii = radii(&named.record.run.design, &named.record.rows, false).join(", ");
         if radii.is_empty() { "r of each ring".to_owned() } else { radii }
@@ -112,7 +108,7 @@ pub(super) fn differences(records: &[NamedRecord]) -> (String, Vec<String>) {
     ];
     let mut parts: Vec<Part> = first.into_iter().filter(|(_, of)| of.windows(2).any(|w| w[0] != w[1])).collect();
     // The method says already that its parameters are others.
-    let words: Vec<_> = records.iter().map(|named| parameter_words(&named.record.run.parameters)).collect();
+    let words: Vec<_> = records.iter().map(|named| parameter_words(&named.record.run)).collect();
     let own = |i: usize| {
         let same_method = (0..records.len()).filter(|&j| method(&records[j]) == method(&records[i]));
         let others: Vec<usize> = same_method.collect();
@@ -166,7 +162,7 @@ fn labels(parts: &[(&str, Vec<String>)], count: usize) -> Vec<String> {
 pub(super) fn captions(records: &[NamedRecord], labels: &[String]) -> Vec<String> {
     let caption = |(named, label): (&NamedRecord, &String)| {
         let (run, rows) = (&named.record.run, &named.record.rows);
-        let words = inputs(&run.design, rows, &parameter_words(&run.parameters));
+        let words = inputs(&run.design, rows, &parameter_words(run));
         let told = missing(rows, |row| row.l1).into_iter().chain(growing(rows));
         let told: String = told.map(|words| format!("  {words}")).collect();
         let directions = directions(rows).map(|text| format!("  ·  {text}.")).unwrap_or_default();

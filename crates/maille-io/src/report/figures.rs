@@ -1,6 +1,6 @@
 //! The figures of chapter 6, from records.
 
-use super::map::{Map, extreme, ratio_label, signed};
+use super::map::{Map, extreme, imposed_on_corners, ratio_label, signed};
 use crate::{
     plot::{
         Layout, OfStep, PolarPlot, Quantity, Ray, RayKind, Spread, difference_svg, parameter_words, polar_svg, run_svg,
@@ -81,7 +81,7 @@ fn arrangements(design: &str, pairs: &[(&NamedRecord, &Map)], out: &mut Vec<Figu
     for (rearranged, cell) in [(false, "sheared"), (true, "rectangular")] {
         for named in named(&of(pairs, &[design], |map| map.corners && map.rearranged == rearranged)) {
             let (run, rows) = (&named.record.run, &named.record.rows);
-            let words = parameter_words(&run.parameters);
+            let words = parameter_words(run);
             let mut plot = PolarPlot::from_rows(&run.design, rows, Quantity::Lambda1, &words);
             plot.room_for = lambda1(pairs, |map| map.design == design && map.corners);
             out.push(Figure {
@@ -100,7 +100,8 @@ fn arrangements(design: &str, pairs: &[(&NamedRecord, &Map)], out: &mut Vec<Figu
     }
     chosen.retain(|named| !named.record.rows.is_empty());
     if chosen.len() > 1 {
-        let corners = chosen.iter().any(|named| named.record.run.parameters["options"]["protocol"] == "corners");
+        let corners =
+            chosen.iter().any(|named| named.record.run.question().is_ok_and(|asked| imposed_on_corners(&asked)));
         out.push(Figure {
             number: "6.12",
             file: format!("6.12-{design}"),
@@ -139,7 +140,7 @@ fn named(chosen: &[(&NamedRecord, &Map)]) -> Vec<NamedRecord> {
 /// Limits of one sheet in λ1 − 1, with its directions and, where there is one, the energy method's limits as markers.
 fn polar(number: &'static str, named: &NamedRecord, map: &Map, pairs: &[(&NamedRecord, &Map)]) -> Figure {
     let (run, rows) = (&named.record.run, &named.record.rows);
-    let words = parameter_words(&run.parameters);
+    let words = parameter_words(run);
     let mut plot = PolarPlot::from_rows(&run.design, rows, Quantity::Lambda1, &words).without_bounds();
     // R/10 and R/20 on one scale.
     plot.room_for = lambda1(pairs, |other| {
@@ -153,7 +154,7 @@ fn polar(number: &'static str, named: &NamedRecord, map: &Map, pairs: &[(&NamedR
     };
     if let Some((check, _)) = pairs.iter().find(checks) {
         plot = plot.checked_by(&check.record.rows, "energy method");
-        let words = parameter_words(&check.record.run.parameters).join("  ·  ");
+        let words = parameter_words(&check.record.run).join("  ·  ");
         plot.caption.push(format!("Lines: exact method. Markers: energy method, {words}."));
     }
     let ray = |kind: RayKind| move |degrees: f64| Ray { degrees, kind };

@@ -1,6 +1,6 @@
 //! A record as the report sees it, and what is asked of its directions.
 
-use crate::record::NamedRecord;
+use crate::record::{NamedRecord, RecordError};
 use maille::{
     bound::ChainBound,
     design::Source,
@@ -8,6 +8,8 @@ use maille::{
     lattice::Cell,
     model::Model,
     record::{LimitRow, Status},
+    relaxation::target::Protocol,
+    survey::{MapQuestion, Method},
 };
 
 /// A record as the statements see it.
@@ -39,14 +41,15 @@ impl Map {
     /// What a record is; the interlocking directions are found from the links of its design.
     pub fn of(named: &NamedRecord) -> Result<Map, Vec<InvalidInput>> {
         let run = &named.record.run;
-        let first_cell = run.parameters["cells"][0].as_str().unwrap_or_default();
+        let damaged = |e: RecordError| vec![InvalidInput::new("parameters", e.to_string(), "compute the record again")];
+        let question = run.question().map_err(damaged)?;
         Ok(Map {
             design: run.design.name.clone(),
             source: run.design.source,
             ratio: run.design.minor_radius.unwrap_or(f64::NAN) / run.design.reference_radius,
-            method: run.parameters["method"].as_str().unwrap_or_default().to_owned(),
-            corners: run.parameters["options"]["protocol"] == "corners",
-            rearranged: first_cell != "1x1",
+            method: question.method.name().to_owned(),
+            corners: imposed_on_corners(&question),
+            rearranged: question.cells.first() != Some(&Cell::PRIMITIVE),
             minima: named.name.ends_with(MINIMA),
             steps: named.name.ends_with(STEPS),
             interlocking_deg: interlocking(&Model::compile(&run.design, Cell::PRIMITIVE)?),
@@ -106,6 +109,11 @@ impl Map {
     pub(super) fn tie(&self) -> f64 {
         if self.method == "exact" { EXACT_TIE } else { ENERGY_TIE }
     }
+}
+
+/// Whether a map imposes the deformation on the cell's corners.
+pub(super) fn imposed_on_corners(question: &MapQuestion) -> bool {
+    matches!(&question.method, Method::Energy(options) if options.protocol == Protocol::Corners)
 }
 
 /// Added to the name of a design that is another one in another size.

@@ -225,7 +225,7 @@ pub fn save_record(record: &Record, folder: &Path, quantity: Quantity, overwrite
 }
 
 fn write_polar(record: &Record, folder: &RecordFolder, quantity: Quantity) -> Result<(), MapError> {
-    let words = parameter_words(&record.run.parameters);
+    let words = parameter_words(&record.run);
     let svg = polar_svg(&PolarPlot::from_rows(&record.run.design, &record.rows, quantity, &words), Layout::Beside);
     let png = svg_to_png(&svg, 2.0)?;
     Ok(folder.write_polar(&svg, &png)?)

@@ -2,7 +2,10 @@
 #![allow(dead_code, reason = "each program that includes this file uses a part of it")]
 
 use maille::design::Design;
+use maille::lattice::Cell;
 use maille::record::{LimitRow, RECORD_SCHEMA, Status};
+use maille::relaxation::limit::EnergyOptions;
+use maille::survey::{MapQuestion, Method};
 use maille_io::record::{Counters, NamedRecord, Record, RunRecord};
 
 /// The built-in design 1.1.
@@ -33,12 +36,18 @@ pub fn turn(l2: f64, l1: impl Fn(f64) -> Option<f64>) -> Vec<LimitRow> {
 
 /// A record of these rows, without states.
 pub fn record(name: &str, design: Design, rows: Vec<LimitRow>) -> NamedRecord {
+    let question = MapQuestion {
+        method: Method::Energy(EnergyOptions { tau: 0.01, ..EnergyOptions::default() }),
+        cells: vec![Cell::PRIMITIVE],
+        directions_deg: rows.iter().map(|row| row.direction_deg).collect(),
+        l2: rows.iter().map(|row| row.l2).collect(),
+    };
     let run = RunRecord {
         schema: RECORD_SCHEMA,
         program_version: "0.1.0".into(),
         input_hash: "0".into(),
         design,
-        parameters: serde_json::json!({ "method": "energy", "options": { "tau": 0.01 } }),
+        parameters: serde_json::json!(question),
         counters: Counters::of(&rows),
         files: Default::default(),
     };
