@@ -9,6 +9,7 @@ mod syntax;
 mod write;
 
 pub use number::NumberPath;
+pub(crate) use problem::line_column;
 pub use problem::{DesignError, DesignProblem, ListedProblem};
 pub use write::write_design;
 

@@ -1,7 +1,7 @@
 //! Studies: which maps of which designs, in one TOML file.
 
 use crate::{
-    design_toml::NumberPath,
+    design_toml::{NumberPath, line_column},
     numbers::{Numbers, parse, parse_l2},
     plot::Quantity,
     run::Map,
@@ -13,9 +13,10 @@ use maille::{
     search::ExactOptions,
     survey::{CellChoice, Method},
 };
-use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode, SourceSpan};
+use miette::{Diagnostic, NamedSource, SourceSpan};
 use serde::Deserialize;
-use std::{collections::BTreeMap, fmt, ops::Range, path::PathBuf, sync::Arc};
+use std::{collections::BTreeMap, ops::Range, path::PathBuf, sync::Arc};
+use thiserror::Error;
 use toml::Spanned;
 
 /// What `maille sweep` computes: each design, at each of its radii and spacings, over all directions and l2.
@@ -169,8 +170,10 @@ impl Study {
     /// assert_eq!(study.designs[0].minor_radius, [0.05, 0.1]);
     /// ```
     pub fn read(source_name: &str, text: &str) -> Result<Study, StudyError> {
-        let source = Arc::new(NamedSource::new(source_name, text.to_owned()));
-        Self::parsed(text).map_err(|wrong| StudyError { source, wrong })
+        Self::parsed(text).map_err(|Wrong { problem, help, span }| {
+            let source_code = Arc::new(NamedSource::new(source_name, text.to_owned()));
+            StudyError { source_code, problem, help, span: span.into() }
+        })
     }
 
     /// How limits are found: starts and seed of the study, the rest as usual.
@@ -201,77 +204,78 @@ impl Study {
         if raw.designs.get_ref().is_empty() {
             return Err(wrong(&raw.designs, "the study has no design", "add [[designs]] with design = \"1.1\""));
         }
-        let list = |list: &Option<Spanned<List>>, usual: &str, read: fn(&str) -> Result<Numbers, String>| match list {
-            None => read(usual).map(|n| n.0).map_err(|problem| Wrong { problem, help: HELP.into(), span: 0..0 }),
-            Some(list) => read(&list.get_ref().text()).map(|n| n.0).map_err(|p| wrong(list, p, HELP)),
-        };
         let cell = match &raw.cell {
             Some(cell) if cell.get_ref() != "auto" => {
-                Some(cell.get_ref().parse().map_err(|e: maille::error::InvalidInput| wrong(cell, e.problem, e.help))?)
+                Some(cell.get_ref().parse().map_err(|e: InvalidInput| wrong(cell, e.problem, e.help))?)
             }
             _ => None,
         };
-        let whole = |number: &Option<Spanned<i64>>, least: i64| match number {
-            Some(n) if *n.get_ref() < least => {
-                Err(wrong(n, format!("{} is too small", n.get_ref()), format!("give a whole number from {least}")))
-            }
-            Some(n) => Ok(Some(n.get_ref().unsigned_abs())),
-            None => Ok(None),
-        };
-        let positive = |numbers: &Option<Spanned<List>>| match numbers {
-            None => Ok(Vec::new()),
-            Some(spanned) => {
-                let values = list(numbers, "", parse)?;
-                match values.iter().find(|x| **x <= 0.0) {
-                    Some(x) => Err(wrong(spanned, format!("{x} is not positive"), "give numbers above 0")),
-                    None => Ok(values),
-                }
-            }
-        };
         let mut designs = Vec::new();
-        for design in raw.designs.get_ref() {
-            let mut vary = Vec::new();
-            for (path, values) in &design.vary {
+        for RawDesign { design, minor_radius, spacing, vary } in raw.designs.get_ref() {
+            let mut varied = Vec::new();
+            for (path, values) in vary {
                 let path = path.parse::<NumberPath>().map_err(|e| wrong(values, e.problem, e.help))?;
-                let read = parse(&values.get_ref().text()).map_err(|problem| wrong(values, problem, HELP))?;
-                vary.push((path, read.0));
+                varied.push((path, numbers(values, parse)?));
             }
             designs.push(StudyDesign {
-                design: design.design.get_ref().clone(),
-                minor_radius: positive(&design.minor_radius)?,
-                spacing: positive(&design.spacing)?,
-                vary,
+                design: design.get_ref().clone(),
+                minor_radius: minor_radius.as_ref().map(positive).transpose()?.unwrap_or_default(),
+                spacing: spacing.as_ref().map(positive).transpose()?.unwrap_or_default(),
+                vary: varied,
             });
         }
+        let directions_deg = raw.directions.map(|list| numbers(&list, parse)).transpose()?;
         Ok(Study {
-            directions_deg: list(&raw.directions, "0:180:15", parse)?,
-            l2: list(&raw.l2, "0", parse_l2)?,
+            directions_deg: directions_deg.unwrap_or_else(|| (0..=180).step_by(15).map(f64::from).collect()),
+            l2: raw.l2.map(|list| numbers(&list, parse_l2)).transpose()?.unwrap_or_else(|| vec![0.0]),
             cell,
-            starts: whole(&raw.starts, 1)?.map(|n| n as usize),
-            seed: whole(&raw.seed, 0)?.unwrap_or(1),
+            starts: raw.starts.map(|n| whole(&n, 1)).transpose()?.map(|n| n as usize),
+            seed: raw.seed.map(|n| whole(&n, 0)).transpose()?.unwrap_or(1),
             designs,
         })
     }
 }
 
+fn numbers(list: &Spanned<List>, read: fn(&str) -> Result<Numbers, String>) -> Result<Vec<f64>, Wrong> {
+    read(&list.get_ref().text()).map(|numbers| numbers.0).map_err(|problem| wrong(list, problem, HELP))
+}
+
+fn positive(list: &Spanned<List>) -> Result<Vec<f64>, Wrong> {
+    let values = numbers(list, parse)?;
+    match values.iter().find(|x| **x <= 0.0) {
+        Some(x) => Err(wrong(list, format!("{x} is not positive"), "give numbers above 0")),
+        None => Ok(values),
+    }
+}
+
+fn whole(number: &Spanned<i64>, least: u64) -> Result<u64, Wrong> {
+    let n = *number.get_ref();
+    let small = || wrong(number, format!("{n} is too small"), format!("give a whole number from {least}"));
+    u64::try_from(n).ok().filter(|n| *n >= least).ok_or_else(small)
+}
+
 /// What is wrong with a study, shown at its place.
-#[derive(Debug)]
+#[derive(Debug, Error, Diagnostic)]
+#[error("{problem}")]
 pub struct StudyError {
-    source: Arc<NamedSource<String>>,
-    wrong: Wrong,
+    #[source_code]
+    source_code: Arc<NamedSource<String>>,
+    problem: String,
+    #[help]
+    help: String,
+    #[label]
+    span: SourceSpan,
 }
 
 impl StudyError {
     /// Line and column of the place, from 1.
     pub fn line_column(&self) -> (usize, usize) {
-        let before = self.source.inner().get(..self.wrong.span.start).unwrap_or_default();
-        let line = before.rsplit('\n').next().unwrap_or_default();
-        (before.matches('\n').count() + 1, line.chars().count() + 1)
+        line_column(self.source_code.inner(), self.span.offset()).unwrap_or((1, 1))
     }
 
     /// What would be right.
     pub fn help_text(&self) -> &str {
-        &self.wrong.help
+        &self.help
     }
 }
 
@@ -284,29 +288,6 @@ struct Wrong {
 
 fn wrong<T>(at: &Spanned<T>, problem: impl Into<String>, help: impl Into<String>) -> Wrong {
     Wrong { problem: problem.into(), help: help.into(), span: at.span() }
-}
-
-impl fmt::Display for StudyError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.wrong.problem)
-    }
-}
-
-impl std::error::Error for StudyError {}
-
-impl Diagnostic for StudyError {
-    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        Some(Box::new(&self.wrong.help))
-    }
-
-    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let span = SourceSpan::from(self.wrong.span.clone());
-        Some(Box::new(std::iter::once(LabeledSpan::new_with_span(None, span))))
-    }
-
-    fn source_code(&self) -> Option<&dyn SourceCode> {
-        Some(&*self.source)
-    }
 }
 
 #[cfg(test)]
@@ -357,7 +338,7 @@ mod tests {
             let error = Study::read("s", text).unwrap_err();
             assert!(error.to_string().contains(problem), "{text}: {error}");
             if let Some(place) = place {
-                assert_eq!(&text[error.wrong.span.clone()], place, "{text}");
+                assert_eq!(&text[error.span.offset()..error.span.offset() + error.span.len()], place, "{text}");
                 let line = text.lines().position(|line| line.contains(place));
                 assert_eq!(Some(error.line_column().0), line.map(|k| k + 1), "{text}");
             }

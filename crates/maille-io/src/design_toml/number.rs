@@ -1,7 +1,7 @@
 //! A number of a design, named by its place in the file: `lattice.a1.x`, `elements.standing-*.rings.major_radius`.
 
 use maille::{
-    design::{Design, RingSpec},
+    design::{Design, ElementSpec, RingSpec},
     error::InvalidInput,
 };
 use std::{fmt, str::FromStr};
@@ -20,14 +20,9 @@ enum Place {
     /// Which lattice vector, and which of its components.
     Lattice(usize, usize),
     /// Of the elements of this name, in which `*` stands for anything.
-    Elements(String, OfElement),
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum OfElement {
-    Center(usize),
-    /// Of this ring, or of all.
-    Ring(Option<usize>, OfRing),
+    Center(String, usize),
+    /// The same; of this ring, or of all.
+    Ring(String, Option<usize>, OfRing),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,39 +42,34 @@ impl FromStr for NumberPath {
 
     fn from_str(text: &str) -> Result<Self, InvalidInput> {
         let parts: Vec<&str> = text.split('.').collect();
-        let axis = |name: &str| ["x", "y", "z"].iter().position(|axis| *axis == name);
-        let place = match parts[..] {
-            ["minor_radius"] => Some(Place::MinorRadius),
-            ["reference_radius"] => Some(Place::ReferenceRadius),
-            ["lattice", "a1", name] => axis(name).map(|axis| Place::Lattice(0, axis)),
-            ["lattice", "a2", name] => axis(name).map(|axis| Place::Lattice(1, axis)),
-            ["elements", ..] => of_elements(&parts[1..], axis),
-            _ => None,
-        };
         let wrong = || InvalidInput::new("vary", format!("\"{text}\" names no number of a design"), FORMS);
-        place.map(|place| NumberPath { text: text.to_owned(), place }).ok_or_else(wrong)
+        place(&parts).map(|place| NumberPath { text: text.to_owned(), place }).ok_or_else(wrong)
     }
 }
 
-/// `NAME.center.x` and the like; a name may have dots.
-fn of_elements(parts: &[&str], axis: impl Fn(&str) -> Option<usize>) -> Option<Place> {
-    let of_ring = |last: &[&str]| match *last {
-        ["major_radius"] => Some(OfRing::MajorRadius),
-        ["minor_radius"] => Some(OfRing::MinorRadius),
-        ["normal", name] => axis(name).map(OfRing::Normal),
-        ["offset", name] => axis(name).map(OfRing::Offset),
-        _ => None,
-    };
-    let at = parts.iter().rposition(|part| ["center", "rings"].contains(part)).filter(|at| *at > 0)?;
-    let field = match (parts[at], &parts[at + 1..]) {
-        ("center", [name]) => OfElement::Center(axis(name)?),
-        ("rings", [ring, last @ ..]) if ring.parse::<usize>().is_ok() => {
-            OfElement::Ring(ring.parse().ok(), of_ring(last)?)
+fn place(parts: &[&str]) -> Option<Place> {
+    let axis = |name: &str| ["x", "y", "z"].iter().position(|axis| *axis == name);
+    Some(match *parts {
+        ["minor_radius"] => Place::MinorRadius,
+        ["reference_radius"] => Place::ReferenceRadius,
+        ["lattice", "a1", last] => Place::Lattice(0, axis(last)?),
+        ["lattice", "a2", last] => Place::Lattice(1, axis(last)?),
+        ["elements", ref name @ .., "center", last] if !name.is_empty() => Place::Center(name.join("."), axis(last)?),
+        ["elements", ref rest @ ..] => {
+            // A name may have dots.
+            let at = rest.iter().rposition(|part| *part == "rings").filter(|at| *at > 0)?;
+            let index = rest.get(at + 1).and_then(|ring| ring.parse().ok());
+            let of_ring = match rest[at + 1 + usize::from(index.is_some())..] {
+                ["major_radius"] => OfRing::MajorRadius,
+                ["minor_radius"] => OfRing::MinorRadius,
+                ["normal", last] => OfRing::Normal(axis(last)?),
+                ["offset", last] => OfRing::Offset(axis(last)?),
+                _ => return None,
+            };
+            Place::Ring(rest[..at].join("."), index, of_ring)
         }
-        ("rings", last) => OfElement::Ring(None, of_ring(last)?),
         _ => return None,
-    };
-    Some(Place::Elements(parts[..at].join("."), field))
+    })
 }
 
 impl fmt::Display for NumberPath {
@@ -99,50 +89,50 @@ impl NumberPath {
     /// The design with `value` at this place. Refused where the design has no such place.
     pub fn set(&self, design: &Design, value: f64) -> Result<Design, InvalidInput> {
         let mut out = design.clone();
-        match &self.place {
-            Place::MinorRadius => out.minor_radius = Some(value),
-            Place::ReferenceRadius => out.reference_radius = value,
-            Place::Lattice(0, axis) => out.lattice.a1[*axis] = value,
-            Place::Lattice(_, axis) => out.lattice.a2[*axis] = value,
-            Place::Elements(pattern, field) => {
-                let mut set = 0;
-                for element in out.elements.iter_mut().filter(|element| matches(pattern, &element.name)) {
-                    match *field {
-                        OfElement::Center(axis) => {
-                            element.center[axis] = value;
-                            set += 1;
-                        }
-                        OfElement::Ring(index, of_ring) => {
-                            let rings = element.rings.iter_mut().enumerate();
-                            for (_, ring) in rings.filter(|(k, _)| index.is_none_or(|index| index == *k)) {
-                                set_ring(ring, of_ring, value);
-                                set += 1;
-                            }
-                        }
-                    }
-                }
-                if set == 0 {
-                    return Err(self.nowhere(design));
-                }
-            }
+        let numbers = self.numbers(&mut out);
+        if numbers.is_empty() {
+            let elements: Vec<_> =
+                design.elements.iter().map(|e| format!("{} ({} rings)", e.name, e.rings.len())).collect();
+            let problem = format!("{} has no number {}", design.name, self.text);
+            return Err(InvalidInput::new("vary", problem, format!("its elements are {}", elements.join(", "))));
         }
+        numbers.into_iter().for_each(|number| *number = value);
         Ok(out)
     }
 
-    fn nowhere(&self, design: &Design) -> InvalidInput {
-        let elements = design.elements.iter().map(|e| format!("{} ({} rings)", e.name, e.rings.len()));
-        let problem = format!("{} has no number {}", design.name, self.text);
-        InvalidInput::new("vary", problem, format!("its elements are {}", elements.collect::<Vec<_>>().join(", ")))
+    /// The numbers of a design at this place.
+    fn numbers<'a>(&self, design: &'a mut Design) -> Vec<&'a mut f64> {
+        match &self.place {
+            Place::MinorRadius => vec![design.minor_radius.get_or_insert_default()],
+            Place::ReferenceRadius => vec![&mut design.reference_radius],
+            Place::Lattice(0, axis) => vec![&mut design.lattice.a1[*axis]],
+            Place::Lattice(_, axis) => vec![&mut design.lattice.a2[*axis]],
+            Place::Center(name, axis) => {
+                named(&mut design.elements, name).map(|element| &mut element.center[*axis]).collect()
+            }
+            Place::Ring(name, index, of_ring) => {
+                let rings = named(&mut design.elements, name).flat_map(|element| element.rings.iter_mut().enumerate());
+                let rings = rings.filter(|(k, _)| index.is_none_or(|index| index == *k));
+                rings.map(|(_, ring)| of_ring.of(ring)).collect()
+            }
+        }
     }
 }
 
-fn set_ring(ring: &mut RingSpec, of_ring: OfRing, value: f64) {
-    match of_ring {
-        OfRing::MajorRadius => ring.major_radius = value,
-        OfRing::MinorRadius => ring.minor_radius = Some(value),
-        OfRing::Normal(axis) => ring.normal[axis] = value,
-        OfRing::Offset(axis) => ring.offset[axis] = value,
+impl OfRing {
+    fn of(self, ring: &mut RingSpec) -> &mut f64 {
+        match self {
+            OfRing::MajorRadius => &mut ring.major_radius,
+            OfRing::MinorRadius => ring.minor_radius.get_or_insert_default(),
+            OfRing::Normal(axis) => &mut ring.normal[axis],
+            OfRing::Offset(axis) => &mut ring.offset[axis],
+        }
     }
+}
+
+/// The elements whose name is of a pattern.
+fn named<'a>(elements: &'a mut [ElementSpec], pattern: &str) -> impl Iterator<Item = &'a mut ElementSpec> {
+    elements.iter_mut().filter(move |element| matches(pattern, &element.name))
 }
 
 /// Whether a name is of a pattern, in which `*` stands for any characters.

@@ -8,26 +8,31 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
+use thiserror::Error;
 
 /// One thing that is wrong with a design file.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error, Diagnostic)]
+#[error("{field}{}{problem}", if field.is_empty() { "" } else { ": " })]
 pub struct DesignProblem {
     field: String,
     problem: String,
+    #[help]
     help: String,
-    span: Option<Range<usize>>,
-    label: Option<String>,
+    #[label(collection)]
+    place: Option<LabeledSpan>,
 }
 
 impl DesignProblem {
     pub(super) fn new(field: &str, problem: impl Into<String>, help: impl Into<String>, span: Range<usize>) -> Self {
-        Self { field: field.into(), problem: problem.into(), help: help.into(), span: Some(span), label: None }
+        let place = Some(LabeledSpan::new_with_span(None, span));
+        Self { field: field.into(), problem: problem.into(), help: help.into(), place }
     }
 
     /// A field that is not there: `span` is where it would stand, `place` how to say so.
     pub(super) fn missing(field: &str, help: &str, span: Range<usize>, place: &str) -> Self {
         let key = field.rsplit('.').next().unwrap_or(field);
-        Self { label: Some(format!("`{key}` {place}")), ..Self::new(field, "is missing", help, span) }
+        let place = Some(LabeledSpan::new_with_span(Some(format!("`{key}` {place}")), span.clone()));
+        Self { place, ..Self::new(field, "is missing", help, span) }
     }
 
     pub(super) fn syntax(error: &toml::de::Error, text: &str) -> Self {
@@ -48,11 +53,12 @@ impl DesignProblem {
             Place::Top(span) => (Some(span), Some(format!("`{}` belongs here", input.field))),
             Place::None => (None, None),
         };
-        Self { field: input.field.clone(), problem: input.problem.clone(), help: input.help.clone(), span, label }
+        let place = span.map(|span| LabeledSpan::new_with_span(label, span));
+        Self { field: input.field.clone(), problem: input.problem.clone(), help: input.help.clone(), place }
     }
 
     pub(super) fn start(&self) -> usize {
-        self.span.as_ref().map_or(0, |s| s.start)
+        self.place.as_ref().map_or(0, LabeledSpan::offset)
     }
 
     /// Path of the field, as `elements[2].rings[0].normal`; empty where the file is no TOML.
@@ -64,33 +70,13 @@ impl DesignProblem {
     pub fn help_text(&self) -> &str {
         &self.help
     }
-
-    /// Bytes of the file that the problem is about; none where the file does not contain the field.
-    pub fn span(&self) -> Option<Range<usize>> {
-        self.span.clone()
-    }
 }
 
-impl fmt::Display for DesignProblem {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.field.as_str() {
-            "" => f.write_str(&self.problem),
-            field => write!(f, "{field}: {}", self.problem),
-        }
-    }
-}
-
-impl std::error::Error for DesignProblem {}
-
-impl Diagnostic for DesignProblem {
-    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        Some(Box::new(&self.help))
-    }
-
-    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let span = self.span.clone()?;
-        Some(Box::new(std::iter::once(LabeledSpan::new_with_span(self.label.clone(), span))))
-    }
+/// Line and column, from 1, of a byte of a text; columns count characters.
+pub(crate) fn line_column(text: &str, at: usize) -> Option<(usize, usize)> {
+    let before = text.get(..at)?;
+    let line = before.rsplit('\n').next().unwrap_or_default();
+    Some((before.matches('\n').count() + 1, line.chars().count() + 1))
 }
 
 /// A problem as a list names it: for scripts and for editors.
@@ -129,9 +115,7 @@ impl DesignError {
 
     /// Line and column of a problem, from 1; columns count characters.
     pub fn line_column(&self, problem: &DesignProblem) -> Option<(usize, usize)> {
-        let before = self.source.inner().get(..problem.span.as_ref()?.start)?;
-        let line = before.rsplit('\n').next().unwrap_or_default();
-        Some((before.matches('\n').count() + 1, line.chars().count() + 1))
+        line_column(self.source.inner(), problem.place.as_ref()?.offset())
     }
 
     /// The problems as a list, in the order of the file.

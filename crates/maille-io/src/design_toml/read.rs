@@ -70,10 +70,7 @@ struct Reader<'s> {
 
 impl Reader<'_> {
     fn design(&mut self, top: &At<'_, '_>) -> Option<Design> {
-        let schema = match top.get("schema") {
-            Some((value, path)) => self.integer(value, &path),
-            None => Some(DESIGN_SCHEMA),
-        };
+        let schema = self.optional(top, "schema", Self::integer).map(|schema| schema.unwrap_or(DESIGN_SCHEMA));
         if schema.is_some_and(|s| s != DESIGN_SCHEMA) {
             // Nothing else can be judged by the rules of another version.
             let (value, path) = top.get("schema")?;
