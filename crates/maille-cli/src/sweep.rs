@@ -101,7 +101,6 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         return Err(wrong(exit::USAGE, format!("{} is a file; a folder is written", out.display()), help));
     }
     let _lock = FolderLock::take(&out)?;
-    output::remove_leftovers(&out)?;
     let mut open: Vec<(&str, OpenMap)> = Vec::new();
     let mut unused = Vec::new();
     for planned in &plan {

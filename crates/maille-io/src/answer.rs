@@ -1,4 +1,4 @@
-//! Answers to single questions as JSON documents, with the keys of `docs/json.md`.
+//! Answers to single questions as JSON documents, with the keys of `docs/json.md`. A number that is not finite is `null`.
 
 use maille::{
     answer::{Answer, CellTrend},
@@ -114,8 +114,8 @@ pub fn extreme(design: &Design, model: &Model, what: Extreme, lattice_free: bool
     let sizes = what.sizes(found, model).into_iter().map(|size| {
         json!({
             "major_radius": size.major_radius,
-            "minor_radius": finite(size.minor_radius),
-            "aspect_ratio": finite(size.aspect_ratio()),
+            "minor_radius": size.minor_radius,
+            "aspect_ratio": size.aspect_ratio(),
         })
     });
     json!({
@@ -139,18 +139,14 @@ fn length(model: &Model, a: Vec3) -> [f64; 3] {
     (a * model.unit).into()
 }
 
-fn finite(x: f64) -> Option<f64> {
-    x.is_finite().then_some(x)
-}
-
-/// Figures of a certificate, `null` where one is not finite; the gap in the file's unit, of which R is `unit`.
+/// Figures of a certificate; the gap in the file's unit, of which R is `unit`.
 fn certificate(c: &Certificate, unit: f64) -> Value {
     json!({
-        "smallest_gap": finite(c.smallest_gap * unit),
-        "dual_residual": finite(c.dual_residual),
-        "complementarity": finite(c.complementarity),
-        "min_multiplier": finite(c.min_multiplier),
-        "min_curvature": c.min_curvature.and_then(finite),
+        "smallest_gap": c.smallest_gap * unit,
+        "dual_residual": c.dual_residual,
+        "complementarity": c.complementarity,
+        "min_multiplier": c.min_multiplier,
+        "min_curvature": c.min_curvature,
         "zero_modes": c.zero_modes,
     })
 }

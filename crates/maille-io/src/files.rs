@@ -39,3 +39,12 @@ pub fn replace(path: &Path, write: impl FnOnce(&mut BufWriter<&mut File>) -> io:
     file.persist(path)?;
     Ok(())
 }
+
+/// Writes these bytes in the same way, onto the disk.
+pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    replace(path, |out| {
+        out.write_all(bytes)?;
+        out.flush()?;
+        out.get_ref().sync_all()
+    })
+}

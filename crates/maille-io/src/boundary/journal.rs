@@ -14,7 +14,7 @@ use maille::{
 };
 use serde::{Deserialize, Serialize};
 use serde_json::json;
-use std::{fs, io::Write, path::Path};
+use std::{fs, path::Path};
 
 /// Name of the file.
 const JOURNAL: &str = "boundary.jsonl";
@@ -88,7 +88,6 @@ impl SurfaceFolder {
         overwrite: bool,
     ) -> Result<(Self, Vec<BoundaryVertex>), RecordError> {
         let lock = FolderLock::take(folder)?;
-        files::remove_leftovers(folder).map_err(|(path, e)| RecordError::io("remove", path)(e))?;
         let path = folder.join(JOURNAL);
         let mut known = Vec::new();
         if !overwrite && path.exists() {
@@ -107,7 +106,7 @@ impl SurfaceFolder {
         }
         // Written anew, so that a line that was cut off does not stay.
         let text = write_surface(head, &known);
-        files::replace(&path, |out| out.write_all(text.as_bytes())).map_err(RecordError::io("write", &path))?;
+        files::write(&path, text.as_bytes()).map_err(RecordError::io("write", &path))?;
         Ok((SurfaceFolder { journal: Journal::open(&path)?, _lock: lock }, known))
     }
 

@@ -92,6 +92,13 @@ impl RecordError {
     pub(crate) fn malformed(file: &str, line: usize, problem: impl Into<String>) -> Self {
         Self::Malformed { file: file.to_owned(), line: line as u64, problem: problem.into() }
     }
+
+    /// What is wrong with JSON that ends in this line of the file.
+    pub(super) fn json(file: &str, line: usize, error: &serde_json::Error) -> Self {
+        let reason = error.to_string();
+        let reason = reason.split(" at line ").next().unwrap_or_default();
+        Self::malformed(file, line, format!("{reason} (character {})", error.column()))
+    }
 }
 
 /// A text file of the record ends with a newline; otherwise its last line may have lost its end.

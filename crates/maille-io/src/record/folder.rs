@@ -28,7 +28,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
-use std::io::{ErrorKind, Write};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 const RUN: &str = "run.json";
@@ -42,6 +42,9 @@ const JOURNAL: &str = "limits.journal";
 pub fn file_name(name: &str) -> String {
     name.chars().map(|c| if c.is_alphanumeric() || ".-_ ".contains(c) { c } else { '_' }).collect()
 }
+
+/// Checksums of the files that there may be, by their names.
+type Sums = BTreeMap<String, Vec<String>>;
 
 /// What a record's folder holds.
 #[derive(Clone, Debug, PartialEq)]
@@ -105,9 +108,8 @@ pub struct NamedRecord {
 #[derive(Debug)]
 pub struct RecordFolder {
     path: PathBuf,
+    /// Inputs and counters, with the checksums of the files that are there.
     run: RunRecord,
-    /// Checksums of the files that are there.
-    there: BTreeMap<String, String>,
     /// The journal, once something is in it.
     journal: Option<Journal>,
     /// No other run writes here meanwhile.
@@ -141,9 +143,8 @@ impl RecordFolder {
             return Err(RecordError::NotARecord { folder: path.into(), found: some_names(&found) });
         }
         let lock = FolderLock::take(path)?;
-        files::remove_leftovers(path).map_err(|(path, e)| RecordError::io("remove", path)(e))?;
         let found = names(path)?;
-        let mut folder = Self { path: path.to_owned(), run, there: BTreeMap::new(), journal: None, _lock: lock };
+        let mut folder = Self { path: path.to_owned(), run, journal: None, _lock: lock };
         if !found.is_empty() {
             if overwrite {
                 folder.may_replace(&found)?;
@@ -152,10 +153,9 @@ impl RecordFolder {
                 folder.same_inputs(&record.run)?;
                 for name in [LIMITS, STATES] {
                     if let Some(text) = read_if_there(&path.join(name))? {
-                        folder.there.insert(name.to_owned(), sha256(text.as_bytes()));
+                        folder.run.files.insert(name.to_owned(), vec![sha256(text.as_bytes())]);
                     }
                 }
-                folder.run.files = record.run.files.clone();
                 let (mut rows, mut states) = record.finished();
                 let journal = path.join(JOURNAL);
                 if journal.exists() {
@@ -200,12 +200,11 @@ impl RecordFolder {
     /// Replaces rows and states by all those of the run so far.
     pub fn write(&mut self, rows: &[LimitRow], states: &[StateRecord]) -> Result<(), RecordError> {
         self.run.counters = Counters::of(rows);
-        let (steps, there) = self.steps_to_write(rows, states)?;
+        let (steps, files) = self.steps_to_write(rows, states)?;
         for step in steps {
             self.apply(step)?;
         }
-        self.run.files = alone(&there);
-        self.there = there;
+        self.run.files = files;
         self.journal = None;
         self.apply(Step::Remove(JOURNAL))
     }
@@ -223,22 +222,21 @@ impl RecordFolder {
     }
 
     /// The steps, and the checksums of the files after them.
-    fn steps_to_write(
-        &self,
-        rows: &[LimitRow],
-        states: &[StateRecord],
-    ) -> Result<(Vec<Step>, BTreeMap<String, String>), RecordError> {
+    fn steps_to_write(&self, rows: &[LimitRow], states: &[StateRecord]) -> Result<(Vec<Step>, Sums), RecordError> {
         let (limits, states) = (write_limits(rows)?, write_states(states)?);
-        let there: BTreeMap<String, String> =
-            [(LIMITS, &limits), (STATES, &states)].map(|(name, text)| (name.into(), sha256(text.as_bytes()))).into();
-        let mut both = alone(&there);
+        let sum = |(name, text): (&str, &String)| (name.to_owned(), vec![sha256(text.as_bytes())]);
+        let files: Sums = [(LIMITS, &limits), (STATES, &states)].map(sum).into();
+        let mut both = files.clone();
         for (name, sums) in &mut both {
-            sums.extend(self.there.get(name).filter(|before| **before != sums[0]).cloned());
+            let before = self.run.files.get(name).into_iter().flatten();
+            let before: Vec<String> = before.filter(|before| **before != sums[0]).cloned().collect();
+            sums.extend(before);
         }
-        let run = |files| Step::Write(RUN, write_run(&RunRecord { files, ..self.run.clone() }).into());
-        let after = run(alone(&there));
-        let steps = vec![run(both), Step::Write(STATES, states.into()), Step::Write(LIMITS, limits.into()), after];
-        Ok((steps, there))
+        let run =
+            |files: &Sums| Step::Write(RUN, write_run(&RunRecord { files: files.clone(), ..self.run.clone() }).into());
+        let after = run(&files);
+        let steps = vec![run(&both), Step::Write(STATES, states.into()), Step::Write(LIMITS, limits.into()), after];
+        Ok((steps, files))
     }
 
     fn apply(&self, step: Step) -> Result<(), RecordError> {
@@ -250,18 +248,11 @@ impl RecordFolder {
                     _ => Ok(()),
                 }
             }
-            Step::Write(name, bytes) => self.write_file(name, &bytes),
+            Step::Write(name, bytes) => {
+                let path = self.path.join(name);
+                files::write(&path, &bytes).map_err(RecordError::io("write", &path))
+            }
         }
-    }
-
-    fn write_file(&self, name: &str, bytes: &[u8]) -> Result<(), RecordError> {
-        let path = self.path.join(name);
-        let done = files::replace(&path, |out| {
-            out.write_all(bytes)?;
-            out.flush()?;
-            out.get_ref().sync_all()
-        });
-        done.map_err(RecordError::io("write", &path))
     }
 
     fn same_inputs(&self, old: &RunRecord) -> Result<(), RecordError> {
@@ -323,11 +314,6 @@ fn short(value: &Value) -> String {
         Some((cut, _)) => format!("{}…", &text[..cut]),
         None => text,
     }
-}
-
-/// Each checksum as the only one of its file.
-fn alone(sums: &BTreeMap<String, String>) -> BTreeMap<String, Vec<String>> {
-    sums.iter().map(|(name, sum)| (name.clone(), vec![sum.clone()])).collect()
 }
 
 /// The content of a file of the record, if it is the one that was written. What cannot be read at all is told with its line.

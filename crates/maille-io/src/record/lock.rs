@@ -1,6 +1,7 @@
 //! One run at a time in a folder.
 
 use super::error::RecordError;
+use crate::files;
 use std::{
     fs::{self, File, OpenOptions, TryLockError},
     io::ErrorKind,
@@ -20,17 +21,21 @@ pub struct FolderLock {
 }
 
 impl FolderLock {
-    /// Takes the right to write to a folder, which is created if it is not there; [`RecordError::InUse`] if another run has it.
+    /// Takes the right to write to a folder, which is created if it is not there, and removes what a killed run left half
+    /// written in it; [`RecordError::InUse`] if another run has it.
     pub fn take(folder: &Path) -> Result<Self, RecordError> {
         fs::create_dir_all(folder).map_err(RecordError::io("create", folder))?;
         let path = folder.join(LOCK);
         let open = OpenOptions::new().create(true).truncate(false).write(true).open(&path);
         let file = open.map_err(RecordError::io("write", &path))?;
         match file.try_lock() {
-            Ok(()) => Ok(Self { _file: file }),
-            Err(TryLockError::Error(e)) if e.kind() == ErrorKind::Unsupported => Ok(Self { _file: file }),
-            Err(TryLockError::Error(e)) => Err(RecordError::io("lock", path)(e)),
-            Err(TryLockError::WouldBlock) => Err(RecordError::InUse { folder: folder.into() }),
+            Err(TryLockError::WouldBlock) => return Err(RecordError::InUse { folder: folder.into() }),
+            Err(TryLockError::Error(e)) if e.kind() != ErrorKind::Unsupported => {
+                return Err(RecordError::io("lock", path)(e));
+            }
+            _ => {}
         }
+        files::remove_leftovers(folder).map_err(|(path, e)| RecordError::io("remove", path)(e))?;
+        Ok(Self { _file: file })
     }
 }

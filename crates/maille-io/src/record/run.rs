@@ -5,7 +5,7 @@ use maille::design::Design;
 use maille::record::{LimitRow, RECORD_SCHEMA};
 use maille::survey::MapQuestion;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 
@@ -45,9 +45,7 @@ impl RunRecord {
             files: BTreeMap::new(),
         }
     }
-}
 
-impl RunRecord {
     /// What was asked.
     ///
     /// # Errors
@@ -84,49 +82,15 @@ impl Counters {
 }
 
 /// SHA-256, in hexadecimal, of the record's schema, the design and the parameters as JSON with sorted keys.
-pub fn input_hash(design: &Design, parameters: &Value) -> String {
-    hash(&serde_json::json!(design), parameters)
-}
-
-fn hash(design: &Value, parameters: &Value) -> String {
-    let inputs = serde_json::json!({ "schema": RECORD_SCHEMA, "design": design, "parameters": parameters });
-    let mut text = String::new();
-    canonical(&inputs, &mut text);
-    sha256(text.as_bytes())
+pub fn input_hash(design: &impl Serialize, parameters: &Value) -> String {
+    let mut inputs = json!({ "schema": RECORD_SCHEMA, "design": design, "parameters": parameters });
+    inputs.sort_all_objects();
+    sha256(inputs.to_string().as_bytes())
 }
 
 /// SHA-256 in hexadecimal.
 pub(super) fn sha256(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
-}
-
-fn canonical(value: &Value, out: &mut String) {
-    match value {
-        Value::Object(map) => {
-            let sorted: BTreeMap<_, _> = map.iter().collect();
-            out.push('{');
-            for (i, (key, value)) in sorted.into_iter().enumerate() {
-                if i > 0 {
-                    out.push(',');
-                }
-                out.push_str(&Value::from(key.as_str()).to_string());
-                out.push(':');
-                canonical(value, out);
-            }
-            out.push('}');
-        }
-        Value::Array(items) => {
-            out.push('[');
-            for (i, item) in items.iter().enumerate() {
-                if i > 0 {
-                    out.push(',');
-                }
-                canonical(item, out);
-            }
-            out.push(']');
-        }
-        leaf => out.push_str(&leaf.to_string()),
-    }
 }
 
 /// The file's text.
@@ -136,16 +100,12 @@ pub fn write_run(run: &RunRecord) -> String {
 
 /// Reads the file; `file` is the name to show in errors. Design and parameters must have their hash.
 pub fn read_run(file: &str, text: &str) -> Result<RunRecord, RecordError> {
-    let bad = |e: serde_json::Error| {
-        let reason = e.to_string();
-        let reason = reason.split(" at line ").next().unwrap_or_default();
-        RecordError::malformed(file, e.line().max(1), format!("{reason} (character {})", e.column()))
-    };
+    let bad = |e: serde_json::Error| RecordError::json(file, e.line().max(1), &e);
     let value: Value = serde_json::from_str(text).map_err(bad)?;
     match value.get("schema").and_then(Value::as_u64) {
         Some(known) if known == u64::from(RECORD_SCHEMA) => {
             let run: RunRecord = serde_json::from_str(text).map_err(bad)?;
-            let found = hash(&value["design"], &value["parameters"]);
+            let found = input_hash(&value["design"], &value["parameters"]);
             if found != run.input_hash {
                 let problem =
                     format!("design or parameters were edited: their hash is {found}, not {}", run.input_hash);

@@ -17,7 +17,7 @@ use maille::{
     relaxation::simulate::{End, Simulation},
 };
 use serde::{Deserialize, Serialize};
-use std::{fs, io::Write, path::Path};
+use std::{fs, path::Path};
 
 /// Names of the files of the record; the last one only where the frames are states at rest.
 pub const SIMULATION: [&str; 3] = ["simulation.json", "frames.jsonl", "forces.csv"];
@@ -102,7 +102,6 @@ pub fn save_simulation(
     forces: Option<&ForceTable>,
 ) -> Result<(), RecordError> {
     let _lock = FolderLock::take(folder)?;
-    files::remove_leftovers(folder).map_err(|(path, e)| RecordError::io("remove", path)(e))?;
     let [first, second, third] = SIMULATION.map(|name| folder.join(name));
     // A table of an earlier simulation is none of this one.
     for path in [&first, &third].into_iter().filter(|path| path.exists()) {
@@ -114,7 +113,7 @@ pub fn save_simulation(
         Some((first, write_simulation(&record.sealed(frames, forces)))),
     ];
     for (path, text) in texts.into_iter().flatten() {
-        files::replace(&path, |out| out.write_all(text.as_bytes())).map_err(RecordError::io("write", &path))?;
+        files::write(&path, text.as_bytes()).map_err(RecordError::io("write", &path))?;
     }
     Ok(())
 }

@@ -19,13 +19,7 @@ pub fn write_states(states: &[StateRecord]) -> Result<String, RecordError> {
 /// Reads the states; `file` is the name to show in errors.
 pub fn read_states(file: &str, text: &str) -> Result<Vec<StateRecord>, RecordError> {
     complete(file, text)?;
-    let read = |(i, line): (usize, &str)| {
-        serde_json::from_str(line).map_err(|e| {
-            let reason = e.to_string();
-            let reason = reason.split(" at line ").next().unwrap_or_default();
-            RecordError::malformed(file, i + 1, format!("{reason} (character {})", e.column()))
-        })
-    };
+    let read = |(i, line): (usize, &str)| serde_json::from_str(line).map_err(|e| RecordError::json(file, i + 1, &e));
     text.lines().enumerate().map(read).collect()
 }
 
