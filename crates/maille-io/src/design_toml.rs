@@ -13,7 +13,7 @@ pub(crate) use problem::line_column;
 pub use problem::{DesignError, DesignProblem, ListedProblem};
 pub use write::write_design;
 
-use index::{Index, Place};
+use index::Index;
 use maille::design::Design;
 use maille::error::InvalidInput;
 use std::sync::Arc;
@@ -74,17 +74,16 @@ impl DesignSource {
     /// ```
     pub fn with_value(&self, field: &str, value: &str) -> Option<String> {
         let table = DeTable::parse(&self.text).ok()?;
-        match Index::new(table.get_ref(), &self.text).find(field) {
-            Place::Exact(span) => Some([&self.text[..span.start], value, &self.text[span.end..]].concat()),
-            _ => None,
-        }
+        let span = Index::new(table.get_ref(), &self.text).exact(field)?;
+        Some([&self.text[..span.start], value, &self.text[span.end..]].concat())
     }
 
     /// Attaches problems that were found later, as an overlap in the starting state, to their places in the file.
     ///
     /// A field that the file does not contain is shown at its nearest parent; one with no parent, without a place.
     pub fn explain(&self, problems: &[InvalidInput]) -> DesignError {
-        let index = DeTable::parse(&self.text).map_or_else(|_| Index::empty(), |t| Index::new(t.get_ref(), &self.text));
+        let index =
+            DeTable::parse(&self.text).map_or_else(|_| Index::default(), |t| Index::new(t.get_ref(), &self.text));
         self.error(problems.iter().map(|p| DesignProblem::invalid(p, &index)).collect())
     }
 

@@ -1,68 +1,53 @@
 //! Where each field stands in the file.
 
 use super::fields;
+use miette::LabeledSpan;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// Byte ranges of the values by path: `elements[2].rings[0].normal`.
+/// Byte ranges of the values by path: `elements[2].rings[0].normal`. The default knows no place, for a text that is no TOML.
+#[derive(Default)]
 pub(super) struct Index {
     places: BTreeMap<String, Range<usize>>,
-    first: usize,
-    last: usize,
-}
-
-/// Where to point for a path.
-pub(super) enum Place {
-    /// The value itself.
-    Exact(Range<usize>),
-    /// The nearest parent that the file contains.
-    Parent(Range<usize>),
-    /// A key of the top of the file that is not there: where it would stand.
-    Top(Range<usize>),
-    /// No field of a design file.
-    None,
+    /// Start of the line of the first key: where a missing top-level key would stand.
+    pub first_line: usize,
+    /// Start of the last line: a missing table would stand below.
+    pub last_line: usize,
 }
 
 impl Index {
-    /// An index that knows no place, for a text that is no TOML.
-    pub(super) fn empty() -> Self {
-        Self { places: BTreeMap::new(), first: 0, last: 0 }
-    }
-
     pub(super) fn new(table: &DeTable<'_>, text: &str) -> Self {
         let mut places = BTreeMap::new();
         add_table(table, "", &mut places);
         let first = table.iter().map(|(key, value)| key.span().start.min(value.span().start)).min();
         // The key of [table] starts after its bracket: go back to the start of the line.
-        let first = first.map_or(text.len(), |at| text[..at].rfind('\n').map_or(0, |i| i + 1));
-        let last = text.trim_end().rfind('\n').map_or(0, |i| i + 1);
-        Self { places, first, last }
+        let first_line = first.map_or(text.len(), |at| text[..at].rfind('\n').map_or(0, |i| i + 1));
+        let last_line = text.trim_end().rfind('\n').map_or(0, |i| i + 1);
+        Self { places, first_line, last_line }
     }
 
-    /// Start of the line of the first key: where a missing top-level key would stand.
-    pub(super) fn first_line(&self) -> usize {
-        self.first
+    /// The value itself, if the file contains it.
+    pub(super) fn exact(&self, path: &str) -> Option<Range<usize>> {
+        self.places.get(path).cloned()
     }
 
-    /// Start of the last line: a missing table would stand below.
-    pub(super) fn last_line(&self) -> usize {
-        self.last
-    }
-
-    pub(super) fn find(&self, path: &str) -> Place {
-        if let Some(range) = self.places.get(path) {
-            return Place::Exact(range.clone());
+    /// Where to point for a path: the value itself, the nearest parent that the file contains, or where a key of the top
+    /// would stand. None for what is no field of a design file.
+    pub(super) fn find(&self, path: &str) -> Option<LabeledSpan> {
+        if let Some(span) = self.exact(path) {
+            return Some(LabeledSpan::new_with_span(None, span));
         }
-        let mut path = path;
-        while let Some(cut) = path.rfind(['.', '[']) {
-            path = &path[..cut];
-            if let Some(range) = self.places.get(path) {
-                return Place::Parent(range.clone());
+        let mut parent = path;
+        while let Some(cut) = parent.rfind(['.', '[']) {
+            parent = &parent[..cut];
+            if let Some(span) = self.exact(parent) {
+                return Some(LabeledSpan::new_with_span(Some("in here".into()), span));
             }
         }
-        if fields::TOP.contains(&path) { Place::Top(self.first..self.first) } else { Place::None }
+        let top = || LabeledSpan::new(Some(format!("`{path}` belongs here")), self.first_line, 0);
+        fields::TOP.contains(&parent).then(top)
     }
 }
 

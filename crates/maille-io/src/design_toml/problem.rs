@@ -1,6 +1,6 @@
 //! What is wrong with a design file, and where.
 
-use super::index::{Index, Place};
+use super::index::Index;
 use super::syntax;
 use maille::error::InvalidInput;
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
@@ -47,14 +47,8 @@ impl DesignProblem {
     }
 
     pub(super) fn invalid(input: &InvalidInput, index: &Index) -> Self {
-        let (span, label) = match index.find(&input.field) {
-            Place::Exact(span) => (Some(span), None),
-            Place::Parent(span) => (Some(span), Some("in here".to_owned())),
-            Place::Top(span) => (Some(span), Some(format!("`{}` belongs here", input.field))),
-            Place::None => (None, None),
-        };
-        let place = span.map(|span| LabeledSpan::new_with_span(label, span));
-        Self { field: input.field.clone(), problem: input.problem.clone(), help: input.help.clone(), place }
+        let InvalidInput { field, problem, help } = input.clone();
+        Self { place: index.find(&field), field, problem, help }
     }
 
     pub(super) fn start(&self) -> usize {

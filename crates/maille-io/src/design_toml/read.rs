@@ -25,8 +25,8 @@ type Value<'t> = Spanned<DeValue<'t>>;
 
 /// The design, if all its fields could be read, and what is wrong with the form of the file.
 pub(super) fn design(table: &DeTable<'_>, text: &str, index: &Index) -> (Option<Design>, Vec<DesignProblem>) {
-    let mut reader = Reader { text, problems: Vec::new(), last_line: index.last_line() };
-    let first = index.first_line();
+    let mut reader = Reader { text, problems: Vec::new(), last_line: index.last_line };
+    let first = index.first_line;
     let top = At { table, path: String::new(), known: TOP, span: first..first };
     let design = reader.design(&top);
     (design, reader.problems)

@@ -14,7 +14,8 @@ pub struct Extent {
 }
 
 /// Columns of a first look, in order of importance.
-const FIRST_LOOK: [&str; 12] = [
+const FIRST_LOOK: [&str; 13] = [
+    "record",
     "design",
     "minor_radius",
     "method",
@@ -38,15 +39,8 @@ const EMPTY: &str = "-";
 impl Field {
     /// The columns of a first look; with `record`, the name of the record comes first.
     pub fn first_look(record: bool) -> Vec<Self> {
-        Self::all(record)
-            .into_iter()
-            .filter_map(|field| match field {
-                Field::Record => Some((0, field)),
-                field => Some((1 + FIRST_LOOK.iter().position(|name| *name == field.name())?, field)),
-            })
-            .collect::<std::collections::BTreeMap<_, _>>()
-            .into_values()
-            .collect()
+        let all = Self::all(record);
+        FIRST_LOOK.iter().filter_map(|name| all.iter().copied().find(|field| field.name() == *name)).collect()
     }
 }
 
