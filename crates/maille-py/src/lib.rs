@@ -28,7 +28,7 @@ mod _native {
     #[pymodule_export]
     use crate::map::{Record, characterize, map_question, numbers, read_record};
     #[pymodule_export]
-    use crate::question::{extreme, limit};
+    use crate::question::answer;
     #[pymodule_export]
     use crate::simulate::{open_simulation, save_simulation, simulate};
     #[pymodule_export]

@@ -1,6 +1,6 @@
 //! The viewer: a server on the loopback address, with its page inside, and the page as one file.
 //!
-//! It is a door, as the program is: designs come in as text, limits come from [`maille_io::run::Map`], files from the
+//! It is a front end, as the program is: designs come in as text, limits come from [`maille_io::run::Map`], files from the
 //! writers of `maille-io`. [`serve`] runs until a flag is set; [`bundle_file`] makes the page that needs no server.
 
 pub mod api;

@@ -88,27 +88,7 @@ class OpenMap:
 def joint_csv(names: list[str], records: list[Record]) -> str: ...
 def study(name: str, text: str) -> str: ...
 def folder_name(name: str) -> str: ...
-def limit(
-    design: Design,
-    goal: str,
-    sign: float,
-    *,
-    fix: list[tuple[str, float]],
-    free: list[str],
-    direction_deg: float,
-    cell: str,
-    starts: int | None,
-    seed: int,
-) -> str: ...
-def extreme(
-    design: Design,
-    *,
-    thickest: bool,
-    lattice_free: bool,
-    starts: int,
-    seed: int,
-    threads: int | None,
-) -> tuple[str, Design | None]: ...
+def answer(design: Design, question: str, *, cell: str, threads: int | None) -> tuple[str, Design | None]: ...
 def boundary(
     design: Design,
     *,

@@ -127,25 +127,23 @@ def limit(
     """
     if (maximize is None) == (minimize is None):
         raise ArgumentError("maximize", "give one of maximize and minimize", 'as maximize="exx"')
-    goal, sign = (maximize, 1.0) if maximize is not None else (minimize, -1.0)
-    held = [(str(name), float(value)) for name, value in (fix or {}).items()]
+    sought = _strain("maximize", maximize) if maximize is not None else _strain("minimize", minimize)
+    held = [(_strain("fix", name), float(value)) for name, value in (fix or {}).items()]
     for name, value in held:
         if not np.isfinite(value):
             raise ArgumentError("fix", f"{name} = {value} is not finite", "give a strain, as 0.05")
     if not np.isfinite(direction):
         raise ArgumentError("direction", f"{direction} is not finite", "give an angle in degrees")
     of = chosen(design, minor_radius)
-    text = _native.limit(
-        of._inner,
-        str(goal),
-        sign,
-        fix=held,
-        free=_sequence(free),
-        direction_deg=float(direction),
-        cell=cell,
-        starts=None if starts is None else _whole("starts", starts, 1),
-        seed=_whole("seed", seed, 0),
-    )
+    left = [_strain("free", name) for name in _sequence(free)]
+    goal = {"component": sought, "direction_deg": float(direction), "fix": held, "free": left}
+    question = {
+        "goal": {"strain": goal},
+        "sense": "largest" if maximize is not None else "least",
+        "starts": None if starts is None else _whole("starts", starts, 1),
+        "seed": _whole("seed", seed, 0),
+    }
+    text, _ = _native.answer(of._inner, json.dumps(question), cell=cell, threads=1)
     found = json.loads(text)
     solved = found["poses"] is not None
     strains = found["strains"]
@@ -199,14 +197,14 @@ def _extreme(
 ) -> Extreme:
     if lattice not in ("free", "fixed"):
         raise ArgumentError("lattice", f"{lattice!r} is neither free nor fixed", 'give "free" or "fixed"')
-    text, state = _native.extreme(
-        chosen(design, minor_radius)._inner,
-        thickest=thickest,
-        lattice_free=lattice == "free",
-        starts=_whole("starts", starts, 1),
-        seed=_whole("seed", seed, 0),
-        threads=None if threads is None else _whole("threads", threads, 1),
-    )
+    question = {
+        "goal": {"wire" if thickest else "clearance": {"lattice_free": lattice == "free"}},
+        "starts": _whole("starts", starts, 1),
+        "seed": _whole("seed", seed, 0),
+    }
+    threads = None if threads is None else _whole("threads", threads, 1)
+    of = chosen(design, minor_radius)._inner
+    text, state = _native.answer(of, json.dumps(question), cell="1x1", threads=threads)
     found = json.loads(text)
     sizes = [[size["major_radius"], size["minor_radius"], size["aspect_ratio"]] for size in found["sizes"]]
     own = None if state is None else Design._of(state)
@@ -217,6 +215,12 @@ def _extreme(
         design=own,
         state=None if own is None else start(own),
     )
+
+
+def _strain(argument: str, name: str | None) -> str:
+    if name not in _STRAINS:
+        raise ArgumentError(argument, f'"{name}" is no strain', "give exx, eyy or exy")
+    return name
 
 
 def _state(state: Sheet | None) -> Sheet:
