@@ -3,7 +3,7 @@
 use crate::{
     design_toml::NumberPath,
     numbers::{Numbers, parse, parse_l2},
-    plot::Quantity,
+    quantity::Quantity,
     run::Map,
 };
 use maille::{

@@ -12,8 +12,8 @@ use maille::{
     survey::{CellChoice, Method},
 };
 use maille_io::{
+    Quantity,
     numbers::{USUAL_DIRECTIONS, USUAL_L2, distinct, parse, parse_l2},
-    plot::Quantity,
     record::{LIMIT_COLUMNS, NamedRecord, Values},
     run::{Map, save_record},
     table::{Field, Table},

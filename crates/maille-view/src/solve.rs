@@ -18,7 +18,7 @@ use maille::{
     search::ExactOptions,
     survey::{CellChoice, Method},
 };
-use maille_io::{plot::Quantity, run::Map};
+use maille_io::{Quantity, run::Map};
 use std::{
     borrow::Cow,
     convert::Infallible,

@@ -15,22 +15,6 @@ use std::{
 const KNOWN: &[(&str, &[&str])] = &[
     ("maille", &["model.rs", "state.rs", "topology/broad_phase.rs", "topology/mod.rs"]),
     ("maille", &["program/mod.rs", "program/pair.rs"]),
-    (
-        "maille-io",
-        &[
-            "mesh/colour.rs",
-            "mesh/glb.rs",
-            "mesh/mod.rs",
-            "mesh/obj.rs",
-            "mesh/ply.rs",
-            "mesh/scene.rs",
-            "mesh/stl.rs",
-            "mesh/three_mf.rs",
-            "mesh/torus.rs",
-            "mesh/vtk.rs",
-        ],
-    ),
-    ("maille-io", &["render/camera.rs", "render/film.rs", "render/mod.rs", "render/overlay.rs", "render/scene.rs"]),
 ];
 
 /// Crates whose folders below `src` stand in no circle either; a file there is a folder of one.
