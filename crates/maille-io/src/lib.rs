@@ -30,3 +30,8 @@ pub use design_toml::{
 };
 pub use quantity::Quantity;
 pub use tile::Tile;
+
+/// The README's example is run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -238,7 +238,7 @@ fn legends_name_what_differs_and_folders_at_last() {
 fn differences_are_largest_less_smallest_limit() {
     let records = &three()[..1];
     // l1 runs from 0.465 − 0 down to 0.465 − 0.125 at l2 = −0.125, and is 0.44 everywhere at 0.
-    let places = |spread: Spread| {
+    let places = |spread: Quantity| {
         let svg = difference_svg(records, spread, Layout::Beside);
         let d = attribute(lines(&svg)[0], "d").to_owned();
         let y = d[1..].split('L').map(|p| p.split(' ').nth(1).unwrap().parse::<f64>().unwrap()).collect::<Vec<_>>();
