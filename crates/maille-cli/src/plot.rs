@@ -8,12 +8,12 @@ use crate::{
     records, table,
 };
 use maille_io::{
+    Quantity,
     plot::{
-        Layout, NamedSimulation, OfStep, PolarPlot, Quantity, Spread, difference_svg, force_svg, parameter_words,
-        poisson_svg, polar_svg, run_svg, steps_svg, svg_to_png, times_svg,
+        Cost, Layout, NamedSimulation, OfStep, PolarPlot, cost_svg, difference_svg, force_svg, parameter_words,
+        poisson_svg, polar_svg, run_svg, svg_to_png, with_palette,
     },
     record::{NamedRecord, Reference, ReferenceCell, SIMULATION, open_simulation},
-    with_palette,
 };
 use miette::{IntoDiagnostic, Result, WrapErr};
 use std::path::{Path, PathBuf};
@@ -303,21 +303,15 @@ fn svg(args: &Args, records: &[NamedRecord], cells: &[ReferenceCell]) -> Result<
             let quantity = args.quantity.map_or_else(Quantity::default, Into::into);
             polar_svg(&measured(PolarPlot::from_records(several, quantity)), Layout::Beside)
         }
-        (Kind::Difference, records) => difference_svg(
-            records,
-            match args.quantity {
-                // Of 1 + l1 and of l1 the difference is the same.
-                Some(Shown::Stretch | Shown::L1) => Spread::L1,
-                Some(Shown::Lambda1) | None => Spread::Lambda1,
-            },
-            Layout::Beside,
-        ),
+        (Kind::Difference, records) => {
+            difference_svg(records, args.quantity.map_or(Quantity::Lambda1, Into::into), Layout::Beside)
+        }
         (Kind::Poisson, records) => poisson_svg(records, Layout::Beside).ok_or_else(|| {
             let help = "`maille characterize DESIGN --lateral free` leaves the width to the sheet";
             wrong(exit::USAGE, "no limit of these records has a free width", help)
         })?,
-        (Kind::Steps, records) => steps_svg(records, Layout::Beside),
-        (Kind::Times, records) => times_svg(records, Layout::Beside),
+        (Kind::Steps, records) => cost_svg(records, Cost::Steps, Layout::Beside),
+        (Kind::Times, records) => cost_svg(records, Cost::WallTime, Layout::Beside),
         (Kind::StepTimes | Kind::StepSizes, records) => {
             let shown = if args.kind == Kind::StepTimes { OfStep::Time } else { OfStep::Size };
             run_svg(records, shown, Layout::Beside).ok_or_else(|| {

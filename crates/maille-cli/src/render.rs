@@ -8,10 +8,11 @@ use crate::{
     source::{Source, SourceArgs, Wanted},
 };
 use maille_io::{
-    film,
-    mesh::Tile,
-    render::{Background, ColorBy, Extent, Forces, Picture, RenderError, RenderOptions, Subject, View, render_frames},
-    with_palette,
+    Tile,
+    plot::with_palette,
+    render::{
+        Background, ColorBy, Extent, Forces, Picture, RenderError, RenderOptions, Subject, View, film, render_frames,
+    },
 };
 use miette::{IntoDiagnostic, Report, Result, WrapErr};
 use std::{

@@ -20,7 +20,7 @@ use maille::{
 };
 use maille_geometry::Vec3;
 use maille_io::{
-    mesh::Tile,
+    Tile,
     record::{ForceTable, LoadedPlace, PulledPlace, SheetPlan, SimulationRecord, save_simulation},
 };
 use miette::{Report, Result};

@@ -6,7 +6,10 @@
 mod rows;
 
 use maille::record::{LimitRow, Status};
-use maille_io::plot::{Curve, CurveKind, Layout, PolarPlot, Quantity, polar_svg, svg_to_png};
+use maille_io::{
+    Quantity,
+    plot::{Curve, CurveKind, Layout, PolarPlot, polar_svg, svg_to_png},
+};
 use std::error::Error;
 use std::path::Path;
 

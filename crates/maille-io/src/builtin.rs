@@ -12,10 +12,10 @@ pub struct Builtin {
 macro_rules! embed {
     ($($name:literal),*; $($start:literal),* $(,)?) => {
         &[
-            $(Builtin { name: $name, toml: include_str!(concat!("../../../designs/", $name, ".toml")) },)*
+            $(Builtin { name: $name, toml: include_str!(concat!("../designs/", $name, ".toml")) },)*
             $(Builtin {
                 name: concat!($start, "-chapter6"),
-                toml: include_str!(concat!("../../../designs/chapter6/", $start, ".toml")),
+                toml: include_str!(concat!("../designs/chapter6/", $start, ".toml")),
             },)*
         ]
     };

@@ -20,7 +20,7 @@ use std::sync::Arc;
 use toml::de::DeTable;
 
 /// JSON Schema of a design file, for editors; it takes what the reader takes, but for relations between fields.
-pub const DESIGN_JSON_SCHEMA: &str = include_str!("../../../designs/schema.json");
+pub const DESIGN_JSON_SCHEMA: &str = include_str!("../designs/schema.json");
 
 /// The text of a design file with the name to show for it, so that errors can point into it.
 ///

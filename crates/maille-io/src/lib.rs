@@ -1,4 +1,4 @@
-//! Formats of maille: design files, studies, records, tables, plots, meshes, pictures, the report on the thesis.
+//! Formats of maille: design files, studies, records, tables, plots, meshes, pictures.
 //!
 //! Everything here works on text, bytes and readers; only doors open paths. The one exception is
 //! [`record::RecordFolder`], which owns a folder because its writes must be atomic.
@@ -8,21 +8,30 @@ pub mod boundary;
 pub mod builtin;
 pub mod design_toml;
 pub mod files;
+#[cfg(feature = "mesh")]
 pub mod mesh;
 mod nearest;
 pub mod numbers;
-mod palette;
+#[cfg(feature = "plot")]
 pub mod plot;
+mod quantity;
 pub mod record;
+#[cfg(feature = "render")]
 pub mod render;
-pub mod report;
 pub mod run;
 pub mod study;
 pub mod table;
+mod tile;
 pub mod weave;
 
 pub use builtin::{Builtin, builtin, builtin_designs, chapter6, nearest_builtin};
 pub use design_toml::{
     DESIGN_JSON_SCHEMA, DesignError, DesignProblem, DesignSource, ListedProblem, NumberPath, read_design, write_design,
 };
-pub use palette::{film, with_palette};
+pub use quantity::Quantity;
+pub use tile::Tile;
+
+/// The README's example is run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

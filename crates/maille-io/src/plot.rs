@@ -14,20 +14,20 @@ mod palette;
 mod png;
 mod poisson;
 mod polar;
+mod records;
 mod run;
 mod scale;
-mod steps;
-mod times;
 
 pub use boundary::boundary_svg;
 pub use compare::parameter_words;
 pub use curve::{Curve, CurveKind};
-pub use difference::{Spread, difference_svg};
+pub use difference::difference_svg;
+pub use effort::{Cost, cost_svg};
 pub use force::{NamedSimulation, force_svg};
 pub use frame::Layout;
-pub use png::{PlotError, svg_to_png};
+#[cfg(feature = "render")]
+pub(crate) use png::{COLOURS, SAMPLE};
+pub use png::{PlotError, svg_to_png, with_palette};
 pub use poisson::poisson_svg;
-pub use polar::{PolarPlot, Quantity, Ray, RayKind, polar_svg};
+pub use polar::{PolarPlot, Ray, RayKind, polar_svg};
 pub use run::{OfStep, run_svg};
-pub use steps::steps_svg;
-pub use times::times_svg;

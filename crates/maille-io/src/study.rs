@@ -3,7 +3,7 @@
 use crate::{
     design_toml::{NumberPath, line_column},
     numbers::{Numbers, parse, parse_l2},
-    plot::Quantity,
+    quantity::Quantity,
     run::Map,
 };
 use maille::{

@@ -5,8 +5,9 @@ mod foreign;
 
 use foreign::{checkers, installed, python, run};
 use maille::{lattice::Cell, model::Model, record::ContactRecord};
-use maille_io::mesh::{
-    Colours, Fineness, Format, MeshFile, Objects, Scene, Tile, TorusMesh, WriteOptions, between, write_pvd,
+use maille_io::{
+    Tile,
+    mesh::{Colours, Fineness, Format, MeshFile, Objects, Scene, TorusMesh, WriteOptions, between, write_pvd},
 };
 use serde_json::{Value, json};
 use std::{

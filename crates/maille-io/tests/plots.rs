@@ -6,11 +6,14 @@ mod rows;
 use maille::record::{ForceRow, LimitRow, Status};
 use maille::relaxation::simulate::End;
 use maille::search::ExactOptions;
-use maille_io::plot::{
-    Curve, CurveKind, Layout, NamedSimulation, PolarPlot, Quantity, Spread, difference_svg, force_svg, polar_svg,
-    steps_svg, svg_to_png, times_svg,
-};
 use maille_io::record::{ForceTable, NamedRecord, SimulationRecord};
+use maille_io::{
+    Quantity,
+    plot::{
+        Cost, Curve, CurveKind, Layout, NamedSimulation, PolarPlot, cost_svg, difference_svg, force_svg, polar_svg,
+        svg_to_png,
+    },
+};
 use rows::{design, record};
 use serde_json::json;
 
@@ -135,7 +138,7 @@ fn a_palette_saves_bytes_and_keeps_the_picture() {
     let svg = "<svg xmlns='http://www.w3.org/2000/svg' width='200' height='100'><rect width='200' height='100' fill='#fff'/>\
         <circle cx='60' cy='50' r='40' fill='#c04010'/><circle cx='110' cy='50' r='40' fill='#2060c0' fill-opacity='0.5'/></svg>";
     let full = svg_to_png(svg, 1.0).unwrap();
-    let small = maille_io::with_palette(&full).unwrap();
+    let small = maille_io::plot::with_palette(&full).unwrap();
     assert!(4 * small.len() < 3 * full.len(), "{} of {} bytes", small.len(), full.len());
     let [full, small] = [full, small].map(|png| resvg::tiny_skia::Pixmap::decode_png(&png).unwrap());
     assert_eq!((small.width(), small.height()), (200, 100));
@@ -240,18 +243,18 @@ fn legends_name_what_differs_and_folders_at_last() {
 fn differences_are_largest_less_smallest_limit() {
     let records = &three()[..1];
     // l1 runs from 0.465 − 0 down to 0.465 − 0.125 at l2 = −0.125, and is 0.44 everywhere at 0.
-    let places = |spread: Spread| {
+    let places = |spread: Quantity| {
         let svg = difference_svg(records, spread, Layout::Beside);
         let d = attribute(lines(&svg)[0], "d").to_owned();
         let y = d[1..].split('L').map(|p| p.split(' ').nth(1).unwrap().parse::<f64>().unwrap()).collect::<Vec<_>>();
         (522.0 - y[0], 522.0 - y[1], svg)
     };
     // Axes from 0 to 0.15 and to 0.4, over 400 units.
-    let (high, low, svg) = places(Spread::L1);
+    let (high, low, svg) = places(Quantity::L1);
     assert!((high / 400.0 * 0.15 - 0.125).abs() < 1e-4 && low == 0.0, "{high} {low}");
     assert!(svg.contains("Largest less smallest l₁ of all directions (no unit)"));
     assert!(svg.contains(">some directions have no limit<"));
-    let (high, low, svg) = places(Spread::Lambda1);
+    let (high, low, svg) = places(Quantity::Lambda1);
     let wanted = 1.465f64.powi(2) - 1.34f64.powi(2);
     assert!((high / 400.0 * 0.4 - wanted).abs() < 1e-3 && low == 0.0, "{high} {low} {wanted}");
     assert!(svg.contains("λ₁ − 1") && svg.contains("larger eigenvalue"));
@@ -261,15 +264,15 @@ fn differences_are_largest_less_smallest_limit() {
 fn steps_and_times_have_a_curve_for_each_record_and_l2() {
     let records = three();
     for (svg, unit) in [
-        (steps_svg(&records, Layout::Beside), "Iterations, logarithmic"),
-        (times_svg(&records, Layout::Beside), "in seconds, logarithmic"),
+        (cost_svg(&records, Cost::Steps, Layout::Beside), "Iterations, logarithmic"),
+        (cost_svg(&records, Cost::WallTime, Layout::Beside), "in seconds, logarithmic"),
     ] {
         assert_eq!(lines(&svg).len(), 6);
         assert!(svg.contains(unit) && svg.contains(">180°<") && svg.contains(">r = 0.05, exact<"));
         svg_to_png(&svg, 1.0).unwrap();
     }
-    assert!(times_svg(&records, Layout::Beside).contains("r = 0.1, energy 26.000 s"));
-    let one = steps_svg(&records[..1], Layout::Beside);
+    assert!(cost_svg(&records, Cost::WallTime, Layout::Beside).contains("r = 0.1, energy 26.000 s"));
+    let one = cost_svg(&records[..1], Cost::Steps, Layout::Beside);
     assert_eq!(lines(&one).len(), 2);
     assert!(one.contains(">Iterations<") && one.contains("quadratic programs") && !one.contains("Newton"));
 }
@@ -285,8 +288,8 @@ fn number(element: &str, name: &str) -> f64 {
 fn a_narrow_plot_has_its_legend_below() {
     let records = three();
     let polar = |layout| polar_svg(&PolarPlot::from_records(&records, Quantity::L1), layout);
-    let difference = |layout| difference_svg(&records, Spread::L1, layout);
-    let draw: [&dyn Fn(Layout) -> String; 3] = [&polar, &difference, &|layout| steps_svg(&records, layout)];
+    let difference = |layout| difference_svg(&records, Quantity::L1, layout);
+    let draw: [&dyn Fn(Layout) -> String; 3] = [&polar, &difference, &|layout| cost_svg(&records, Cost::Steps, layout)];
     for draw in draw {
         let (beside, below) = (draw(Layout::Beside), draw(Layout::Below));
         assert!(number(&below, "width") < number(&beside, "width"));
@@ -315,9 +318,9 @@ fn every_kind_is_drawn_without_rows() {
         let polar = polar_svg(&PolarPlot::from_records(records, Quantity::L1), Layout::Beside);
         for svg in [
             polar,
-            difference_svg(records, Spread::L1, Layout::Beside),
-            steps_svg(records, Layout::Beside),
-            times_svg(records, Layout::Beside),
+            difference_svg(records, Quantity::L1, Layout::Beside),
+            cost_svg(records, Cost::Steps, Layout::Beside),
+            cost_svg(records, Cost::WallTime, Layout::Beside),
         ] {
             assert!(!svg.contains("NaN") && !svg.contains("inf"));
             svg_to_png(&svg, 1.0).unwrap();

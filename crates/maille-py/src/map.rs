@@ -14,8 +14,8 @@ use maille::{
     survey::{MapQuestion, Method},
 };
 use maille_io::{
+    Quantity,
     numbers::{distinct, parse},
-    plot::Quantity,
     record::NamedRecord,
     run::{Map, save_record},
     table::{Field, Table},

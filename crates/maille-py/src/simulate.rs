@@ -11,7 +11,7 @@ use maille::{
     relaxation::simulate::simulate as run,
 };
 use maille_io::{
-    mesh::Tile,
+    Tile,
     record::{
         ForceTable, SIMULATION, SheetPlan, SimulationRecord, read_forces, read_frames, read_simulation, write_forces,
         write_frames, write_simulation,

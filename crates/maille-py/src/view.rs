@@ -8,7 +8,8 @@ use maille::{
 };
 use maille_geometry::Vec3;
 use maille_io::{
-    mesh::{Fineness, Kind, Scene, Tile, state_of},
+    Tile,
+    mesh::{Fineness, Kind, Scene, state_of},
     render::{ColorBy, Extent, Forces, RenderOptions, Subject, View, render},
 };
 use nalgebra::Isometry3;

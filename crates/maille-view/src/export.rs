@@ -3,8 +3,9 @@
 use crate::{api::Export, refusal::Refusal, sheet::tolerant};
 use maille::{lattice::Cell, model::Model, record::ContactRecord, state::State};
 use maille_io::{
-    mesh::{self, Colours, Fineness, Format, Scene, Tile, WriteOptions},
-    plot::{Layout, PolarPlot, Quantity, polar_svg},
+    Quantity, Tile,
+    mesh::{self, Colours, Fineness, Format, Scene, WriteOptions},
+    plot::{Layout, PolarPlot, polar_svg},
     record::write_limits,
     render::{Extent, Forces, RenderOptions, Subject, render},
 };

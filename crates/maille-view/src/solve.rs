@@ -19,7 +19,7 @@ use maille::{
     survey::{CellChoice, MapQuestion, Method},
 };
 use maille_io::{
-    plot::Quantity,
+    Quantity,
     run::{Map, OpenMap},
 };
 use std::{

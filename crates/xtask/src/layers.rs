@@ -17,7 +17,7 @@ const CRATES: &[&[&str]] = &[
     &["maille-geometry"],
     &["maille", "maille-verify"],
     &["maille-io"],
-    &["maille-view", "maille-fuzz"],
+    &["maille-chapter6", "maille-view", "maille-fuzz"],
     &["maille-cli", "maille-py"],
     &["xtask"],
 ];

@@ -6,7 +6,10 @@ use crate::{
     source::Source,
 };
 use maille::{model::Model, state::State};
-use maille_io::mesh::{self, Scene, Tile};
+use maille_io::{
+    Tile,
+    mesh::{self, Scene},
+};
 use miette::Report;
 
 /// What would fuse, and what would help.

@@ -11,7 +11,10 @@ use crate::{
 use advice::{clearance, fuse, size, summary};
 use destination::{Destination, FormatArg, destination, with_ending};
 use maille::topology;
-use maille_io::mesh::{self, Colours, Fineness, MeshFile, Objects, Scene, Tile, WriteOptions};
+use maille_io::{
+    Tile,
+    mesh::{self, Colours, Fineness, MeshFile, Objects, Scene, WriteOptions},
+};
 use miette::Result;
 use std::{
     fs,

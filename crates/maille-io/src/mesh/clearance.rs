@@ -7,10 +7,11 @@
 //! keeps to p holds for the mesh.
 
 use super::{
-    Fineness, Scene, Segments, Tile,
     distance::{Triangle, least_distance},
-    torus::{MOST, polygon},
+    scene::Scene,
+    torus::{Fineness, MOST, Segments, polygon},
 };
+use crate::tile::Tile;
 use maille::{
     lattice::Shift,
     model::Model,

@@ -1,6 +1,16 @@
 //! Colours of elements, apart for colour-blind eyes.
 
-use super::{Colours, Scene};
+use super::scene::Scene;
+
+/// What the colours show.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Colours {
+    /// The kind of element.
+    #[default]
+    Kind,
+    /// The load on the element, from grey (none) to yellow (most). Without loads as [`Colours::Kind`].
+    Load,
+}
 
 /// Okabe and Ito's colours, as sRGB.
 const KINDS: [[u8; 3]; 8] = [

@@ -4,11 +4,12 @@
 //! sheet flat (y up). Elements of several rings are nodes with a child for each ring.
 
 use super::{
-    Colours, Scene,
-    colour::{self, Colour},
+    colour::{self, Colour, Colours},
     number::{quaternion, singles},
+    scene::Scene,
+    torus::TorusMesh,
 };
-use nalgebra::{Isometry3, Vector3};
+use nalgebra::Isometry3;
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::io::{self, Write};
@@ -62,130 +63,78 @@ impl Chunk {
         self.accessors.len() - 1
     }
 
-    fn vectors(&mut self, vectors: &[Vector3<f64>], bounded: bool) -> usize {
-        let numbers: Vec<[f32; 3]> = vectors.iter().map(singles).collect();
-        let mut accessor = json!({ "componentType": FLOAT, "count": numbers.len(), "type": "VEC3" });
-        if bounded {
-            let bound = |pick: fn(f32, f32) -> f32| {
-                numbers.iter().copied().reduce(|a, b| [0, 1, 2].map(|k| pick(a[k], b[k]))).unwrap_or_default()
-            };
-            accessor["min"] = json!(bound(f32::min));
-            accessor["max"] = json!(bound(f32::max));
-        }
-        self.push(&little_endian(numbers.as_flattened()), Some(VERTICES), accessor)
+    /// Appends numbers, `N` an item.
+    fn floats<const N: usize>(&mut self, numbers: &[[f32; N]], target: Option<u32>, mut accessor: Value) -> usize {
+        accessor["componentType"] = FLOAT.into();
+        accessor["count"] = numbers.len().into();
+        accessor["type"] = format!("VEC{N}").into();
+        let bytes: Vec<u8> = numbers.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
+        self.push(&bytes, target, accessor)
+    }
+
+    /// Appends a mesh: the accessors of its positions, normals and indices.
+    fn mesh(&mut self, shape: &TorusMesh) -> [usize; 3] {
+        let [positions, normals]: [Vec<[f32; 3]>; 2] =
+            [&shape.vertices, &shape.normals].map(|vectors| vectors.iter().map(singles).collect());
+        let bound = |pick: fn(f32, f32) -> f32| {
+            positions.iter().copied().reduce(|a, b| [0, 1, 2].map(|k| pick(a[k], b[k]))).unwrap_or_default()
+        };
+        let bounds = json!({ "min": bound(f32::min), "max": bound(f32::max) });
+        let indices = shape.triangles().flatten();
+        let (bytes, kind): (Vec<u8>, u32) = if shape.vertices.len() < usize::from(u16::MAX) {
+            (indices.flat_map(|i| (i as u16).to_le_bytes()).collect(), UNSIGNED_SHORT)
+        } else {
+            (indices.flat_map(|i| (i as u32).to_le_bytes()).collect(), UNSIGNED_INT)
+        };
+        let accessor = json!({ "componentType": kind, "count": 3 * shape.triangle_count(), "type": "SCALAR" });
+        let positions = self.floats(&positions, Some(VERTICES), bounds);
+        let normals = self.floats(&normals, Some(VERTICES), json!({}));
+        [positions, normals, self.push(&bytes, Some(INDICES), accessor)]
     }
 }
 
-fn little_endian(numbers: &[f32]) -> Vec<u8> {
-    numbers.iter().flat_map(|x| x.to_le_bytes()).collect()
+/// Where an item stands among those that are known; a new one is added at the end.
+fn place<T: PartialEq>(known: &mut Vec<T>, item: T) -> usize {
+    known.iter().position(|k| *k == item).unwrap_or_else(|| {
+        known.push(item);
+        known.len() - 1
+    })
 }
 
 pub(super) fn write(scene: &Scene, colours: Colours, gpu_instancing: bool, out: &mut impl Write) -> io::Result<()> {
     let colours = colour::of_members(scene, colours);
     let mut materials: Vec<&Colour> = Vec::new();
-    let material_of: Vec<usize> = colours
-        .iter()
-        .map(|colour| {
-            materials.iter().position(|known| *known == colour).unwrap_or_else(|| {
-                materials.push(colour);
-                materials.len() - 1
-            })
-        })
-        .collect();
-
+    let material_of: Vec<usize> = colours.iter().map(|colour| place(&mut materials, colour)).collect();
     let mut chunk = Chunk::default();
-    let parts: Vec<[usize; 3]> = scene
-        .shapes
-        .iter()
-        .map(|shape| {
-            let positions = chunk.vectors(&shape.vertices, true);
-            let normals = chunk.vectors(&shape.normals, false);
-            let count = 3 * shape.triangle_count();
-            let indices = shape.triangles().flatten();
-            let (bytes, kind): (Vec<u8>, u32) = if shape.vertices.len() < usize::from(u16::MAX) {
-                (indices.flat_map(|i| (i as u16).to_le_bytes()).collect(), UNSIGNED_SHORT)
-            } else {
-                (indices.flat_map(|i| (i as u32).to_le_bytes()).collect(), UNSIGNED_INT)
-            };
-            let accessor = json!({ "componentType": kind, "count": count, "type": "SCALAR" });
-            [positions, normals, chunk.push(&bytes, Some(INDICES), accessor)]
-        })
-        .collect();
-
+    let parts: Vec<[usize; 3]> = scene.shapes.iter().map(|shape| chunk.mesh(shape)).collect();
     // A mesh for each pair of shape and material that occurs.
     let mut pairs: Vec<[usize; 2]> = Vec::new();
-    let mut mesh_of = |shape: usize, material: usize| match pairs.iter().position(|p| *p == [shape, material]) {
-        Some(known) => known,
-        None => {
-            pairs.push([shape, material]);
-            pairs.len() - 1
-        }
-    };
+    let mesh_of = |shape: usize, member: usize| place(&mut pairs, [shape, material_of[member]]);
     let mut nodes: Vec<Value> = vec![Value::Null];
-    let mut children = Vec::new();
-    if gpu_instancing {
-        let mut poses: Vec<Vec<Isometry3<f64>>> = Vec::new();
-        for ring in scene.rings() {
-            let mesh = mesh_of(ring.shape, material_of[ring.placed.member]);
-            poses.resize_with(poses.len().max(mesh + 1), Vec::new);
-            poses[mesh].push(ring.pose);
-        }
-        for (mesh, poses) in poses.iter().enumerate() {
-            let numbers: Vec<[f32; 3]> = poses.iter().map(|p| singles(&p.translation.vector)).collect();
-            let accessor = json!({ "componentType": FLOAT, "count": poses.len(), "type": "VEC3" });
-            let translation = chunk.push(&little_endian(numbers.as_flattened()), None, accessor);
-            let numbers: Vec<[f32; 4]> = poses.iter().map(quaternion).collect();
-            let accessor = json!({ "componentType": FLOAT, "count": poses.len(), "type": "VEC4" });
-            let rotation = chunk.push(&little_endian(numbers.as_flattened()), None, accessor);
-            let attributes = json!({ "TRANSLATION": translation, "ROTATION": rotation });
-            children.push(nodes.len());
-            nodes.push(json!({ "mesh": mesh, "extensions": { INSTANCING: { "attributes": attributes } } }));
-        }
-    } else {
-        for element in &scene.elements {
-            let kind = &scene.kinds[element.kind];
-            let name = Some(format!("{} {},{}", kind.name, element.cell[0], element.cell[1]));
-            let material = material_of[element.member];
-            children.push(nodes.len());
-            if let [ring] = &kind.rings[..] {
-                let mesh = mesh_of(ring.shape, material);
-                nodes.push(json!(Node::new(name, Some(mesh), &(element.pose * ring.local))));
-                continue;
-            }
-            let mut parent = Node::new(name, None, &element.pose);
-            parent.children = (1..=kind.rings.len()).map(|k| nodes.len() + k).collect();
-            nodes.push(json!(parent));
-            for ring in &kind.rings {
-                nodes.push(json!(Node::new(None, Some(mesh_of(ring.shape, material)), &ring.local)));
-            }
-        }
-    }
+    let children = match gpu_instancing {
+        true => add_instances(scene, mesh_of, &mut chunk, &mut nodes),
+        false => add_elements(scene, mesh_of, &mut nodes),
+    };
     // −90° about x, and millimetres to metres.
     let half = std::f32::consts::FRAC_1_SQRT_2;
     nodes[0] = json!({ "name": scene.name, "rotation": [-half, 0.0, 0.0, half], "scale": [0.001, 0.001, 0.001], "children": children });
 
-    let meshes: Vec<Value> = pairs
-        .iter()
-        .map(|&[shape, material]| {
-            let [positions, normals, indices] = parts[shape];
-            json!({
-                "name": materials[material].name,
-                "primitives": [{
-                    "attributes": { "POSITION": positions, "NORMAL": normals }, "indices": indices, "material": material,
-                }],
-            })
+    let mesh = |&[shape, material]: &[usize; 2]| {
+        let [positions, normals, indices] = parts[shape];
+        json!({
+            "name": materials[material].name,
+            "primitives": [{
+                "attributes": { "POSITION": positions, "NORMAL": normals }, "indices": indices, "material": material,
+            }],
         })
-        .collect();
-    let materials: Vec<Value> = materials
-        .iter()
-        .map(|colour| {
-            let [r, g, b] = colour.linear();
-            json!({
-                "name": colour.name,
-                "pbrMetallicRoughness": { "baseColorFactor": [r, g, b, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.5 },
-            })
+    };
+    let material = |colour: &&Colour| {
+        let [r, g, b] = colour.linear();
+        json!({
+            "name": colour.name,
+            "pbrMetallicRoughness": { "baseColorFactor": [r, g, b, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.5 },
         })
-        .collect();
+    };
     let mut document = json!({
         "asset": {
             "version": "2.0",
@@ -195,8 +144,8 @@ pub(super) fn write(scene: &Scene, colours: Colours, gpu_instancing: bool, out: 
         "scene": 0,
         "scenes": [{ "nodes": [0] }],
         "nodes": nodes,
-        "meshes": meshes,
-        "materials": materials,
+        "meshes": pairs.iter().map(mesh).collect::<Vec<_>>(),
+        "materials": materials.iter().map(material).collect::<Vec<_>>(),
         "accessors": chunk.accessors,
         "bufferViews": chunk.views,
         "buffers": [{ "byteLength": chunk.bytes.len() }],
@@ -206,6 +155,53 @@ pub(super) fn write(scene: &Scene, colours: Colours, gpu_instancing: bool, out: 
         document["extensionsRequired"] = json!([INSTANCING]);
     }
     container(&document, &chunk.bytes, out)
+}
+
+/// A node for each mesh, with the poses of its instances; gives the nodes.
+fn add_instances(
+    scene: &Scene,
+    mut mesh_of: impl FnMut(usize, usize) -> usize,
+    chunk: &mut Chunk,
+    nodes: &mut Vec<Value>,
+) -> Vec<usize> {
+    let mut poses: Vec<Vec<Isometry3<f64>>> = Vec::new();
+    for ring in scene.rings() {
+        let mesh = mesh_of(ring.shape, ring.placed.member);
+        poses.resize_with(poses.len().max(mesh + 1), Vec::new);
+        poses[mesh].push(ring.pose);
+    }
+    let first = nodes.len();
+    for (mesh, poses) in poses.iter().enumerate() {
+        let places: Vec<[f32; 3]> = poses.iter().map(|p| singles(&p.translation.vector)).collect();
+        let translation = chunk.floats(&places, None, json!({}));
+        let rotations: Vec<[f32; 4]> = poses.iter().map(quaternion).collect();
+        let rotation = chunk.floats(&rotations, None, json!({}));
+        let attributes = json!({ "TRANSLATION": translation, "ROTATION": rotation });
+        nodes.push(json!({ "mesh": mesh, "extensions": { INSTANCING: { "attributes": attributes } } }));
+    }
+    (first..nodes.len()).collect()
+}
+
+/// A node for each element, with a child for each ring where it has several; gives the nodes of the elements.
+fn add_elements(scene: &Scene, mut mesh_of: impl FnMut(usize, usize) -> usize, nodes: &mut Vec<Value>) -> Vec<usize> {
+    let mut out = Vec::new();
+    for element in &scene.elements {
+        let kind = &scene.kinds[element.kind];
+        let name = Some(format!("{} {},{}", kind.name, element.cell[0], element.cell[1]));
+        out.push(nodes.len());
+        if let [ring] = &kind.rings[..] {
+            let mesh = mesh_of(ring.shape, element.member);
+            nodes.push(json!(Node::new(name, Some(mesh), &(element.pose * ring.local))));
+            continue;
+        }
+        let mut parent = Node::new(name, None, &element.pose);
+        parent.children = (1..=kind.rings.len()).map(|k| nodes.len() + k).collect();
+        nodes.push(json!(parent));
+        for ring in &kind.rings {
+            nodes.push(json!(Node::new(None, Some(mesh_of(ring.shape, element.member)), &ring.local)));
+        }
+    }
+    out
 }
 
 /// The header, the JSON chunk and the binary chunk; the lengths of both are multiples of four.

@@ -1,6 +1,6 @@
 //! Wavefront OBJ: triangles of all rings, an object for each element. The numbers are millimetres.
 
-use super::{Scene, number::singles};
+use super::{number::singles, scene::Scene};
 use std::io::{self, Write};
 
 pub(super) fn write(scene: &Scene, out: &mut impl Write) -> io::Result<()> {

@@ -1,6 +1,10 @@
 //! Binary PLY: triangles of all rings, with colours. The numbers are millimetres.
 
-use super::{Colours, Scene, colour, number::singles};
+use super::{
+    colour::{self, Colours},
+    number::singles,
+    scene::Scene,
+};
 use std::io::{self, Write};
 
 pub(super) fn write(scene: &Scene, colours: Colours, out: &mut impl Write) -> io::Result<()> {

@@ -1,6 +1,6 @@
 //! Binary STL: triangles of all rings. The format has no unit; the numbers are millimetres.
 
-use super::{Scene, number::singles};
+use super::{number::singles, scene::Scene};
 use std::io::{self, Write};
 
 pub(super) fn write(scene: &Scene, out: &mut impl Write) -> io::Result<()> {

@@ -3,10 +3,22 @@
 //! The package is the least that the core specification 1.3 asks for. Objects are placed from the origin into the positive
 //! octant, as the specification recommends; slicers then put them on the bed.
 
-use super::{Objects, Scene, number::singles};
+use super::{number::singles, scene::Scene};
 use nalgebra::{Isometry3, Translation3, Vector3};
 use std::io::{self, Seek, Write};
 use zip::{CompressionMethod, ZipWriter, write::SimpleFileOptions};
+
+/// What is one object of a 3MF file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Objects {
+    /// Each element, its rings as components.
+    #[default]
+    Element,
+    /// Each ring.
+    Ring,
+    /// The whole tile, its rings as components: slicers keep their places.
+    Sheet,
+}
 
 const CONTENT_TYPES: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
 <Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">

@@ -1,6 +1,6 @@
 //! The mesh of a torus: closed, oriented outward, within a chordal tolerance.
 
-use super::MeshError;
+use super::error::MeshError;
 use maille_geometry::Vec3;
 use std::f64::consts::{PI, TAU};
 

@@ -2,7 +2,10 @@
 //!
 //! Numbers follow the XML as raw bytes, so that a file is written as it is computed. The lengths are millimetres.
 
-use super::{Scene, number::singles};
+use super::{
+    number::singles,
+    scene::{PlacedRing, Scene},
+};
 use std::io::{self, Write};
 
 /// Writes an array's bytes.
@@ -103,7 +106,7 @@ fn write_file(scene: &Scene, data: PolyData<'_>, out: &mut dyn Write) -> io::Res
 pub(super) fn write_rings(scene: &Scene, out: &mut impl Write) -> io::Result<()> {
     let count = scene.triangle_count() / 2;
     let shape = |k: usize| &scene.shapes[k];
-    let repeated = move |value: fn(&Scene, &super::PlacedRing<'_>) -> usize| {
+    let repeated = move |value: fn(&Scene, &PlacedRing<'_>) -> usize| {
         move || scene.rings().flat_map(move |r| std::iter::repeat_n(value(scene, &r), shape(r.shape).quad_count()))
     };
     let mut cell_data = vec![

@@ -3,7 +3,7 @@
 use super::canvas::{Anchor, Canvas, Stroke};
 use super::frame::{Entry, Frame, GRID, INK, Layout, RIM, SOFT, style};
 use super::look::{self, Look};
-use super::scale::Scale;
+use super::scale::{Scale, range};
 use crate::boundary::{colour, point, triangles};
 use maille::{record::Status, survey::surface::Boundary};
 
@@ -24,24 +24,16 @@ pub fn boundary_svg(boundary: &Boundary, title: &str, caption: Vec<String>) -> S
     let solid: Vec<[f64; 3]> = boundary.vertices.iter().map(|v| point(v).unwrap_or_default()).collect();
     let bound: Vec<[f64; 3]> =
         boundary.vertices.iter().map(|v| v.point(v.bound.or(v.distance).unwrap_or_default())).collect();
-    let sample = |rgb: [u8; 3], label: &str| Entry::Sample {
-        look: Look { color: hex(rgb), width: 6.0, ..look::hollow() },
-        line: true,
-        marker: false,
-        label: label.into(),
+    let sample = |color: String, width: f64, label: &str| {
+        Entry::sample(&Look { color, width, ..look::hollow() }, true, false, label)
     };
     let statuses = [Status::Global, Status::Local, Status::Uncertified];
     let labels = ["proved: the bound is attained", "certified", "not certified"];
     let there = |status: Status| boundary.vertices.iter().any(|v| colour(v.status) == colour(status));
     let mut legend = vec![Entry::Heading("Surface".into())];
-    legend
-        .extend(statuses.into_iter().zip(labels).filter(|(s, _)| there(*s)).map(|(s, label)| sample(colour(s), label)));
-    legend.push(Entry::Sample {
-        look: Look { color: BOUND.into(), width: 1.4, dash: "", ..look::hollow() },
-        line: true,
-        marker: false,
-        label: "proven bounds of the rays, joined".into(),
-    });
+    let shown = statuses.into_iter().zip(labels).filter(|(status, _)| there(*status));
+    legend.extend(shown.map(|(status, label)| sample(hex(colour(status)), 6.0, label)));
+    legend.push(sample(BOUND.into(), 1.4, "proven bounds of the rays, joined"));
     legend.push(Entry::Note("circle: the sheet as written".into()));
     let frame = Frame {
         title: title.to_owned(),
@@ -90,11 +82,8 @@ fn section(
 ) {
     let pieces = cut(boundary, solid, zero);
     // One unit is as long on both axes, and the surface fills the panel; of the bound what fits is shown.
-    let range = |axis: usize| {
-        let ends = pieces.iter().flat_map(|(ends, _)| ends).map(move |p| p[axis]);
-        ends.fold((0.0f64, 0.0f64), |(low, high), v| (low.min(v), high.max(v)))
-    };
-    let (of_x, of_y) = (range(x), range(y));
+    let of = |axis: usize| range(pieces.iter().flat_map(|(ends, _)| ends).map(|p| p[axis]).chain([0.0]));
+    let (of_x, of_y) = (of(x), of(y));
     let span = 1.16 * (of_x.1 - of_x.0).max(of_y.1 - of_y.0).max(1e-9);
     let middle = [0.5 * (of_x.0 + of_x.1), 0.5 * (of_y.0 + of_y.1)];
     let unit = SIDE / span;
@@ -134,14 +123,9 @@ fn section(
 
 /// The surface from the side, far triangles first, lit from the eye. Each axis is stretched to the same length.
 fn view(canvas: &mut Canvas, [left, top]: [f64; 2], boundary: &Boundary, points: &[[f64; 3]]) {
-    let size: [f64; 3] = std::array::from_fn(|i| {
-        let (low, high) = points.iter().fold((0.0f64, 0.0f64), |(l, h), p| (l.min(p[i]), h.max(p[i])));
-        (high - low).max(1e-9)
-    });
-    let center: [f64; 3] = std::array::from_fn(|i| {
-        let (low, high) = points.iter().fold((0.0f64, 0.0f64), |(l, h), p| (l.min(p[i]), h.max(p[i])));
-        0.5 * (low + high)
-    });
+    let ends: [(f64, f64); 3] = std::array::from_fn(|i| range(points.iter().map(|p| p[i]).chain([0.0])));
+    let size = ends.map(|(low, high)| (high - low).max(1e-9));
+    let center = ends.map(|(low, high)| 0.5 * (low + high));
     // Right, up and towards the eye.
     let seen = |p: &[f64; 3]| -> [f64; 3] {
         let [x, y, z] = std::array::from_fn(|i| (p[i] - center[i]) / size[i]);

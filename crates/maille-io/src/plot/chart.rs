@@ -2,7 +2,7 @@
 
 use super::canvas::{Anchor, Canvas, Stroke, TextStyle};
 use super::frame::{Entry, Frame, GRID, INK, Layout, MARGIN, RIM, SOFT, TOP, style};
-use super::look::{Look, MARKER};
+use super::look::{self, Look, MARKER};
 use super::scale::Axis;
 
 const LEFT: f64 = MARGIN + 58.0;
@@ -96,13 +96,15 @@ impl Chart {
     }
 }
 
-/// Legend of records, and of the l2 if there are several.
-pub(super) fn sample(look: &Look, line: bool, marker: bool, label: &str) -> Entry {
-    Entry::Sample { look: look.clone(), line, marker, label: label.to_owned() }
+/// A legend that tells records apart, each with a line and a marker.
+pub(super) fn legend_of_records(apart: String, labels: &[String]) -> Vec<Entry> {
+    let mut out = vec![Entry::Heading(if labels.len() > 1 { apart } else { "Design".into() })];
+    let looks = look::of_records(labels.len());
+    out.extend(looks.iter().zip(labels).map(|(look, label)| Entry::sample(look, true, true, label)));
+    out
 }
 
 /// The note on hollow markers.
 pub(super) fn hollow_note(text: &str) -> Entry {
-    let look = Look { color: SOFT.into(), ..super::look::hollow() };
-    Entry::Sample { look, line: false, marker: true, label: text.to_owned() }
+    Entry::sample(&Look { color: SOFT.into(), ..look::hollow() }, false, true, text)
 }

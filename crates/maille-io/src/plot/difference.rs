@@ -1,41 +1,17 @@
 //! How much the limits of a sheet differ between directions: largest less smallest, against l2.
 
-use super::chart::{Chart, Point, Series, hollow_note, sample};
+use super::chart::{Chart, Point, Series, hollow_note, legend_of_records};
 use super::compare::{captions, differences, l2_values, title};
-use super::frame::{Entry, Frame, Layout};
+use super::frame::{Frame, Layout};
 use super::look;
-use super::scale::Axis;
-use crate::record::NamedRecord;
+use super::scale::{Axis, range};
+use crate::{quantity::Quantity, record::NamedRecord};
 use maille::record::LimitRow;
 
-/// What is compared between directions.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Spread {
-    /// λ1 − 1 with λ1 the larger eigenvalue of C = FᵀF, as in the thesis.
-    #[default]
-    Lambda1,
-    /// l1.
-    L1,
-}
-
-impl Spread {
-    fn of(self, row: &LimitRow) -> Option<f64> {
-        match self {
-            Spread::Lambda1 => row.lambda1.map(|lambda1| lambda1 - 1.0),
-            Spread::L1 => row.l1,
-        }
-    }
-
-    fn symbol(self) -> &'static str {
-        match self {
-            Spread::Lambda1 => "λ₁ − 1",
-            Spread::L1 => "l₁",
-        }
-    }
-}
-
 /// The plot of one record or several, as SVG.
-pub fn difference_svg(records: &[NamedRecord], spread: Spread, layout: Layout) -> String {
+pub fn difference_svg(records: &[NamedRecord], quantity: Quantity, layout: Layout) -> String {
+    // Of 1 + l1 and of l1 the difference is the same.
+    let spread = if quantity == Quantity::Stretch { Quantity::L1 } else { quantity };
     let (apart, labels) = differences(records);
     let looks = look::of_records(records.len());
     let series: Vec<Series> = records
@@ -48,13 +24,12 @@ pub fn difference_svg(records: &[NamedRecord], spread: Spread, layout: Layout) -
         })
         .collect();
     let points = || series.iter().flat_map(|series| &series.points);
-    let mut legend = vec![Entry::Heading(if records.len() > 1 { apart } else { "Design".into() })];
-    legend.extend(looks.iter().zip(&labels).map(|(look, label)| sample(look, true, true, label)));
+    let mut legend = legend_of_records(apart, &labels);
     let mut caption = captions(records, &labels);
     if points().any(|point| point.hollow) {
         legend.push(hollow_note("some directions have no limit"));
     }
-    if spread == Spread::Lambda1 {
+    if spread == Quantity::Lambda1 {
         caption.push("λ₁ is the larger eigenvalue of C = FᵀF; where l₁ < l₂ it is the one across the pull.".into());
     }
     caption.push("0 would be a sheet that locks at the same stretch in every direction that was computed.".into());
@@ -79,9 +54,9 @@ pub fn difference_svg(records: &[NamedRecord], spread: Spread, layout: Layout) -
 }
 
 /// Nothing where fewer than two directions have a limit; hollow where only some have.
-fn point(rows: &[LimitRow], l2: f64, spread: Spread) -> Point {
+fn point(rows: &[LimitRow], l2: f64, spread: Quantity) -> Point {
     let of_l2 = || rows.iter().filter(|row| row.l2 == l2);
     let found: Vec<f64> = of_l2().filter_map(|row| spread.of(row)).collect();
-    let (min, max) = found.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), x| (lo.min(*x), hi.max(*x)));
+    let (min, max) = range(found.iter().copied());
     Point { x: l2, y: (found.len() > 1).then_some(max - min), hollow: found.len() < of_l2().count() }
 }

@@ -1,6 +1,6 @@
 //! Force against stretch of simulated sheets: free at first, then a hard stop.
 
-use super::chart::{Chart, Point, Series, sample};
+use super::chart::{Chart, Point, Series};
 use super::compare::title_of;
 use super::frame::{Entry, Frame, Layout};
 use super::look;
@@ -86,7 +86,7 @@ pub fn force_svg(simulations: &[NamedSimulation], layout: Layout) -> Option<Stri
     points().next()?;
     let mut legend = vec![Entry::Heading(if simulations.len() > 1 { "Finite sheet" } else { "Design" }.into())];
     for ((simulation, look), label) in simulations.iter().zip(&looks).zip(&labels) {
-        legend.push(sample(look, true, true, label));
+        legend.push(Entry::sample(look, true, true, label));
         legend.push(Entry::Note(simulation.outcome()));
     }
     let mut caption: Vec<String> = simulations

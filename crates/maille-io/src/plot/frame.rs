@@ -57,6 +57,12 @@ pub(super) enum Entry {
     Note(String),
 }
 
+impl Entry {
+    pub(super) fn sample(look: &Look, line: bool, marker: bool, label: &str) -> Entry {
+        Entry::Sample { look: look.clone(), line, marker, label: label.to_owned() }
+    }
+}
+
 /// Heading, legend and caption of a plot.
 pub(super) struct Frame {
     pub(super) title: String,
@@ -80,7 +86,8 @@ impl Frame {
         });
         let width = labels.fold(WIDTH - LEGEND - MARGIN, f64::max).ceil() + LEGEND + MARGIN;
         let caption: Vec<_> = self.caption.iter().flat_map(|text| wrap(text, 12.0, width - 2.0 * MARGIN)).collect();
-        let caption_top = bottom.max(self.legend_end()) + 40.0;
+        let places = self.legend_places();
+        let caption_top = bottom.max(places.last().map_or(TOP, |place| place.0[1])) + 40.0;
         let height = caption_top + 18.0 * caption.len() as f64 + 4.0 * self.caption.len() as f64 + 14.0;
 
         let mut canvas = Canvas::new(0.0, width, height, &self.title);
@@ -89,7 +96,7 @@ impl Frame {
         canvas.text([MARGIN, 46.0], title, &self.title);
         canvas.text([MARGIN, 70.0], style(14.0, SOFT, Anchor::Start), &self.subtitle);
         draw(&mut canvas);
-        self.draw_legend(&mut canvas);
+        draw_legend(&mut canvas, &places, 1.0, [4.5, 17.0]);
         self.draw_caption(&mut canvas, caption_top, width, 1.0);
         canvas.finish()
     }
@@ -97,19 +104,16 @@ impl Frame {
     /// The legend runs through two columns below the data.
     fn narrow_svg(&self, bottom: f64, draw: impl FnOnce(&mut Canvas)) -> String {
         let type_of = |size: f64| size * LARGER;
-        let broken: Vec<(&Entry, Vec<String>)> = self
-            .legend
-            .iter()
-            .map(|entry| match entry {
-                Entry::Heading(text) => (entry, wrap(text, type_of(13.0), 0.9 * 2.0 * COLUMN)),
-                Entry::Note(text) => (entry, wrap(text, type_of(12.0), 2.0 * COLUMN)),
-                Entry::Sample { label, .. } => (entry, wrap(label, type_of(13.0), COLUMN - SAMPLE - 8.0)),
-            })
-            .collect();
+        let broken = |entry: &Entry| match entry {
+            Entry::Heading(text) => wrap(text, type_of(13.0), 0.9 * 2.0 * COLUMN),
+            Entry::Note(text) => wrap(text, type_of(12.0), 2.0 * COLUMN),
+            Entry::Sample { label, .. } => wrap(label, type_of(13.0), COLUMN - SAMPLE - 8.0),
+        };
         // Headings and notes have a row of their own, samples stand two in a row.
         let (mut y, mut column, mut row) = (bottom + 34.0, 0, 0.0_f64);
         let mut places = Vec::new();
-        for (entry, lines) in &broken {
+        for entry in &self.legend {
+            let lines = broken(entry);
             let sample = matches!(entry, Entry::Sample { .. });
             if column > 0 && (!sample || column == 2) {
                 (y, column, row) = (y + row, 0, 0.0);
@@ -117,8 +121,8 @@ impl Frame {
             if matches!(entry, Entry::Heading(_)) && !places.is_empty() {
                 y += 12.0;
             }
-            places.push(([MARGIN + COLUMN * f64::from(column), y], *entry, lines));
             let height = 25.0 * lines.len().max(1) as f64;
+            places.push(([MARGIN + COLUMN * f64::from(column), y], entry, lines));
             if sample {
                 (column, row) = (column + 1, row.max(height));
             } else {
@@ -131,62 +135,32 @@ impl Frame {
         let height = caption_top + LARGER * (18.0 * caption + 4.0 * self.caption.len() as f64);
         let mut canvas = Canvas::new(NARROW_TOP, NARROW, height - NARROW_TOP, &self.title);
         draw(&mut canvas);
-        for ([x, y], entry, lines) in places {
-            let (x, style) = match entry {
-                Entry::Heading(_) => (x, bold(type_of(13.0))),
-                Entry::Note(_) => (x, style(type_of(12.0), SOFT, Anchor::Start)),
-                Entry::Sample { look, line, marker, .. } => {
-                    draw_sample(&mut canvas, [x, y - 5.5], look, *line, *marker);
-                    (x + SAMPLE, style(type_of(13.0), INK, Anchor::Start))
-                }
-            };
-            for (k, line) in lines.iter().enumerate() {
-                canvas.text([x, y + 21.0 * k as f64], style, line);
-            }
-        }
+        draw_legend(&mut canvas, &places, LARGER, [5.5, 21.0]);
         self.draw_caption(&mut canvas, caption_top, NARROW, LARGER);
         canvas.finish()
     }
 
-    /// Each entry with its baseline.
-    fn legend_places(&self) -> Vec<(&Entry, f64)> {
+    /// Each entry with the place and the lines of its text.
+    fn legend_places(&self) -> Vec<Place<'_>> {
         let mut y = TOP;
-        let mut places = Vec::new();
-        let mut before: Option<&Entry> = None;
+        let mut places: Vec<Place<'_>> = Vec::new();
         for entry in &self.legend {
-            y += match (entry, before) {
+            y += match (entry, places.last()) {
                 (_, None) => 0.0,
                 (Entry::Heading(_), _) => 40.0,
-                (Entry::Note(_), Some(Entry::Note(_))) => 17.0,
+                (Entry::Note(_), Some((_, Entry::Note(_), _))) => 17.0,
                 (Entry::Note(_), _) => 20.0,
                 (Entry::Sample { .. }, _) => 24.0,
             };
-            places.push((entry, y));
-            if let Entry::Sample { label, .. } = entry {
-                y += 17.0 * (lines(label).len() - 1) as f64;
-            }
-            before = Some(entry);
+            let text = match entry {
+                Entry::Heading(text) | Entry::Note(text) => vec![text.clone()],
+                Entry::Sample { label, .. } => lines(label),
+            };
+            let more = text.len() - 1;
+            places.push(([LEGEND, y], entry, text));
+            y += 17.0 * more as f64;
         }
         places
-    }
-
-    fn legend_end(&self) -> f64 {
-        self.legend_places().last().map_or(TOP, |(_, y)| *y)
-    }
-
-    fn draw_legend(&self, canvas: &mut Canvas) {
-        for (entry, y) in self.legend_places() {
-            match entry {
-                Entry::Heading(text) => canvas.text([LEGEND, y], bold(13.0), text),
-                Entry::Note(text) => canvas.text([LEGEND, y], style(12.0, SOFT, Anchor::Start), text),
-                Entry::Sample { look, line, marker, label } => {
-                    draw_sample(canvas, [LEGEND, y - 4.5], look, *line, *marker);
-                    for (k, line) in lines(label).iter().enumerate() {
-                        canvas.text([LEGEND + SAMPLE, y + 17.0 * k as f64], style(13.0, INK, Anchor::Start), line);
-                    }
-                }
-            }
-        }
     }
 
     fn draw_caption(&self, canvas: &mut Canvas, top: f64, width: f64, larger: f64) {
@@ -198,6 +172,26 @@ impl Frame {
                 y += 18.0 * larger;
             }
             y += 4.0 * larger;
+        }
+    }
+}
+
+/// An entry of the legend, with the place and the lines of its text.
+type Place<'a> = ([f64; 2], &'a Entry, Vec<String>);
+
+/// Draws the entries in type `larger` than usual; samples stand `up` of the base line, lines are `apart`.
+fn draw_legend(canvas: &mut Canvas, places: &[Place<'_>], larger: f64, [up, apart]: [f64; 2]) {
+    for &([x, y], entry, ref lines) in places {
+        let (x, style) = match entry {
+            Entry::Heading(_) => (x, bold(13.0 * larger)),
+            Entry::Note(_) => (x, style(12.0 * larger, SOFT, Anchor::Start)),
+            Entry::Sample { look, line, marker, .. } => {
+                draw_sample(canvas, [x, y - up], look, *line, *marker);
+                (x + SAMPLE, style(13.0 * larger, INK, Anchor::Start))
+            }
+        };
+        for (k, line) in lines.iter().enumerate() {
+            canvas.text([x, y + apart * k as f64], style, line);
         }
     }
 }

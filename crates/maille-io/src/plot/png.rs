@@ -1,5 +1,6 @@
-//! SVG to PNG, with the fonts that come with the program.
+//! SVG to PNG, with the fonts that come with the program, and PNG of 256 colours.
 
+use color_quant::NeuQuant;
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree, fontdb::Database};
 use std::sync::{Arc, OnceLock};
@@ -53,4 +54,44 @@ fn fonts() -> Arc<Database> {
         Arc::new(fonts)
     };
     FONTS.get_or_init(load).clone()
+}
+
+/// Pixels that a palette is trained on: all of them. It takes longer for large pictures, and is always the same.
+pub(crate) const SAMPLE: i32 = 1;
+pub(crate) const COLOURS: usize = 256;
+
+/// The picture in a PNG of 8 bits a channel as a PNG of 256 colours, chosen for it.
+pub fn with_palette(png: &[u8]) -> Result<Vec<u8>, PlotError> {
+    let fail = |e: &dyn std::fmt::Display| PlotError::Encode(e.to_string());
+    let pixmap = Pixmap::decode_png(png).map_err(|e| fail(&e))?;
+    let straight = pixmap.pixels().iter().map(|p| p.demultiply());
+    let rgba: Vec<u8> = straight.flat_map(|c| [c.red(), c.green(), c.blue(), c.alpha()]).collect();
+    let palette = NeuQuant::new(SAMPLE, COLOURS, &rgba);
+    let mut colours = palette.color_map_rgba();
+    let mut indices: Vec<u8> = rgba.chunks_exact(4).map(|pixel| palette.index_of(pixel) as u8).collect();
+    // The ground stays as it was to the last bit: next to other pictures a shade would show.
+    let ground = [rgba[0], rgba[1], rgba[2], rgba[3]];
+    let at = usize::from(indices[0]);
+    colours[4 * at..4 * at + 4].copy_from_slice(&ground);
+    for (index, pixel) in indices.iter_mut().zip(rgba.chunks_exact(4)) {
+        if pixel == ground {
+            *index = at as u8;
+        }
+    }
+
+    let mut out = Vec::new();
+    let mut encoder = png::Encoder::new(&mut out, pixmap.width(), pixmap.height());
+    encoder.set_color(png::ColorType::Indexed);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::High);
+    encoder.set_filter(png::Filter::NoFilter);
+    encoder.set_palette(colours.chunks_exact(4).flat_map(|c| [c[0], c[1], c[2]]).collect::<Vec<u8>>());
+    // A palette that was trained on opaque pixels alone has alphas of 254 too: rounding.
+    if rgba.chunks_exact(4).any(|pixel| pixel[3] < u8::MAX) {
+        encoder.set_trns(colours.chunks_exact(4).map(|c| c[3]).collect::<Vec<u8>>());
+    }
+    let mut writer = encoder.write_header().map_err(|e| fail(&e))?;
+    writer.write_image_data(&indices).map_err(|e| fail(&e))?;
+    writer.finish().map_err(|e| fail(&e))?;
+    Ok(out)
 }

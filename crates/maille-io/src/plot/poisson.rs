@@ -2,9 +2,9 @@
 //!
 //! At a limit the width need not be unique: the ratio is a band between the values of the largest and the least l2.
 
-use super::chart::{Chart, Point, Series, sample};
+use super::chart::{Chart, Point, Series, legend_of_records};
 use super::compare::{captions, differences, title};
-use super::frame::{Entry, Frame, Layout};
+use super::frame::{Frame, Layout};
 use super::look;
 use super::scale::Axis;
 use crate::record::NamedRecord;
@@ -45,8 +45,6 @@ pub fn poisson_svg(records: &[NamedRecord], layout: Layout) -> Option<String> {
     if values.is_empty() {
         return None;
     }
-    let mut legend = vec![Entry::Heading(if records.len() > 1 { apart } else { "Design".into() })];
-    legend.extend(looks.iter().zip(&labels).map(|(look, label)| sample(look, true, true, label)));
     let mut caption = captions(records, &labels);
     caption.push("Where the two curves of a record part, the width at the limit is not unique: the sheet was found at both ends.".into());
     let directions: Vec<f64> = records.iter().flat_map(|n| &n.record.rows).map(|row| row.direction_deg).collect();
@@ -54,7 +52,7 @@ pub fn poisson_svg(records: &[NamedRecord], layout: Layout) -> Option<String> {
         frame: Frame {
             title: title(records),
             subtitle: "Kinematic Poisson ratio at the limit, width left to the sheet".into(),
-            legend,
+            legend: legend_of_records(apart, &labels),
             caption,
         },
         x: Axis::of_directions(&directions),

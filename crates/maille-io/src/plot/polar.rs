@@ -7,25 +7,17 @@ use super::compare::{
 use super::curve::{Curve, CurveKind};
 use super::frame::{Entry, Frame, GRID, INK, Layout, MARGIN, RIM, SOFT, TOP, style};
 use super::look::{self, Look, MARKER};
+use super::records::Looks;
 use super::scale::Scale;
-use crate::record::{NamedRecord, Reference, ReferenceCell};
+use crate::{
+    quantity::Quantity,
+    record::{NamedRecord, Reference, ReferenceCell},
+};
 use maille::design::Design;
 use maille::record::{LimitRow, Status};
 
-/// What the radius of the plot shows.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Quantity {
-    /// 1 + l1, length over original length along the pull.
-    #[default]
-    Stretch,
-    /// l1.
-    L1,
-    /// λ1 − 1, with λ1 the larger eigenvalue of C = FᵀF: what the thesis plots.
-    Lambda1,
-}
-
 impl Quantity {
-    fn of(self, row: &LimitRow) -> Option<f64> {
+    pub(super) fn of(self, row: &LimitRow) -> Option<f64> {
         match self {
             Quantity::Stretch => row.l1.map(|l1| 1.0 + l1),
             Quantity::L1 => row.l1,
@@ -51,7 +43,7 @@ impl Quantity {
         }
     }
 
-    fn symbol(self) -> &'static str {
+    pub(super) fn symbol(self) -> &'static str {
         match self {
             Quantity::Stretch => "1 + l₁",
             Quantity::L1 => "l₁",
@@ -156,16 +148,21 @@ impl PolarPlot {
         caption.extend(growing(rows));
         let curves = l2.iter().map(|&l2| limits(0, rows, l2, quantity));
         let curves = curves.chain(l2.iter().filter(open).map(bound)).collect();
+        Self { title: heading(design), curves, caption, ..Self::of(quantity, rows.iter()) }
+    }
+
+    /// An empty plot of limits.
+    fn of<'a>(quantity: Quantity, rows: impl Iterator<Item = &'a LimitRow> + Clone) -> Self {
         Self {
-            title: heading(design),
+            title: String::new(),
             quantity,
+            ends: ends(rows.clone()),
             records: Default::default(),
-            curves,
+            curves: Vec::new(),
             rays: Vec::new(),
             check: String::new(),
-            caption,
-            lateral_free: lateral_free(rows.iter()),
-            ends: ends(rows.iter()),
+            caption: Vec::new(),
+            lateral_free: lateral_free(rows),
             reference: Reference::Start,
             room_for: Vec::new(),
         }
@@ -181,19 +178,8 @@ impl PolarPlot {
         let mut caption = captions(records, &labels.1);
         caption.push(symmetry(quantity));
         let curves = records.iter().enumerate().flat_map(curve).collect();
-        Self {
-            title: title(records),
-            quantity,
-            records: labels,
-            curves,
-            rays: Vec::new(),
-            check: String::new(),
-            caption,
-            lateral_free: lateral_free(records.iter().flat_map(|named| &named.record.rows)),
-            ends: ends(records.iter().flat_map(|named| &named.record.rows)),
-            reference: Reference::Start,
-            room_for: Vec::new(),
-        }
+        let rows = records.iter().flat_map(|named| &named.record.rows);
+        Self { title: title(records), records: labels, curves, caption, ..Self::of(quantity, rows) }
     }
 
     /// The same plot with words for the cells that its rows are measured from, one for each record.
@@ -269,27 +255,20 @@ impl PolarPlot {
         out
     }
 
-    fn l2(&self) -> Vec<f64> {
+    fn looks(&self) -> Looks {
         let mut l2: Vec<f64> = self.curves.iter().map(|curve| curve.l2).collect();
         l2.sort_by(f64::total_cmp);
         l2.dedup();
-        l2
+        Looks::new(self.records.1.len(), l2)
     }
 
-    /// How each curve looks: by its l2 alone, or, with several records, line and colour by its record and marker by its l2.
-    fn looks(&self) -> Vec<Look> {
-        let l2 = self.l2();
-        let (of_l2, of_record) = (look::of_l2(&l2), look::of_records(self.records.1.len()));
-        let look = |curve: &Curve| {
-            let l2_look = &of_l2[l2.iter().position(|x| *x == curve.l2).unwrap_or(0)];
-            match (of_record.get(curve.record), curve.kind) {
-                (None, CurveKind::Limits | CurveKind::Check) => l2_look.clone(),
-                (None, CurveKind::Bound) => Look { width: 1.4, dash: "5 4", ..l2_look.clone() },
-                (Some(look), _) if l2.len() > 1 => look.with_l2(l2_look),
-                (Some(look), _) => look.clone(),
-            }
-        };
-        self.curves.iter().map(look).collect()
+    /// How a curve looks.
+    fn look(&self, looks: &Looks, curve: &Curve) -> Look {
+        let look = looks.of(curve.record, looks.l2.iter().position(|x| *x == curve.l2).unwrap_or(0));
+        match curve.kind {
+            CurveKind::Bound if self.records.1.is_empty() => Look { width: 1.4, dash: "5 4", ..look },
+            _ => look,
+        }
     }
 }
 
@@ -340,11 +319,12 @@ const CENTER: [f64; 2] = [MARGIN + 40.0 + RADIUS, TOP + RADIUS];
 pub fn polar_svg(input: &PolarPlot, layout: Layout) -> String {
     let values = input.curves.iter().flat_map(Curve::values).chain(input.room_for.iter().copied());
     let scale = Scale::new(input.quantity.base(), values, 6);
-    let looks = input.looks();
+    let of_all = input.looks();
+    let looks: Vec<Look> = input.curves.iter().map(|curve| input.look(&of_all, curve)).collect();
     let frame = Frame {
         title: input.title.clone(),
         subtitle: input.subtitle(),
-        legend: legend(input, &looks, &scale),
+        legend: legend(input, &of_all, &looks, &scale),
         caption: input.caption.clone(),
     };
     // The widest line is furthest behind, of one width the largest l2.
@@ -471,58 +451,24 @@ fn draw_markers(canvas: &mut Canvas, curve: &Curve, look: &Look, scale: &Scale, 
     }
 }
 
-fn legend(input: &PolarPlot, looks: &[Look], scale: &Scale) -> Vec<Entry> {
-    let (apart, labels) = &input.records;
-    let mut out = Vec::new();
-    let l2 = input.l2();
-    if !labels.is_empty() {
-        out.push(Entry::Heading(apart.clone()));
-        let samples = labels.iter().zip(look::of_records(labels.len()));
-        out.extend(samples.map(|(label, look)| Entry::Sample {
-            look,
-            line: true,
-            marker: l2.len() == 1,
-            label: label.clone(),
-        }));
-    }
+fn legend(input: &PolarPlot, of_all: &Looks, looks: &[Look], scale: &Scale) -> Vec<Entry> {
     let empty =
         |l2: f64| input.curves.iter().filter(|curve| curve.l2 == l2).all(|curve| curve.values().next().is_none());
     let name = |l2: f64| if input.lateral_free { "free".into() } else { l2_label(l2) };
     let label = |l2: f64| format!("{}{}", name(l2), if empty(l2) { ", no limit" } else { "" });
-    if let ([only], false) = (&l2[..], labels.is_empty()) {
-        let is = if input.lateral_free { "" } else { "= " };
-        out.push(Entry::Heading(format!("l₂ {is}{}", label(*only))));
-    } else {
-        out.push(Entry::Heading("l₂ across the pull".into()));
+    let mut out = of_all.legend(&input.records, if input.lateral_free { "" } else { "= " }, label);
+    let of_kind = |kind: CurveKind| input.curves.iter().zip(looks).filter(move |(curve, _)| curve.kind == kind);
+    if input.records.1.is_empty() {
+        let marker = input.check.is_empty();
+        out.extend(of_kind(CurveKind::Limits).map(|(curve, look)| Entry::sample(look, true, marker, &label(curve.l2))));
+        out.extend((!marker).then(|| Entry::sample(&look::hollow(), false, true, &input.check)));
     }
-    if labels.is_empty() {
-        let of_limits = input.curves.iter().zip(looks).filter(|(curve, _)| curve.kind == CurveKind::Limits);
-        out.extend(of_limits.map(|(curve, look)| Entry::Sample {
-            look: look.clone(),
-            line: true,
-            marker: input.check.is_empty(),
-            label: label(curve.l2),
-        }));
-        if !input.check.is_empty() {
-            out.push(Entry::Sample { look: look::hollow(), line: false, marker: true, label: input.check.clone() });
-        }
-    } else if l2.len() > 1 {
-        let samples = l2.iter().zip(look::of_l2(&l2));
-        out.extend(samples.map(|(l2, look)| {
-            let look = Look { color: INK.into(), ..look };
-            Entry::Sample { look, line: false, marker: true, label: label(*l2) }
-        }));
-    }
-    if let Some((_, look)) = input.curves.iter().zip(looks).find(|(curve, _)| curve.kind == CurveKind::Bound) {
-        let look = Look { color: SOFT.into(), ..look.clone() };
-        out.push(Entry::Sample { look, line: true, marker: false, label: "proven bound".into() });
+    if let Some((_, look)) = of_kind(CurveKind::Bound).next() {
+        out.push(Entry::sample(&Look { color: SOFT.into(), ..look.clone() }, true, false, "proven bound"));
     }
     let kinds = RayKind::ALL.into_iter().filter(|kind| input.rays.iter().any(|ray| ray.kind == *kind));
-    out.extend(kinds.enumerate().flat_map(|(i, kind)| {
-        let heading = (i == 0).then(|| Entry::Heading("Directions".into()));
-        let sample = Entry::Sample { look: kind.look(), line: true, marker: false, label: kind.label().into() };
-        heading.into_iter().chain([sample])
-    }));
+    out.extend((!input.rays.is_empty()).then(|| Entry::Heading("Directions".into())));
+    out.extend(kinds.map(|kind| Entry::sample(&kind.look(), true, false, kind.label())));
     out.push(Entry::Heading(format!("Radius: {}", input.symbol())));
     let base = input.quantity.base();
     let place = if scale.low < base { "dotted circle" } else { "centre" };

@@ -46,26 +46,28 @@ pub(super) struct Axis {
 /// Numbers that differ by this factor do not fit on a linear axis.
 const WIDE: f64 = 30.0;
 
+impl From<Scale> for Axis {
+    fn from(scale: Scale) -> Self {
+        let ticks = scale.ticks.iter().map(|&tick| (tick, scale.label(tick))).collect();
+        Self { low: scale.low, high: scale.high, logarithmic: false, ticks }
+    }
+}
+
 impl Axis {
     /// From 0, or from below it where a value is negative.
     pub(super) fn linear(values: impl Iterator<Item = f64>) -> Self {
-        let scale = Scale::new(0.0, values, 6);
-        let ticks = scale.ticks.iter().map(|&tick| (tick, scale.label(tick))).collect();
-        Self { low: scale.low, high: scale.high, logarithmic: false, ticks }
+        Scale::new(0.0, values, 6).into()
     }
 
     /// Stretches: from 1, or from below it where a sheet is pushed together, with room behind the largest, where curves rise
     /// straight up.
     pub(super) fn of_stretch(values: impl Iterator<Item = f64>) -> Self {
-        let scale = Scale::new(1.0, values.map(|x| if x > 1.0 { 1.0 + 1.03 * (x - 1.0) } else { x }), 6);
-        let ticks = scale.ticks.iter().map(|&tick| (tick, scale.label(tick))).collect();
-        Self { low: scale.low, high: scale.high, logarithmic: false, ticks }
+        Scale::new(1.0, values.map(|x| if x > 1.0 { 1.0 + 1.03 * (x - 1.0) } else { x }), 6).into()
     }
 
     /// Logarithmic where positive values differ by a large factor, else linear.
     pub(super) fn of_effort(values: &[f64]) -> Self {
-        let positive = || values.iter().copied().filter(|x| *x > 0.0);
-        let (min, max) = positive().fold((f64::INFINITY, 0.0), |(lo, hi): (f64, f64), x| (lo.min(x), hi.max(x)));
+        let (min, max) = range(values.iter().copied().filter(|x| *x > 0.0));
         if max < WIDE * min {
             return Self::linear(values.iter().copied());
         }
@@ -98,7 +100,7 @@ impl Axis {
 
     /// Directions in degrees.
     pub(super) fn of_directions(values: &[f64]) -> Self {
-        let (min, max) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), x| (lo.min(*x), hi.max(*x)));
+        let (min, max) = range(values.iter().copied());
         if min > max {
             return Self::of_directions(&[0.0, 180.0]);
         }
@@ -114,6 +116,16 @@ impl Axis {
         self.logarithmic
     }
 
+    /// The value where the axis has a place for it: nothing at all has none on a logarithmic one.
+    pub(super) fn shown(&self, x: f64) -> Option<f64> {
+        (!self.logarithmic || x > 0.0).then_some(x)
+    }
+
+    /// What the name of the axis is to say of it.
+    pub(super) fn words(&self) -> &'static str {
+        if self.logarithmic { ", logarithmic" } else { "" }
+    }
+
     /// 0 at the low end, 1 at the high end.
     pub(super) fn fraction(&self, x: f64) -> f64 {
         match self.logarithmic {
@@ -121,6 +133,11 @@ impl Axis {
             false => (x - self.low) / (self.high - self.low),
         }
     }
+}
+
+/// The least and the largest of some values; from ∞ to −∞ where there are none.
+pub(super) fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
 }
 
 /// 1, 2 or 5 times a power of ten, at least `x`.

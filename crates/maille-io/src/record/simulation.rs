@@ -9,7 +9,7 @@ use super::{
     plan::SheetPlan,
     run::sha256,
 };
-use crate::{files, mesh::Tile};
+use crate::{files, tile::Tile};
 use maille::{
     design::Design,
     model::Model,

@@ -1,6 +1,6 @@
 //! Where the picture is taken from.
 
-use super::{RenderError, torus::Ray};
+use super::{error::RenderError, torus::Ray};
 use maille_geometry::{Circle, Torus, Vec3};
 use std::str::FromStr;
 

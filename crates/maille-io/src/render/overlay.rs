@@ -1,6 +1,6 @@
 //! What is written over the picture: scale bar, outline of the cell, what colours and arrows mean.
 
-use super::{Background, camera::Camera, color, scene::Scene};
+use super::{camera::Camera, color, options::Background, scene::Scene};
 use std::fmt::Write;
 
 /// Words and lines over the picture, as SVG.

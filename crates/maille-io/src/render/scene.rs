@@ -1,9 +1,10 @@
 //! What is in the picture: a patch of the sheet, its colours and its forces.
 
 use super::{
-    ColorBy, Extent, Forces, RenderError, RenderOptions,
     arrow::Arrow,
     color::{self, Light},
+    error::RenderError,
+    options::{ColorBy, Extent, Forces, RenderOptions},
 };
 use maille::{
     lattice::{Shift, shifts_within},

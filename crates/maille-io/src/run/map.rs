@@ -1,6 +1,6 @@
 //! Maps, from a design to its record: what is there is read, what is left is asked for, each limit is kept as it comes.
 
-use crate::plot::{Layout, PlotError, PolarPlot, Quantity, parameter_words, polar_svg, svg_to_png};
+use crate::quantity::Quantity;
 use crate::record::{Counters, Record, RecordError, RecordFolder, RunRecord, input_hash};
 use maille::design::Design;
 use maille::lattice::Cell;
@@ -23,8 +23,9 @@ pub enum MapError {
     #[error("the record could not be written; the run has stopped")]
     Record(#[from] RecordError),
     /// Its plot could not be drawn.
+    #[cfg(feature = "plot")]
     #[error("cannot draw the plot")]
-    Plot(#[from] PlotError),
+    Plot(#[from] crate::plot::PlotError),
 }
 
 /// A map of one design, and where its record is.
@@ -212,7 +213,16 @@ pub fn save_record(record: &Record, folder: &Path, quantity: Quantity, overwrite
     write_polar(record, &folder, quantity)
 }
 
+/// The plot of a record, where plots are built in.
+#[cfg(not(feature = "plot"))]
+fn write_polar(_: &Record, _: &RecordFolder, _: Quantity) -> Result<(), MapError> {
+    Ok(())
+}
+
+/// The plot of a record, where plots are built in.
+#[cfg(feature = "plot")]
 fn write_polar(record: &Record, folder: &RecordFolder, quantity: Quantity) -> Result<(), MapError> {
+    use crate::plot::{Layout, PolarPlot, parameter_words, polar_svg, svg_to_png};
     let words = parameter_words(&record.run);
     let svg = polar_svg(&PolarPlot::from_rows(&record.run.design, &record.rows, quantity, &words), Layout::Beside);
     let png = svg_to_png(&svg, 2.0)?;

@@ -1,9 +1,7 @@
 //! A record as the report sees it, and what is asked of its directions.
 
-use crate::record::{NamedRecord, RecordError};
 use maille::{
     bound::ChainBound,
-    design::Source,
     error::InvalidInput,
     lattice::Cell,
     model::Model,
@@ -11,14 +9,13 @@ use maille::{
     relaxation::target::Protocol,
     survey::{MapQuestion, Method},
 };
+use maille_io::record::{NamedRecord, RecordError};
 
 /// A record as the statements see it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Map {
     /// Name of the design.
     pub design: String,
-    /// Where the design comes from.
-    pub source: Source,
     /// r/R.
     pub ratio: f64,
     /// `exact` or `energy`.
@@ -45,7 +42,6 @@ impl Map {
         let question = run.question().map_err(damaged)?;
         Ok(Map {
             design: run.design.name.clone(),
-            source: run.design.source,
             ratio: run.design.minor_radius.unwrap_or(f64::NAN) / run.design.reference_radius,
             method: question.method.name().to_owned(),
             corners: imposed_on_corners(&question),
@@ -58,12 +54,12 @@ impl Map {
     }
 
     /// A design of the thesis in its own cell, and no bias of the corners.
-    pub(super) fn is_plain(&self) -> bool {
+    pub(crate) fn is_plain(&self) -> bool {
         !self.rearranged && !self.corners && !self.minima && !self.steps && !self.design.ends_with(SCALED)
     }
 
     /// `1.1, r = R/10, exact`.
-    pub fn label(&self) -> String {
+    pub(crate) fn label(&self) -> String {
         let cell = if self.rearranged { ", rectangular cell" } else { "" };
         let corners = if self.corners { ", corners" } else { "" };
         let minima = if self.minima { ", beside the minima" } else { "" };
@@ -71,42 +67,69 @@ impl Map {
         format!("{}, {}, {}{corners}{cell}{minima}{steps}", self.design, ratio_label(self.ratio), self.method)
     }
 
+    /// Of a ring of the thesis's larger minor radius, R/10.
+    pub(crate) fn is_thick(&self) -> bool {
+        (self.ratio - 0.1).abs() < 1e-9
+    }
+
     /// The l2 of the rows, from least to largest.
-    pub(super) fn l2(&self) -> Vec<f64> {
+    pub(crate) fn l2(&self) -> Vec<f64> {
         let mut l2: Vec<f64> = self.rows.iter().map(|row| row.l2 + 0.0).collect();
         l2.sort_by(f64::total_cmp);
         l2.dedup();
         l2
     }
 
-    pub(super) fn l1(&self, direction_deg: f64, l2: f64) -> Option<f64> {
-        self.rows.iter().find(|row| row.direction_deg == direction_deg && row.l2 == l2)?.l1
+    /// The rows of one l2.
+    pub(crate) fn rows_at(&self, l2: f64) -> impl Iterator<Item = &LimitRow> {
+        self.rows.iter().filter(move |row| row.l2 == l2)
     }
 
-    /// Directions with their limits at one l2; nothing unless every direction has one.
-    pub(super) fn turn(&self, l2: f64) -> Option<Vec<(f64, f64)>> {
-        let turn: Option<Vec<_>> =
-            self.rows.iter().filter(|row| row.l2 == l2).map(|row| Some((row.direction_deg, row.l1?))).collect();
-        turn.filter(|turn| turn.len() > 2)
+    fn row(&self, direction_deg: f64, l2: f64) -> Option<&LimitRow> {
+        self.rows_at(l2).find(|row| row.direction_deg == direction_deg)
+    }
+
+    pub(crate) fn l1(&self, direction_deg: f64, l2: f64) -> Option<f64> {
+        self.row(direction_deg, l2)?.l1
     }
 
     /// λ1 − 1 of a limit, λ1 being the larger eigenvalue of C = FᵀF.
-    pub(super) fn lambda1(&self, direction_deg: f64, l2: f64) -> Option<f64> {
-        let row = self.rows.iter().find(|row| row.direction_deg == direction_deg && row.l2 == l2)?;
-        row.lambda1.map(|lambda1| lambda1 - 1.0)
+    pub(crate) fn lambda1(&self, direction_deg: f64, l2: f64) -> Option<f64> {
+        Some(self.row(direction_deg, l2)?.lambda1? - 1.0)
+    }
+
+    /// Directions with their limits at one l2; nothing unless every direction has one.
+    pub(crate) fn turn(&self, l2: f64) -> Option<Vec<(f64, f64)>> {
+        let turn: Option<Vec<_>> = self.rows_at(l2).map(|row| Some((row.direction_deg, row.l1?))).collect();
+        turn.filter(|turn| turn.len() > 2)
     }
 
     /// Largest less smallest λ1 of all directions at one l2; nothing unless every direction has a limit.
-    pub(super) fn spread(&self, l2: f64) -> Option<f64> {
-        let of_l2: Option<Vec<f64>> = self.rows.iter().filter(|row| row.l2 == l2).map(|row| row.lambda1).collect();
-        let all = of_l2.filter(|all| all.len() > 2)?;
-        let (low, high) =
-            all.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
+    pub(crate) fn spread(&self, l2: f64) -> Option<f64> {
+        let of_l2: Option<Vec<f64>> = self.rows_at(l2).map(|row| row.lambda1).collect();
+        let (low, high) = range(of_l2.filter(|all| all.len() > 2)?);
         Some(high - low)
     }
 
+    /// The limits that this map and another one have: each with its row here, and l1 of either.
+    pub(crate) fn both<'a>(&'a self, other: &'a Map) -> impl Iterator<Item = (&'a LimitRow, f64, f64)> {
+        self.rows.iter().filter_map(|row| Some((row, row.l1?, other.l1(row.direction_deg, row.l2)?)))
+    }
+
+    /// The spreads that this map and another one have, each with its l2.
+    pub(crate) fn spreads<'a>(&'a self, other: &'a Map) -> impl Iterator<Item = (f64, f64, f64)> {
+        self.l2().into_iter().filter_map(|l2| Some((l2, self.spread(l2)?, other.spread(l2)?)))
+    }
+
+    /// Mean of what limits cost, of the l2 that are wanted; nothing where there is no limit.
+    pub(crate) fn mean(&self, wanted: impl Fn(f64) -> bool, cost: impl Fn(&LimitRow) -> f64) -> Option<f64> {
+        let found = self.rows.iter().filter(|row| row.l1.is_some() && wanted(row.l2));
+        let costs: Vec<f64> = found.map(cost).collect();
+        (!costs.is_empty()).then(|| costs.iter().sum::<f64>() / costs.len() as f64)
+    }
+
     /// Limits that differ by less are the same.
-    pub(super) fn tie(&self) -> f64 {
+    pub(crate) fn tie(&self) -> f64 {
         if self.method == "exact" { EXACT_TIE } else { ENERGY_TIE }
     }
 }
@@ -124,19 +147,25 @@ pub const MINIMA: &str = "-minima";
 pub const STEPS: &str = "-steps";
 
 /// The same limit, of the exact method.
-pub(super) const EXACT_TIE: f64 = 1e-6;
+pub(crate) const EXACT_TIE: f64 = 1e-6;
 /// The same limit, of the energy method: its threshold and its overlap move a limit by this much at most, where it does
 /// not jam (docs/theory/comparison.md).
-pub(super) const ENERGY_TIE: f64 = 0.003;
+pub(crate) const ENERGY_TIE: f64 = 0.003;
+
+/// The least and the largest of some numbers.
+pub(crate) fn range(numbers: impl IntoIterator<Item = f64>) -> (f64, f64) {
+    let all = numbers.into_iter();
+    all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
+}
 
 /// `r = R/10`.
-pub(super) fn ratio_label(ratio: f64) -> String {
+pub(crate) fn ratio_label(ratio: f64) -> String {
     let whole = (1.0 / ratio).round();
     if (whole * ratio - 1.0).abs() < 1e-9 { format!("r = R/{whole}") } else { format!("r = {ratio} R") }
 }
 
 /// With a minus sign, not a hyphen.
-pub(super) fn signed(number: f64) -> String {
+pub(crate) fn signed(number: f64) -> String {
     number.to_string().replace('-', "−")
 }
 
@@ -172,26 +201,26 @@ fn interlocking(model: &Model) -> Vec<f64> {
 }
 
 /// Half-way between neighbouring interlocking directions.
-pub(super) fn midway(interlocking_deg: &[f64]) -> Vec<f64> {
+pub(crate) fn midway(interlocking_deg: &[f64]) -> Vec<f64> {
     let n = interlocking_deg.len();
     let next = |i: usize| if i + 1 < n { interlocking_deg[i + 1] } else { interlocking_deg[0] + 180.0 };
     (0..n).map(|i| half_turn((interlocking_deg[i] + next(i)) / 2.0)).collect()
 }
 
 /// The same axis in [0, 180).
-pub(super) fn half_turn(degrees: f64) -> f64 {
+pub(crate) fn half_turn(degrees: f64) -> f64 {
     let rest = degrees.rem_euclid(180.0);
     if 180.0 - rest < 1e-9 { 0.0 } else { rest }
 }
 
 /// Angle between two axes.
-pub(super) fn apart(a: f64, b: f64) -> f64 {
+pub(crate) fn apart(a: f64, b: f64) -> f64 {
     let d = (a - b).rem_euclid(180.0);
     d.min(180.0 - d)
 }
 
 /// The directions with the least (`sign` 1) or largest (`sign` −1) limit of a turn, ties included.
-pub(super) fn extreme(turn: &[(f64, f64)], sign: f64, tie: f64) -> Vec<f64> {
+pub(crate) fn extreme(turn: &[(f64, f64)], sign: f64, tie: f64) -> Vec<f64> {
     let best = turn.iter().map(|(_, l1)| sign * l1).fold(f64::INFINITY, f64::min);
     let mut degrees: Vec<f64> =
         turn.iter().filter(|(_, l1)| sign * l1 <= best + tie).map(|(d, _)| half_turn(*d)).collect();
@@ -201,13 +230,13 @@ pub(super) fn extreme(turn: &[(f64, f64)], sign: f64, tie: f64) -> Vec<f64> {
 }
 
 /// Angle between neighbouring directions of a map.
-pub(super) fn step(turn: &[(f64, f64)]) -> f64 {
+pub(crate) fn step(turn: &[(f64, f64)]) -> f64 {
     let mut degrees: Vec<f64> = turn.iter().map(|(d, _)| *d).collect();
     degrees.sort_by(f64::total_cmp);
     degrees.windows(2).map(|w| w[1] - w[0]).filter(|d| *d > 1e-9).fold(f64::INFINITY, f64::min)
 }
 
 /// Whether a limit was found, or proved not to be there.
-pub(super) fn answered(row: &LimitRow) -> bool {
+pub(crate) fn answered(row: &LimitRow) -> bool {
     row.l1.is_some() || matches!(row.status, Status::L2Unreachable | Status::Unbounded)
 }

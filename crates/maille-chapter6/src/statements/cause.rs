@@ -1,12 +1,11 @@
 //! Causes of exceptions, from records.
 
-use crate::report::map::{ENERGY_TIE, EXACT_TIE, Map};
+use crate::map::{ENERGY_TIE, EXACT_TIE, Map};
 use maille::record::LimitRow;
 
 /// Why a case of these maps is an exception, as far as the records tell: the energy method stopped in a local minimum short of an
 /// exact limit, or rings stack.
-pub(super) fn cause(of: &[&Map], maps: &[Map], l2: f64) -> String {
-    let rows = |map: &&Map| map.rows.iter().filter(|row| row.l2 == l2).cloned().collect::<Vec<LimitRow>>();
+pub(crate) fn cause(of: &[&Map], maps: &[Map], l2: f64) -> String {
     if of.iter().any(|map| map.method != "exact") {
         let short = |map: &&Map| {
             let alike = |other: &&Map| {
@@ -15,8 +14,8 @@ pub(super) fn cause(of: &[&Map], maps: &[Map], l2: f64) -> String {
                     && !other.minima
             };
             let exact = maps.iter().find(alike);
-            let of_row = |row: LimitRow| Some((exact?.l1(row.direction_deg, l2)? - row.l1?, row.direction_deg));
-            rows(map).into_iter().filter_map(of_row).collect::<Vec<_>>()
+            let of_row = |row: &LimitRow| Some((exact?.l1(row.direction_deg, l2)? - row.l1?, row.direction_deg));
+            map.rows_at(l2).filter_map(of_row).collect::<Vec<_>>()
         };
         return match of.iter().flat_map(short).max_by(|a, b| a.0.total_cmp(&b.0)) {
             Some((short, degrees)) if short > ENERGY_TIE => format!(
@@ -29,8 +28,8 @@ pub(super) fn cause(of: &[&Map], maps: &[Map], l2: f64) -> String {
     }
     let of_2 = of.iter().any(|map| map.design == "2");
     let fallen = |map: &&Map| {
-        let of_row = |row: LimitRow| Some((map.l1(row.direction_deg, 0.0)? - row.l1?, row.direction_deg, row.l1?));
-        rows(map).into_iter().filter(|row| row.l2 < 0.0).filter_map(of_row).collect::<Vec<_>>()
+        let of_row = |row: &LimitRow| Some((map.l1(row.direction_deg, 0.0)? - row.l1?, row.direction_deg, row.l1?));
+        map.rows_at(l2).filter(|_| l2 < 0.0).filter_map(of_row).collect::<Vec<_>>()
     };
     match of.iter().flat_map(fallen).max_by(|a, b| a.0.total_cmp(&b.0)) {
         Some((fall, degrees, l1)) if fall > EXACT_TIE => format!(

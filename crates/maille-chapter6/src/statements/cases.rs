@@ -64,30 +64,30 @@ const MOST_EXCEPTIONS: f64 = 0.25;
 const MOST_OF_USUAL: f64 = 0.5;
 
 /// How verdicts come about, for readers of the page.
-pub const RULE: &str = "Each statement is broken into cases. It holds if every case shows it, holds with exceptions if at \
+pub(crate) const RULE: &str = "Each statement is broken into cases. It holds if every case shows it, holds with exceptions if at \
     least three quarters do (more than half, where the thesis says \u{201c}usually\u{201d}), and fails otherwise. A tie, what stays the \
     same, counts neither way and is counted apart. Parts are judged apart, and the worst counts.";
 
 /// Cases of one part of a statement.
 #[derive(Default)]
-pub(super) struct Cases {
+pub(crate) struct Cases {
     /// What a case shows.
-    pub(super) what: &'static str,
-    pub(super) shown: usize,
-    pub(super) ties: usize,
-    pub(super) exceptions: Vec<String>,
+    pub(crate) what: &'static str,
+    pub(crate) shown: usize,
+    pub(crate) ties: usize,
+    pub(crate) exceptions: Vec<String>,
     /// It is enough that some cases show it.
-    pub(super) some: bool,
+    pub(crate) some: bool,
     /// The thesis says "usually".
-    pub(super) usual: bool,
+    pub(crate) usual: bool,
 }
 
 impl Cases {
-    pub(super) fn of(what: &'static str) -> Self {
+    pub(crate) fn of(what: &'static str) -> Self {
         Cases { what, ..Cases::default() }
     }
 
-    pub(super) fn add(&mut self, holds: bool, what: impl FnOnce() -> String) {
+    pub(crate) fn add(&mut self, holds: bool, what: impl FnOnce() -> String) {
         if holds {
             self.shown += 1;
         } else {
@@ -96,15 +96,15 @@ impl Cases {
     }
 
     /// It holds where `more` is above 0; within `tie` of 0 it is a tie.
-    pub(super) fn compare(&mut self, more: f64, tie: f64, what: impl FnOnce() -> String) {
+    pub(crate) fn compare(&mut self, more: f64, tie: f64, what: impl FnOnce() -> String) {
         if more.abs() <= tie { self.ties += 1 } else { self.add(more > 0.0, what) }
     }
 
-    pub(super) fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.shown + self.exceptions.len()
     }
 
-    pub(super) fn verdict(&self) -> Verdict {
+    pub(crate) fn verdict(&self) -> Verdict {
         let count = self.count();
         match self.exceptions.len() {
             _ if count == 0 => Verdict::NotMeasured,
@@ -117,7 +117,7 @@ impl Cases {
     }
 
     /// `61 of 64 cases`, with the ties.
-    pub(super) fn score(&self) -> String {
+    pub(crate) fn score(&self) -> String {
         let ties = match self.ties {
             0 => String::new(),
             1 => " (and 1 tie)".into(),
@@ -133,7 +133,7 @@ impl Cases {
 
 impl Finding {
     /// Names a case that keeps the statement from holding as it stands, whatever the other cases say.
-    pub(super) fn except(mut self, what: String) -> Self {
+    pub(crate) fn except(mut self, what: String) -> Self {
         if self.verdict != Verdict::NotMeasured {
             self.verdict = self.verdict.max(Verdict::HoldsWithExceptions);
         }
@@ -142,7 +142,7 @@ impl Finding {
     }
 }
 
-pub(super) fn finding(number: u32, statement: &'static str, evidence: Vec<String>, parts: Vec<Cases>) -> Finding {
+pub(crate) fn finding(number: u32, statement: &'static str, evidence: Vec<String>, parts: Vec<Cases>) -> Finding {
     Finding {
         number,
         statement,

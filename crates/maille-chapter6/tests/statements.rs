@@ -10,10 +10,8 @@ use maille::{
     search::ExactOptions,
     survey::{CellChoice, MapQuestion, Method, characterize},
 };
-use maille_io::{
-    record::{Counters, NamedRecord, Record, RunRecord},
-    report::{Finding, MINIMA, MINIMA_DEG, Map, NOTCHED, SCALED, Verdict, statements},
-};
+use maille_chapter6::{Finding, MINIMA, MINIMA_DEG, Map, NOTCHED, SCALED, Verdict, statements};
+use maille_io::record::{Counters, NamedRecord, Record, RunRecord};
 use std::sync::{Mutex, atomic::AtomicBool};
 
 const DESIGNS: [&str; 6] = ["1.1", "1.2", "1.3", "2", "3.1", "3.2"];

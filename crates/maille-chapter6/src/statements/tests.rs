@@ -1,10 +1,7 @@
 //! Cases in which each statement fails.
 
 use super::*;
-use maille::{
-    design::Source,
-    record::{LimitRow, Status},
-};
+use maille::record::{LimitRow, Status};
 
 /// A made-up sheet with chains along 0° and 90°, directions each 15°.
 fn map(design: &str, ratio: f64, l2: &[f64], l1: impl Fn(f64, f64) -> f64) -> Map {
@@ -21,7 +18,6 @@ fn map(design: &str, ratio: f64, l2: &[f64], l1: impl Fn(f64, f64) -> f64) -> Ma
     };
     Map {
         design: design.into(),
-        source: Source::ThesisText,
         ratio,
         method: "exact".into(),
         corners: false,

@@ -1,32 +1,26 @@
 //! The page: one HTML file with everything in it.
 
-use super::{
+use crate::{
     figures::Figure,
     map::{Map, SCALED, ratio_label, signed},
     statements::{Finding, Part, RULE, Verdict},
 };
 use base64::{Engine, prelude::BASE64_STANDARD};
 use maille::{
-    design::Source,
+    design::{Design, Source},
     record::{LimitRow, Status},
 };
 use std::fmt::Write;
 
 /// A design in the table of designs.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Sheet {
-    /// Name of the design.
-    pub name: String,
-    /// What it is.
-    pub title: String,
-    /// Where it comes from.
-    pub source: Source,
+pub(crate) struct Sheet<'a> {
+    pub(crate) design: &'a Design,
     /// The file that it was given by, where it is not built in.
-    pub given: Option<String>,
+    pub(crate) given: Option<&'a str>,
     /// Elements and links of a cell.
-    pub counts: [usize; 2],
+    pub(crate) counts: [usize; 2],
     /// Its picture.
-    pub png: Vec<u8>,
+    pub(crate) png: Vec<u8>,
 }
 
 const STYLE: &str = "\
@@ -58,11 +52,80 @@ td{border:0;padding:.05rem 0;display:flex;justify-content:space-between;gap:.5re
 td:first-child{grid-column:1/-1;display:block;font-weight:600}}
 ";
 
+/// Number, title and note of a section of figures.
+type Section = (&'static str, &'static str, &'static str);
+
+const COSTS: Section = (
+    "6.1",
+    "Figure 6.1: steps and time",
+    "Means over all directions of a record at l₂ = −0.25 and 0.25, where the sheet can be held there. A step is a \
+     quadratic program (exact) or a Newton iteration (energy); a run is one maximisation or minimisation. Times are wall \
+     times of one limit and depend on what else the machine did. The thesis shows the time of each step of one pull of each design: \
+     dense designs and l₂ = −0.25 take more and slower steps than l₂ = 0.25, with a spike where the system is perturbed.",
+);
+
+/// What all polar plots show, before what the thesis shows.
+const POLAR: &str = "λ₁ − 1 at the limit, against the direction of the pull; both radii of a design on one scale. Red: interlocking \
+    directions, found from the links (Figure 6.9). Lines are exact limits; markers, where there are some, are limits of \
+    the energy method. The thesis shows ";
+
+const LIMITS: [Section; 5] = [
+    (
+        "6.4",
+        "Figures 6.4 and 6.9: designs 1.1, 1.2, 1.3",
+        "curves with four lobes, least at 0° and 90°, largest at 45° and 135°; the notches at 0° and 90° of 1.2 are blunter at R/20.",
+    ),
+    (
+        "6.5",
+        "Figures 6.5 and 6.9: designs 3.1, 3.2",
+        "six lobes, least along the three interlocking directions; in the rectangular cell no peak is favoured. 3.2, with standing rings of half the size, is smaller in every direction.",
+    ),
+    ("6.6", "Figures 6.6 and 6.9: designs 3.3, 3.4", "six lobes in the rectangular cell, none of them favoured."),
+    (
+        "6.7",
+        "Figures 6.7 and 6.9: designs 4.1, 4.2, 4.3",
+        "least at 0° and 90°; the notches of 4.3 are blunter at R/20.",
+    ),
+    (
+        "6.8",
+        "Figures 6.8 and 6.9: designs 2, 5.1, 5.2",
+        "design 2 low within 15° of 0° at R/10, where its rings stack, and much less so at R/20; 5.1 and 5.2 as 1.1 and 3.1.",
+    ),
+];
+
+const EFFECTS: [Section; 3] = [
+    (
+        "6.10",
+        "Figure 6.10: effect of the minor radius",
+        "Largest less smallest λ₁ − 1 of all directions, against l₂. The thesis shows falling curves, larger at R/20 than at R/10, but for \
+         design 2 at small l₂, where R/10 lies above R/20.",
+    ),
+    (
+        "6.11",
+        "Figure 6.11: effect of the major radius",
+        "The same, of designs whose standing rings differ in their major radius. The thesis shows larger differences with the \
+         larger radius, which fall with l₂ at roughly the same rate.",
+    ),
+    (
+        "6.12",
+        "Figure 6.12: sheared and rectangular arrangement",
+        "The same sheet in two cells. The thesis shows the peak at 30° much wider than those at 90° and 150° in the sheared cell, at every \
+         l₂, and leaves the cause open. Exact limits agree; the energy method with the thesis's corner distances favours the peak at 30° in the \
+         sheared cell.",
+    ),
+];
+
 /// Most exceptions that a statement lists on the page; `statements.json` has all.
 const LISTED: usize = 40;
 
 /// The page, without anything that it would have to fetch. `words` says how the records were made.
-pub fn page(words: &str, findings: &[Finding], sheets: &[Sheet], maps: &[Map], figures: &[Figure]) -> String {
+pub(crate) fn page(
+    words: &str,
+    findings: &[Finding],
+    sheets: &[Sheet<'_>],
+    maps: &[Map],
+    figures: &[Figure],
+) -> String {
     let mut out = String::from("<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
     out += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
     out += "<title>Chapter 6, computed anew</title>\n<style>\n";
@@ -78,87 +141,15 @@ pub fn page(words: &str, findings: &[Finding], sheets: &[Sheet], maps: &[Map], f
     for finding in findings {
         write_finding(&mut out, finding);
     }
-    let section = |out: &mut String, number: &str, title: &str, note: &str| {
-        let _ = writeln!(out, "<h2 id=\"f{number}\">{title}</h2>\n<p class=\"note\">{note}</p>");
-        write_figures(out, figures.iter().filter(|figure| figure.number == number));
-    };
-    section(
-        &mut out,
-        "6.1",
-        "Figure 6.1: steps and time",
-        "Means over all directions of a record at l₂ = −0.25 and 0.25, where the sheet can be held there. A step is a \
-         quadratic program (exact) or a Newton iteration (energy); a run is one maximisation or minimisation. Times are wall \
-         times of one limit and depend on what else the machine did. The thesis shows the time of each step of one pull of each design: \
-         dense designs and l₂ = −0.25 take more and slower steps than l₂ = 0.25, with a spike where the system is perturbed.",
-    );
+    write_section(&mut out, COSTS, "", figures);
     write_costs(&mut out, maps);
     out += "<h2 id=\"designs\">Figures 6.2 and 6.3: the designs</h2>\n<p class=\"note\">Starting states at r = R/10. \
             \u{201c}Text\u{201d}: the thesis's text fixes topology and proportions. \u{201c}Reconstruction\u{201d}: only the number or the \
             directions are known, the rest is ours. The thesis's own pictures are lost. Many starts overlap, as its own do; a run \
             begins by pushing the rings apart.</p>\n";
     write_sheets(&mut out, sheets);
-    let polar = "λ₁ − 1 at the limit, against the direction of the pull; both radii of a design on one scale. Red: interlocking \
-                 directions, found from the links (Figure 6.9). Lines are exact limits; markers, where there are some, are limits of \
-                 the energy method.";
-    let shows = |thesis: &str| format!("{polar} The thesis shows {thesis}");
-    section(
-        &mut out,
-        "6.4",
-        "Figures 6.4 and 6.9: designs 1.1, 1.2, 1.3",
-        &shows(
-            "curves with four lobes, least at 0° and 90°, largest at 45° and 135°; the notches at 0° and 90° of 1.2 are blunter at R/20.",
-        ),
-    );
-    section(
-        &mut out,
-        "6.5",
-        "Figures 6.5 and 6.9: designs 3.1, 3.2",
-        &shows(
-            "six lobes, least along the three interlocking directions; in the rectangular cell no peak is favoured. 3.2, with standing rings of half the size, is smaller in every direction.",
-        ),
-    );
-    section(
-        &mut out,
-        "6.6",
-        "Figures 6.6 and 6.9: designs 3.3, 3.4",
-        &shows("six lobes in the rectangular cell, none of them favoured."),
-    );
-    section(
-        &mut out,
-        "6.7",
-        "Figures 6.7 and 6.9: designs 4.1, 4.2, 4.3",
-        &shows("least at 0° and 90°; the notches of 4.3 are blunter at R/20."),
-    );
-    section(
-        &mut out,
-        "6.8",
-        "Figures 6.8 and 6.9: designs 2, 5.1, 5.2",
-        &shows(
-            "design 2 low within 15° of 0° at R/10, where its rings stack, and much less so at R/20; 5.1 and 5.2 as 1.1 and 3.1.",
-        ),
-    );
-    section(
-        &mut out,
-        "6.10",
-        "Figure 6.10: effect of the minor radius",
-        "Largest less smallest λ₁ − 1 of all directions, against l₂. The thesis shows falling curves, larger at R/20 than at R/10, but for \
-         design 2 at small l₂, where R/10 lies above R/20.",
-    );
-    section(
-        &mut out,
-        "6.11",
-        "Figure 6.11: effect of the major radius",
-        "The same, of designs whose standing rings differ in their major radius. The thesis shows larger differences with the \
-         larger radius, which fall with l₂ at roughly the same rate.",
-    );
-    section(
-        &mut out,
-        "6.12",
-        "Figure 6.12: sheared and rectangular arrangement",
-        "The same sheet in two cells. The thesis shows the peak at 30° much wider than those at 90° and 150° in the sheared cell, at every \
-         l₂, and leaves the cause open. Exact limits agree; the energy method with the thesis's corner distances favours the peak at 30° in the \
-         sheared cell.",
-    );
+    LIMITS.iter().for_each(|section| write_section(&mut out, *section, POLAR, figures));
+    EFFECTS.iter().for_each(|section| write_section(&mut out, *section, "", figures));
     write_records(&mut out, maps);
     out += "</body>\n</html>\n";
     out
@@ -240,27 +231,28 @@ fn list(out: &mut String, items: &[String]) {
     *out += "</ul>\n";
 }
 
-fn write_figures<'a>(out: &mut String, figures: impl Iterator<Item = &'a Figure>) {
+fn write_section(out: &mut String, (number, title, note): Section, before: &str, figures: &[Figure]) {
+    let _ = writeln!(out, "<h2 id=\"f{number}\">{title}</h2>\n<p class=\"note\">{before}{note}</p>");
     *out += "<div class=\"figures\">\n";
-    for figure in figures {
+    for figure in figures.iter().filter(|figure| figure.number == number) {
         let (title, svg) = (escape(&figure.title), figure.svg.trim());
         let _ = writeln!(out, "<figure><figcaption>{title}</figcaption>{svg}</figure>");
     }
     *out += "</div>\n";
 }
 
-fn write_sheets(out: &mut String, sheets: &[Sheet]) {
+fn write_sheets(out: &mut String, sheets: &[Sheet<'_>]) {
     *out += "<div class=\"sheets\">\n";
     for sheet in sheets {
         let [elements, links] = sheet.counts;
-        let source = match (&sheet.given, sheet.source) {
+        let source = match (sheet.given, sheet.design.source) {
             (Some(file), _) => format!("given: {}", escape(file)),
             (None, Source::ThesisText) => "text".into(),
             (None, Source::Reconstruction) => "reconstruction".into(),
             (None, Source::Literature) => "literature".into(),
             (None, Source::Own) => "own".into(),
         };
-        let (name, title) = (escape(&sheet.name), escape(&sheet.title));
+        let (name, title) = (escape(&sheet.design.name), escape(&sheet.design.title));
         let _ = writeln!(
             out,
             "<figure><figcaption>Design {name}</figcaption><img alt=\"Sheet of design {name}\" src=\"data:image/png;base64,{}\">\
@@ -307,11 +299,9 @@ fn write_row(out: &mut String, label: &str, heads: &[String], cells: &[String]) 
 }
 
 fn cost(map: &Map, l2: f64) -> Option<[String; 4]> {
-    let rows: Vec<&LimitRow> = map.rows.iter().filter(|row| row.l2 == l2 && row.l1.is_some()).collect();
-    let n = Some(rows.len()).filter(|n| *n > 0)? as f64;
-    let mean = |of: &dyn Fn(&LimitRow) -> f64| rows.iter().map(|row| of(row)).sum::<f64>() / n;
-    let (steps, runs) = (mean(&|row| row.iterations as f64), mean(&|row| row.runs as f64));
-    let ms = 1000.0 * mean(&|row| row.wall_s);
+    let mean = |of: fn(&LimitRow) -> f64| map.mean(|of_row| of_row == l2, of);
+    let (steps, runs) = (mean(|row| row.iterations as f64)?, mean(|row| row.runs as f64)?);
+    let ms = 1000.0 * mean(|row| row.wall_s)?;
     Some([ms, steps, runs, steps / runs.max(1.0)].map(|x| format!("{x:.1}")))
 }
 
@@ -335,11 +325,8 @@ fn write_records(out: &mut String, maps: &[Map]) {
         let found = map.rows.iter().filter(|row| row.l1.is_some()).count();
         let count = |status: Status| map.rows.iter().filter(|row| row.status == status).count();
         let worst = worst_overlap(map);
-        let (links, runs) = map
-            .rows
-            .iter()
-            .filter_map(|row| row.links_ok)
-            .fold((0, 0), |(kept, runs), ok| (kept + usize::from(ok), runs + 1));
+        let checked: Vec<bool> = map.rows.iter().filter_map(|row| row.links_ok).collect();
+        let (links, runs) = (checked.iter().filter(|ok| **ok).count(), checked.len());
         let proved = count(Status::L2Unreachable) + count(Status::Unbounded);
         let counts = [Status::Global, Status::Local, Status::ThresholdReached].map(|status| count(status).to_string());
         let mut cells = vec![map.rows.len().to_string(), format!("{worst:.1e}"), format!("{links} of {runs}")];
