@@ -1,7 +1,7 @@
 //! The figures of chapter 6, from records.
 
 use crate::{
-    map::{Map, extreme, imposed_on_corners, ratio_label, signed},
+    map::{Map, extreme, ratio_label, signed},
     plan::{CORNERS, COSTS},
     statements::MAJOR,
 };

@@ -13,7 +13,7 @@ use maille_io::record::{
     read_states, write_forces, write_limits, write_states,
 };
 use maille_io::{
-    plot::Quantity,
+    Quantity,
     run::{Map, OpenMap, ReplayError, Replayed, replay, run_all},
 };
 use serde_json::{Value, json};

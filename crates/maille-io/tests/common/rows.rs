@@ -38,7 +38,7 @@ pub fn turn(l2: f64, l1: impl Fn(f64) -> Option<f64>) -> Vec<LimitRow> {
 pub fn record(name: &str, design: Design, rows: Vec<LimitRow>) -> NamedRecord {
     let question = MapQuestion {
         method: Method::Energy(EnergyOptions { tau: 0.01, ..EnergyOptions::default() }),
-        cells: vec![Cell::PRIMITIVE],
+        cells: Cell::PRIMITIVE.into(),
         directions_deg: rows.iter().map(|row| row.direction_deg).collect(),
         l2: rows.iter().map(|row| row.l2).collect(),
     };
