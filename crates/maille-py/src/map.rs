@@ -8,7 +8,7 @@ use crate::{
 use maille::{
     error::InvalidInput,
     lattice::Across,
-    record::{Cell, Kind, LIMIT_COLUMNS},
+    record::{Entry, Kind, LIMIT_COLUMNS},
     relaxation::limit::EnergyOptions,
     search::ExactOptions,
     survey::{MapQuestion, Method},
@@ -170,10 +170,10 @@ impl Record {
             one.set_item("meaning", column.meaning)?;
             let cells = rows.iter().map(column.get);
             match column.kind {
-                Kind::Text => one.set_item("values", cells.map(Cell::text).collect::<Vec<_>>())?,
-                Kind::Number => one.set_item("values", cells.map(Cell::number).collect::<Vec<_>>())?,
-                Kind::Count => one.set_item("values", cells.map(Cell::count).collect::<Vec<_>>())?,
-                Kind::Flag => one.set_item("values", cells.map(Cell::flag).collect::<Vec<_>>())?,
+                Kind::Text => one.set_item("values", cells.map(Entry::text).collect::<Vec<_>>())?,
+                Kind::Number => one.set_item("values", cells.map(Entry::number).collect::<Vec<_>>())?,
+                Kind::Count => one.set_item("values", cells.map(Entry::count).collect::<Vec<_>>())?,
+                Kind::Flag => one.set_item("values", cells.map(Entry::flag).collect::<Vec<_>>())?,
             }
             out.append(one)?;
         }

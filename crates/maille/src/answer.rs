@@ -101,6 +101,7 @@ pub struct FreeRanges {
 
 impl Answer {
     /// An answer with the status, and with the start for its state.
+    #[doc(hidden)]
     pub fn new(model: &Model, status: Status) -> Self {
         Answer {
             status,

@@ -41,7 +41,7 @@ impl Cell {
     }
 
     /// Its rows.
-    pub fn rows(&self) -> [[i32; 2]; 2] {
+    pub(crate) fn rows(&self) -> [[i32; 2]; 2] {
         self.rows
     }
 
@@ -56,18 +56,18 @@ impl Cell {
     }
 
     /// The lattice vectors of this cell for those of the primitive one.
-    pub fn vectors(&self, a1: Vec3, a2: Vec3) -> [Vec3; 2] {
+    pub(crate) fn vectors(&self, a1: Vec3, a2: Vec3) -> [Vec3; 2] {
         self.rows.map(|[m, n]| f64::from(m) * a1 + f64::from(n) * a2)
     }
 
     /// The primitive lattice vectors for those of this cell: the inverse of [`vectors`](Self::vectors).
-    pub fn primitive(&self, a1: Vec3, a2: Vec3) -> [Vec3; 2] {
+    pub(crate) fn primitive(&self, a1: Vec3, a2: Vec3) -> [Vec3; 2] {
         let ([[m11, m12], [m21, m22]], det) = (self.rows.map(|row| row.map(f64::from)), self.det() as f64);
         [(m22 * a1 - m12 * a2) / det, (m11 * a2 - m21 * a1) / det]
     }
 
     /// Whether both have the same translations.
-    pub fn same_lattice(&self, other: &Cell) -> bool {
+    pub(crate) fn same_lattice(&self, other: &Cell) -> bool {
         let ([[m11, m12], [m21, m22]], det) = (self.rows.map(|row| row.map(i64::from)), self.det());
         // Coordinates in this cell: adjugate · row / det.
         let inside = |[p, q]: [i32; 2]| {
@@ -81,7 +81,7 @@ impl Cell {
     ///
     /// Two primitive shifts are the same copy when they differ by a vector of this cell's lattice: their
     /// coordinates in it (adjugate · shift mod det) agree.
-    pub fn cosets(&self) -> Vec<Shift> {
+    pub(crate) fn cosets(&self) -> Vec<Shift> {
         let [[m11, m12], [m21, m22]] = self.rows.map(|row| row.map(i64::from));
         let det = self.det();
         let key =
@@ -175,7 +175,7 @@ impl Across {
     pub const HELD: Across = Across { lateral_free: false, shear_free: false };
 
     /// Whether something is free.
-    pub fn any(self) -> bool {
+    pub(crate) fn any(self) -> bool {
         self != Self::HELD
     }
 }
@@ -184,6 +184,7 @@ impl Across {
 ///
 /// Listed by distance, not by layers of cells: in a strongly sheared cell a linked image can be many layers away.
 /// With the dual vectors b_k of the plane lattice (b_k · a_l = δ_kl), |s_k + b_k · offset| ≤ reach |b_k|.
+#[doc(hidden)]
 pub fn shifts_within(offset: &Vec3, a1: &Vec3, a2: &Vec3, reach: f64) -> Vec<Shift> {
     let (g11, g12, g22) = (a1.norm_squared(), a1.dot(a2), a2.norm_squared());
     let det = g11 * g22 - g12 * g12;
@@ -206,7 +207,7 @@ pub fn shifts_within(offset: &Vec3, a1: &Vec3, a2: &Vec3, reach: f64) -> Vec<Shi
 
 /// The shortest basis of the plane lattice of a1 and a2 (Gauss's reduction), as a cell of one copy. A basis that is short
 /// already is kept as it is.
-pub fn short_basis(a1: Vec3, a2: Vec3) -> Cell {
+pub(crate) fn short_basis(a1: Vec3, a2: Vec3) -> Cell {
     let (mut rows, mut basis) = ([[1, 0], [0, 1]], [a1, a2]);
     // Each round shortens a vector; a nearly flat cell may run out of digits or of integers first, which does no harm.
     for _ in 0..100 {
@@ -226,7 +227,7 @@ pub fn short_basis(a1: Vec3, a2: Vec3) -> Cell {
 
 /// A vector lies across a direction if its part along it is at most this share of it: as much as rounding leaves there of a
 /// direction in degrees (up to 360°, turned into radians: 1.4e-15) and of two products.
-pub const ACROSS: f64 = 16.0 * f64::EPSILON;
+pub(crate) const ACROSS: f64 = 16.0 * f64::EPSILON;
 
 /// A direction in the plane of the sheet.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -260,16 +261,17 @@ impl Direction {
     }
 
     /// D⊥, the unit vector to its left.
-    pub fn across(self) -> Vector2<f64> {
+    pub(crate) fn across(self) -> Vector2<f64> {
         Vector2::new(-self.along.y, self.along.x)
     }
 
     /// The direction of D⊥.
-    pub fn left(self) -> Direction {
+    pub(crate) fn left(self) -> Direction {
         Direction::of_degrees(self.degrees + 90.0)
     }
 
     /// F of a stretch, see [`Across`].
+    #[doc(hidden)]
     pub fn gradient(self, l1: f64, l2: f64, shear: f64) -> Matrix2<f64> {
         let (d, across) = (self.along(), self.across());
         let held = d * d.transpose() * (1.0 + l1) + across * across.transpose() * (1.0 + l2);

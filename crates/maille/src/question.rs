@@ -193,6 +193,7 @@ impl Question {
     ///
     /// # Errors
     /// Where a strain is named twice, or no lattice has the strains that are held.
+    #[doc(hidden)]
     pub fn strain_query(&self) -> Result<Option<StrainQuery>, InvalidInput> {
         match &self.goal {
             Goal::Strain { component, direction_deg, fix, free } => {
@@ -210,6 +211,7 @@ impl Question {
     /// The stretch that asks the same as a question on a normal strain, if one does: with the other normal strain held and no
     /// shear, or with the width free, with or without the shear. E_DD = l1 + l1²/2 grows with l1, so their extremes are the same.
     /// With the width held and the shear free a stretch holds the distance across the direction, and not a strain.
+    #[doc(hidden)]
     pub fn as_stretch(&self) -> Option<Question> {
         let Goal::Strain { component, direction_deg, fix, free } = &self.goal else { return None };
         let (side, turn_deg) = match component {
@@ -229,6 +231,7 @@ impl Question {
 }
 
 /// A line or a plane or all of the space of strains, and the end of it that is sought.
+#[doc(hidden)]
 #[derive(Clone, Debug, PartialEq)]
 pub struct StrainQuery {
     /// What is held: E where all parameters are 0.
@@ -259,6 +262,7 @@ impl Strain {
     }
 
     /// E where this component is 1 and the others are 0, with x along a direction.
+    #[doc(hidden)]
     pub fn unit(self, direction: Direction) -> Matrix2<f64> {
         let (x, y) = (direction.along(), direction.across());
         match self {

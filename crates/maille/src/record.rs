@@ -2,7 +2,7 @@
 
 mod row;
 
-pub use row::{Cell, Column, Kind, LIMIT_COLUMNS, LimitRow, Status, Unit};
+pub use row::{Column, Entry, Kind, LIMIT_COLUMNS, LimitRow, Status, Unit};
 
 use crate::{
     model::{Element, Model},

@@ -30,7 +30,7 @@ use nalgebra::{Matrix2, Matrix3, Quaternion, UnitQuaternion};
 use std::collections::BTreeSet;
 
 /// How far an operation may miss, in reference radii: rounding of numbers that are written with all their digits.
-pub const TOLERANCE: f64 = 1e-11;
+pub(crate) const TOLERANCE: f64 = 1e-11;
 /// Angles are rounded to this part of a degree, so that 180 − 179.9 is 0.1.
 const STEPS_PER_DEGREE: f64 = 1e12;
 /// Directions that differ by less are one, in degrees.
@@ -286,18 +286,18 @@ impl<'a> Image<'a> {
     }
 
     /// The image of a shift.
-    pub fn shift(&self, [m, n]: Shift) -> Shift {
+    pub(crate) fn shift(&self, [m, n]: Shift) -> Shift {
         let [first, second] = self.shifts;
         [0, 1].map(|k| m * first[k] + n * second[k])
     }
 
     /// The image of a difference of positions, or of a force.
-    pub fn vector(&self, v: &Vec3) -> Vec3 {
+    pub(crate) fn vector(&self, v: &Vec3) -> Vec3 {
         self.operation.matrix * v
     }
 
     /// The ring, with its cell, that `ring` in the cell `shift` goes to.
-    pub fn ring(&self, ring: usize, shift: Shift) -> (usize, Shift) {
+    pub(crate) fn ring(&self, ring: usize, shift: Shift) -> (usize, Shift) {
         let ((image, own), there) = (self.rings[ring], self.shift(shift));
         (image, [own[0] + there[0], own[1] + there[1]])
     }
@@ -343,7 +343,7 @@ impl<'a> Image<'a> {
     }
 
     /// Whether a shear changes its sign.
-    pub fn mirrors(&self) -> bool {
+    pub(crate) fn mirrors(&self) -> bool {
         self.operation.mirrors()
     }
 }
@@ -390,12 +390,12 @@ pub fn between(operations: &[Operation], from_deg: f64, to_deg: f64) -> impl Ite
 }
 
 /// Whether two directions, in degrees, are one but for rounding: D and −D are.
-pub fn same_direction(a_deg: f64, b_deg: f64) -> bool {
+pub(crate) fn same_direction(a_deg: f64, b_deg: f64) -> bool {
     let apart = (a_deg - b_deg).rem_euclid(180.0);
     apart.min(180.0 - apart) <= SAME_DEG
 }
 
 /// Whether an operation mirrors a direction, in degrees, to itself: then a shear γ along it and −γ are images.
-pub fn mirrored(operations: &[Operation], direction_deg: f64) -> bool {
+pub(crate) fn mirrored(operations: &[Operation], direction_deg: f64) -> bool {
     between(operations, direction_deg, direction_deg).any(Operation::mirrors)
 }

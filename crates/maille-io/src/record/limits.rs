@@ -5,7 +5,7 @@ use super::{
     error::RecordError,
 };
 use ::csv::StringRecord;
-use maille::record::{Cell, LIMIT_COLUMNS, LimitRow};
+use maille::record::{Entry, LIMIT_COLUMNS, LimitRow};
 
 /// Lengths of earlier tables: one that ends after so many columns is read too, the others being empty.
 const EARLIER_COLUMNS: [usize; 4] = [30, 36, 40, 42];
@@ -18,7 +18,7 @@ pub fn write_limits(rows: &[LimitRow]) -> Result<String, RecordError> {
     for row in rows {
         for (i, column) in LIMIT_COLUMNS.iter().enumerate() {
             let cell = (column.get)(row);
-            if let Cell::Number(value) = cell
+            if let Entry::Number(value) = cell
                 && !value.is_finite()
             {
                 let (direction_deg, l2, field) = (row.direction_deg, row.l2, column.name);
@@ -33,14 +33,14 @@ pub fn write_limits(rows: &[LimitRow]) -> Result<String, RecordError> {
 }
 
 /// A value as it stands in a table of commas.
-pub(crate) fn csv_cell(column: &str, cell: Cell<'_>) -> String {
+pub(crate) fn csv_cell(column: &str, cell: Entry<'_>) -> String {
     match cell {
-        Cell::Empty => String::new(),
-        Cell::Text(text) if matches!(column, "design" | "cell") => csv_quoted(text),
-        Cell::Text(text) => csv_text(text),
-        Cell::Number(x) => csv_number(Some(x)),
-        Cell::Count(n) => n.to_string(),
-        Cell::Flag(flag) => flag.to_string(),
+        Entry::Empty => String::new(),
+        Entry::Text(text) if matches!(column, "design" | "cell") => csv_quoted(text),
+        Entry::Text(text) => csv_text(text),
+        Entry::Number(x) => csv_number(Some(x)),
+        Entry::Count(n) => n.to_string(),
+        Entry::Flag(flag) => flag.to_string(),
     }
 }
 

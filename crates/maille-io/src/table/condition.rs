@@ -3,7 +3,7 @@
 use super::{Field, Row, TableError};
 use crate::nearest::nearest;
 use crate::record::NamedRecord;
-use maille::record::{Cell, Kind, Status};
+use maille::record::{Entry, Kind, Status};
 use std::cmp::Ordering;
 
 /// One condition on the rows of a table.
@@ -106,15 +106,15 @@ impl NamedRecord {
 
 impl Value {
     /// The order of a cell to this value; none where they cannot be compared.
-    fn order(&self, cell: Cell<'_>) -> Option<Ordering> {
+    fn order(&self, cell: Entry<'_>) -> Option<Ordering> {
         let numbers =
             |x: f64, wanted: f64| if same(x, wanted) { Some(Ordering::Equal) } else { x.partial_cmp(&wanted) };
         match (self, cell) {
-            (Value::Empty, Cell::Empty) => Some(Ordering::Equal),
-            (Value::Number(wanted), Cell::Number(x)) => numbers(x, *wanted),
-            (Value::Number(wanted), Cell::Count(n)) => numbers(n as f64, *wanted),
-            (Value::Text(wanted), Cell::Text(text)) => Some(text.cmp(wanted)),
-            (Value::Flag(wanted), Cell::Flag(flag)) => Some(flag.cmp(wanted)),
+            (Value::Empty, Entry::Empty) => Some(Ordering::Equal),
+            (Value::Number(wanted), Entry::Number(x)) => numbers(x, *wanted),
+            (Value::Number(wanted), Entry::Count(n)) => numbers(n as f64, *wanted),
+            (Value::Text(wanted), Entry::Text(text)) => Some(text.cmp(wanted)),
+            (Value::Flag(wanted), Entry::Flag(flag)) => Some(flag.cmp(wanted)),
             _ => None,
         }
     }

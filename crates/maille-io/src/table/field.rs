@@ -1,7 +1,7 @@
 //! Columns and rows of a table.
 
 use crate::nearest::nearest;
-use maille::record::{Cell, Column, Kind, LIMIT_COLUMNS, LimitRow, Unit};
+use maille::record::{Column, Entry, Kind, LIMIT_COLUMNS, LimitRow, Unit};
 use thiserror::Error;
 
 /// A column, condition or order that no table has.
@@ -94,9 +94,9 @@ impl Field {
         }
     }
 
-    pub(super) fn of<'a>(self, row: &Row<'a>) -> Cell<'a> {
+    pub(super) fn of<'a>(self, row: &Row<'a>) -> Entry<'a> {
         match self {
-            Field::Record => Cell::Text(row.record),
+            Field::Record => Entry::Text(row.record),
             Field::Limit(column) => (column.get)(row.limit),
         }
     }

@@ -1,7 +1,7 @@
 //! `l2,-l1`: the order of the rows.
 
 use super::{Field, Row, TableError};
-use maille::record::Cell;
+use maille::record::Entry;
 use std::cmp::Ordering;
 
 /// A column to sort by.
@@ -28,7 +28,7 @@ impl SortKey {
 pub(super) fn compare(keys: &[SortKey], a: &Row<'_>, b: &Row<'_>) -> Ordering {
     let of_key = |key: &SortKey| {
         let (a, b) = (key.field.of(a), key.field.of(b));
-        match (a == Cell::Empty, b == Cell::Empty) {
+        match (a == Entry::Empty, b == Entry::Empty) {
             (false, false) if key.down => of_cells(b, a),
             (false, false) => of_cells(a, b),
             (a_empty, b_empty) => a_empty.cmp(&b_empty),
@@ -38,12 +38,12 @@ pub(super) fn compare(keys: &[SortKey], a: &Row<'_>, b: &Row<'_>) -> Ordering {
 }
 
 /// The order of two values of one column.
-fn of_cells(a: Cell<'_>, b: Cell<'_>) -> Ordering {
+fn of_cells(a: Entry<'_>, b: Entry<'_>) -> Ordering {
     match (a, b) {
-        (Cell::Number(a), Cell::Number(b)) => (a + 0.0).total_cmp(&(b + 0.0)), // −0 is 0
-        (Cell::Count(a), Cell::Count(b)) => a.cmp(&b),
-        (Cell::Text(a), Cell::Text(b)) => a.cmp(b),
-        (Cell::Flag(a), Cell::Flag(b)) => a.cmp(&b),
+        (Entry::Number(a), Entry::Number(b)) => (a + 0.0).total_cmp(&(b + 0.0)), // −0 is 0
+        (Entry::Count(a), Entry::Count(b)) => a.cmp(&b),
+        (Entry::Text(a), Entry::Text(b)) => a.cmp(b),
+        (Entry::Flag(a), Entry::Flag(b)) => a.cmp(&b),
         _ => Ordering::Equal,
     }
 }

@@ -3,7 +3,7 @@
 use super::{Field, Table, json};
 use arrow_array::{ArrayRef, BooleanArray, Float64Array, Int64Array, RecordBatch, StringArray};
 use arrow_schema::{ArrowError, DataType, Schema};
-use maille::record::{Cell, Kind, RECORD_SCHEMA, StateRecord};
+use maille::record::{Entry, Kind, RECORD_SCHEMA, StateRecord};
 use parquet::arrow::ArrowWriter;
 use parquet::basic::Compression;
 use parquet::file::metadata::KeyValue;
@@ -84,9 +84,9 @@ impl Table<'_> {
     fn array(&self, field: Field) -> Result<ArrayRef, ArrowError> {
         let cells = self.rows.iter().map(|row| field.of(row));
         Ok(match field.kind() {
-            Kind::Text => Arc::new(cells.map(Cell::text).collect::<StringArray>()),
-            Kind::Number => Arc::new(cells.map(Cell::number).collect::<Float64Array>()),
-            Kind::Flag => Arc::new(cells.map(Cell::flag).collect::<BooleanArray>()),
+            Kind::Text => Arc::new(cells.map(Entry::text).collect::<StringArray>()),
+            Kind::Number => Arc::new(cells.map(Entry::number).collect::<Float64Array>()),
+            Kind::Flag => Arc::new(cells.map(Entry::flag).collect::<BooleanArray>()),
             Kind::Count => {
                 let signed = |n: u64| {
                     let wide = |_| ArrowError::CastError(format!("{} is {n}, too large for Int64", field.name()));

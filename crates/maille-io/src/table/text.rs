@@ -1,7 +1,7 @@
 //! A table for the terminal: aligned, rounded, as wide as the terminal.
 
 use super::{Field, Table};
-use maille::record::{Cell, Kind};
+use maille::record::{Entry, Kind};
 use std::fmt::Write;
 
 /// How much of a table is shown.
@@ -103,7 +103,7 @@ impl Table<'_> {
     }
 
     fn drawn(&self, field: Field, shown: usize) -> Drawn {
-        let values: Vec<Cell<'_>> = self.rows[..shown].iter().map(|row| field.of(row)).collect();
+        let values: Vec<Entry<'_>> = self.rows[..shown].iter().map(|row| field.of(row)).collect();
         let numbers = || values.iter().filter_map(|cell| cell.number());
         let largest = numbers().fold(0.0, |most: f64, x| most.max(x.abs()));
         let power = largest > 0.0 && !PLAIN.contains(&largest);
@@ -113,12 +113,12 @@ impl Table<'_> {
             true => format!("{x:.1e}"),
             false => unsigned_zero(format!("{x:.decimals$}")),
         };
-        let text = |cell: &Cell<'_>| match *cell {
-            Cell::Empty => EMPTY.to_owned(),
-            Cell::Text(text) => text.to_owned(),
-            Cell::Number(x) => number(x),
-            Cell::Count(n) => n.to_string(),
-            Cell::Flag(flag) => flag.to_string(),
+        let text = |cell: &Entry<'_>| match *cell {
+            Entry::Empty => EMPTY.to_owned(),
+            Entry::Text(text) => text.to_owned(),
+            Entry::Number(x) => number(x),
+            Entry::Count(n) => n.to_string(),
+            Entry::Flag(flag) => flag.to_string(),
         };
         let cells: Vec<String> = values.iter().map(text).collect();
         // A plain number has no unit to show.

@@ -72,14 +72,14 @@ impl ChainBound {
     }
 
     /// x = v/d of the chains that can bind: |F x| ≤ 1 for each of them.
-    pub fn directions(&self) -> impl Iterator<Item = Vector2<f64>> {
+    pub(crate) fn directions(&self) -> impl Iterator<Item = Vector2<f64>> {
         self.vertices.iter().map(|v| v.x)
     }
 
     /// A stretch that no line in the sheet exceeds; infinite where all chains are parallel.
     ///
     /// With two chains e = α x + β x′ for a unit vector e, so |F e| ≤ |α| + |β|.
-    pub fn largest_stretch(&self) -> f64 {
+    pub(crate) fn largest_stretch(&self) -> f64 {
         let mut least = f64::INFINITY;
         for (k, a) in self.vertices.iter().enumerate() {
             for b in &self.vertices[..k] {

@@ -62,7 +62,7 @@ impl ImageBound {
     /// Images of `model`'s elements that are too near in the lattice of `state`; `None` proves nothing.
     ///
     /// With the lattice of a proven bound of l1, a pair proves that this l2 is out of reach.
-    pub fn too_near(&self, model: &Model, state: &State) -> Option<NearImages> {
+    pub(crate) fn too_near(&self, model: &Model, state: &State) -> Option<NearImages> {
         (0..model.elements.len()).find_map(|element| {
             let least = self.least[element];
             let shifts = shifts_within(&Vec3::zeros(), &state.a1, &state.a2, least);

@@ -115,7 +115,7 @@ impl LinkBound {
     }
 
     /// The program of the chains alone, each of them a tie between a ring and its own image.
-    pub fn of_chains(chain: &ChainBound) -> Self {
+    pub(crate) fn of_chains(chain: &ChainBound) -> Self {
         let tie = |(x, chain): (Vector2<f64>, &BindingChain)| Tie {
             kind: TieKind::Chain,
             rings: chain.rings.clone(),
@@ -134,7 +134,7 @@ impl LinkBound {
     }
 
     /// The bound of l1 along a direction, with l2 and the shear held or free.
-    pub fn limit_across(&self, direction: Direction, l2: f64, free: Across) -> LinkSolution {
+    pub(crate) fn limit_across(&self, direction: Direction, l2: f64, free: Across) -> LinkSolution {
         let nothing = LinkSolution { l1: f64::INFINITY, primal_l1: f64::INFINITY, dual: Vec::new(), iterations: 0 };
         let largest_stretch = match self.chain.limit(direction, l2) {
             _ if free.any() => self.chain.largest_stretch(),

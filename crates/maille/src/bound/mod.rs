@@ -56,7 +56,7 @@ pub fn best_bound(chain: &ChainBound, link: Option<&LinkBound>, direction: Direc
 }
 
 /// The lower of the two bounds with the width or the shear free.
-pub fn best_bound_across(
+pub(crate) fn best_bound_across(
     chain: &ChainBound,
     link: Option<&LinkBound>,
     direction: Direction,

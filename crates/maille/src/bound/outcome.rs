@@ -98,7 +98,7 @@ impl Bound {
     }
 
     /// The forces that prove it, where one chain does not.
-    pub fn dual(&self) -> &[DualForce] {
+    pub(crate) fn dual(&self) -> &[DualForce] {
         match self {
             Bound::Finite { dual, .. } | Bound::L2Unreachable { dual, .. } => dual,
             Bound::Unbounded => &[],

@@ -19,7 +19,7 @@ pub(super) struct Query<'a> {
 
 impl Query<'_> {
     /// Where lines across the pull may be moved: along D⊥ where l2 is free, along D where the shear is.
-    pub fn free_axes(&self) -> impl Iterator<Item = Vec3> {
+    pub(crate) fn free_axes(&self) -> impl Iterator<Item = Vec3> {
         let lateral = self.free.lateral_free.then_some(self.across);
         lateral.into_iter().chain(self.free.shear_free.then_some(self.along))
     }
@@ -34,12 +34,12 @@ impl Query<'_> {
     }
 
     /// Forces y of the multipliers z: (|y|, −y) in each cone.
-    pub fn forces(&self, z: &DVector<f64>) -> Vec<Vec3> {
+    pub(crate) fn forces(&self, z: &DVector<f64>) -> Vec<Vec3> {
         (0..self.ties.len()).map(|k| -Vec3::new(z[4 * k + 1], z[4 * k + 2], z[4 * k + 3])).collect()
     }
 
     /// P.
-    pub fn pull(&self, forces: &[Vec3]) -> f64 {
+    pub(crate) fn pull(&self, forces: &[Vec3]) -> f64 {
         self.ties.iter().zip(forces).map(|(tie, y)| y.dot(&self.along) * tie.span.dot(&self.along)).sum()
     }
 
@@ -93,7 +93,7 @@ impl Query<'_> {
     ///
     /// Slack ties keep a small force in an interior point. Without them the value is flat to first order in the rest, so
     /// that half of the digits of y give all digits of the bound: cut at several levels, balance, and take the least.
-    pub fn polished(&self, forces: &[Vec3]) -> Option<(f64, Vec<Vec3>)> {
+    pub(crate) fn polished(&self, forces: &[Vec3]) -> Option<(f64, Vec<Vec3>)> {
         let most = forces.iter().map(|y| y.norm()).fold(0.0, f64::max);
         let mut best: Option<(f64, Vec<Vec3>)> = None;
         let mut kept_before = usize::MAX;

@@ -37,7 +37,7 @@ pub enum TieKind {
 
 impl TieKind {
     /// The name in records.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             TieKind::Link => "link",
             TieKind::StrandPair => "strand-pair",

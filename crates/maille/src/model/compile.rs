@@ -124,6 +124,7 @@ impl Model {
     }
 
     /// The design's own cell of a periodic model.
+    #[doc(hidden)]
     pub fn primitive(&self) -> Model {
         let copies = self.cell.copies();
         let mut out = self.clone();
@@ -146,6 +147,7 @@ impl Model {
     }
 
     /// The same design in the cell `cell` of a periodic model.
+    #[doc(hidden)]
     pub fn in_cell(&self, cell: Cell) -> Model {
         let own = self.primitive();
         if cell == Cell::PRIMITIVE || !self.periodic {

@@ -36,7 +36,7 @@ pub struct Element {
     /// Radius about the reference point that holds all core circles: max |offset| + R.
     pub reach: f64,
     /// Where its copy of the design's cell stands in a larger one, in lattice vectors: that part of a strain it can follow. In a
-    /// design of more than [`MANY`] elements, where it stands itself.
+    /// design of more than `MANY` elements, where it stands itself.
     pub anchor: [f64; 2],
 }
 
@@ -53,7 +53,7 @@ pub struct Model {
     /// Length of one unit of the model, in the file's unit: the reference radius R.
     pub unit: f64,
     /// Where the file has the model's origin, in the file's unit: its own origin, or the first element's centre where that
-    /// lies more than [`FAR`] from it, so that positions keep their digits.
+    /// lies more than `FAR` from it, so that positions keep their digits.
     pub origin: Vec3,
     /// Elements of the cell.
     pub elements: Vec<Element>,
@@ -72,9 +72,9 @@ pub struct Model {
 }
 
 /// A design of more elements is taken for a large cell written out.
-pub const MANY: usize = 32;
+pub(crate) const MANY: usize = 32;
 /// A design whose first element lies further than this from the origin is moved there, in units of R.
-pub const FAR: f64 = 1e3;
+pub(crate) const FAR: f64 = 1e3;
 /// Ring `ring_a` of the main cell and ring `ring_b` of the image `shift`; each pair of the sheet stands once per cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct RingPair {
@@ -88,7 +88,7 @@ pub struct RingPair {
 
 impl RingPair {
     /// The pair seen from either ring, as the ring of the main cell.
-    pub fn both_ways(&self) -> [RingPair; 2] {
+    pub(crate) fn both_ways(&self) -> [RingPair; 2] {
         let back = RingPair { ring_a: self.ring_b, ring_b: self.ring_a, shift: self.shift.map(|s| -s) };
         [*self, back]
     }
@@ -105,6 +105,7 @@ pub struct Link {
 
 impl Model {
     /// Sum of the minor radii of two rings: the core distance r̂ at which their tori touch.
+    #[doc(hidden)]
     pub fn contact_distance(&self, ring_a: usize, ring_b: usize) -> f64 {
         self.rings[ring_a].minor_radius + self.rings[ring_b].minor_radius
     }
@@ -126,7 +127,7 @@ impl Model {
 /// What of a state depends on its model.
 impl State {
     /// Arm from its element's reference point to the centre of ring `ring`.
-    pub fn arm(&self, model: &Model, ring: usize) -> Vec3 {
+    pub(crate) fn arm(&self, model: &Model, ring: usize) -> Vec3 {
         let r = &model.rings[ring];
         self.poses[r.element].rotation * r.offset
     }

@@ -24,9 +24,9 @@ const FLAT_TILT: f64 = 0.08;
 const FLAT_APART: f64 = 0.08;
 /// Offset of the axes in radii above which a pair that carries is not left to its heights: its two contacts stand well apart
 /// from what is open.
-pub const SHIFTED: f64 = 1e-3;
+pub(crate) const SHIFTED: f64 = 1e-3;
 /// The same where no forces on closed points balance.
-pub const COAXIAL: f64 = 1e-6;
+pub(crate) const COAXIAL: f64 = 1e-6;
 /// Pairs are released by the order of their offsets: Newton's method hardly converges on two contacts that are nearly a circle.
 const MUCH_LESS: f64 = 0.1;
 /// Gap of a closed point, in units of the reference radius.
@@ -37,7 +37,7 @@ impl SheetProgram<'_> {
     /// coaxial. Their one gap is a cone there, h − s − R |tilt|, with its tip at the limit; from now on sixteen heights
     /// of B's points over A's plane must be at least s, which implies the gap, is smooth, and is exact where the rings
     /// are parallel and coaxial. Returns whether the set of flat pairs has changed.
-    pub fn take_flat_pairs(&mut self, x: &Posed) -> bool {
+    pub(crate) fn take_flat_pairs(&mut self, x: &Posed) -> bool {
         let (model, state) = (self.model, &x.state);
         let mut flat = BTreeSet::new();
         for pair in topology::close_pairs(model, state, 0.0) {
@@ -62,7 +62,7 @@ impl SheetProgram<'_> {
     /// Releases the flat pairs that carry and whose axes at `x` are more than `beyond` radii apart, and more than
     /// a tenth of the largest such offset: from now on they are pairs like all others, and their forces in
     /// `multipliers` are shared by their closed points. Returns whether there was one.
-    pub fn release_flat_pairs(&mut self, x: &Posed, multipliers: &mut Vec<Multiplier>, beyond: f64) -> bool {
+    pub(crate) fn release_flat_pairs(&mut self, x: &Posed, multipliers: &mut Vec<Multiplier>, beyond: f64) -> bool {
         let carrying = self.shifted(x, multipliers, beyond);
         let largest = carrying.iter().map(|(.., offset)| *offset).fold(0.0, f64::max);
         let shifted = carrying.into_iter().filter(|(.., offset)| *offset > MUCH_LESS * largest);
@@ -82,7 +82,7 @@ impl SheetProgram<'_> {
     }
 
     /// The flat pairs that carry and whose axes at `x` are more than `beyond` radii apart: key, force and offset.
-    pub fn shifted(&self, x: &Posed, multipliers: &[Multiplier], beyond: f64) -> Vec<(u64, f64, f64)> {
+    pub(crate) fn shifted(&self, x: &Posed, multipliers: &[Multiplier], beyond: f64) -> Vec<(u64, f64, f64)> {
         let of = |&key: &u64| {
             let force: f64 = multipliers.iter().filter(|m| m.key == key).map(|m| m.value.max(0.0)).sum();
             let offset = self.offset(x, key) / self.model.rings[pair_of_key(key).ring_a].major_radius;
@@ -122,7 +122,7 @@ impl SheetProgram<'_> {
     }
 
     /// Takes back that pairs were released: for a solve from elsewhere.
-    pub fn forget_released_pairs(&mut self) {
+    pub(crate) fn forget_released_pairs(&mut self) {
         self.released.clear();
     }
 

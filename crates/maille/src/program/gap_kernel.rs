@@ -55,7 +55,7 @@ pub struct PointJet {
 
 /// A number of the pair with gradient and Hessian in y.
 #[derive(Clone, Copy, Debug)]
-pub struct Jet {
+pub(crate) struct Jet {
     /// Value.
     pub value: f64,
     /// Gradient.
@@ -66,19 +66,19 @@ pub struct Jet {
 
 impl Jet {
     /// The number 0.
-    pub const ZERO: Jet = Jet {
+    pub(crate) const ZERO: Jet = Jet {
         value: 0.0,
         grad: Grad::from_array_storage(nalgebra::ArrayStorage([[0.0; 9]])),
         hess: Hess::from_array_storage(nalgebra::ArrayStorage([[0.0; 9]; 9])),
     };
 
     /// f of a number with these derivatives, by f, f′ and f″.
-    pub fn of([value, first, second]: [f64; 3], grad: &Grad, hess: &Hess) -> Jet {
+    pub(crate) fn of([value, first, second]: [f64; 3], grad: &Grad, hess: &Hess) -> Jet {
         Jet { value, grad: grad * first, hess: hess * first + grad * grad.transpose() * second }
     }
 
     /// Adds the multiple `factor` of `other`.
-    pub fn add(&mut self, factor: f64, other: &Jet) {
+    pub(crate) fn add(&mut self, factor: f64, other: &Jet) {
         self.value += factor * other.value;
         self.grad += other.grad * factor;
         self.hess += other.hess * factor;
@@ -129,7 +129,7 @@ impl PairFrame {
     }
 
     /// Distance of B's point at `angle_rad` from circle A (eq. 3.1.2).
-    pub fn distance(&self, angle_rad: f64) -> f64 {
+    pub(crate) fn distance(&self, angle_rad: f64) -> f64 {
         let (sin, cos) = angle_rad.sin_cos();
         let w = self.x + self.arm_b + (self.u * cos + self.v * sin) * self.radius_b - self.arm_a;
         let z = self.normal_a.dot(&w);
@@ -138,7 +138,7 @@ impl PairFrame {
 
     /// That distance and its gradient at the fixed angle. The nearest point of A may be taken as fixed on A (it is a
     /// minimum), so only the direction e from it to B's point counts: (e, −foot × e, b × e).
-    pub fn distance_gradient(&self, angle_rad: f64) -> (f64, Grad) {
+    pub(crate) fn distance_gradient(&self, angle_rad: f64) -> (f64, Grad) {
         let (sin, cos) = angle_rad.sin_cos();
         let b = self.arm_b + (self.u * cos + self.v * sin) * self.radius_b;
         let w = self.x + b - self.arm_a;
@@ -177,14 +177,14 @@ impl PairFrame {
     }
 
     /// Height z of B's point at `angle_rad` over A's plane, with gradient and Hessian at that fixed angle.
-    pub fn height(&self, angle_rad: f64) -> (f64, Grad, Hess) {
+    pub(crate) fn height(&self, angle_rad: f64) -> (f64, Grad, Hess) {
         let (sin, cos) = angle_rad.sin_cos();
         let z = self.z_jet(&(self.arm_b + (self.u * cos + self.v * sin) * self.radius_b), true);
         (z.value, z.grad, z.hess)
     }
 
     /// Of B's centre: s, the squared distance from A's, and z, the height over A's plane; and the cosine N_A·N_B.
-    pub fn center_jets(&self) -> [Jet; 3] {
+    pub(crate) fn center_jets(&self) -> [Jet; 3] {
         let s = (self.x + self.arm_b - self.arm_a).norm_squared();
         let normal_b = self.u.cross(&self.v);
         [self.s_jet(&self.arm_b, s, true), self.z_jet(&self.arm_b, true), self.z_jet(&normal_b, false)]
@@ -253,7 +253,7 @@ impl PairFrame {
 }
 
 /// a bᵀ + b aᵀ.
-pub fn symmetric(a: &Grad, b: &Grad) -> Hess {
+pub(crate) fn symmetric(a: &Grad, b: &Grad) -> Hess {
     a * b.transpose() + b * a.transpose()
 }
 
@@ -289,7 +289,7 @@ impl PointJet {
     }
 
     /// Gradient and Hessian of d at a fixed angle on B.
-    pub fn distance_derivatives_fixed(&self) -> (Grad, Hess) {
+    pub(crate) fn distance_derivatives_fixed(&self) -> (Grad, Hess) {
         self.to_distance(self.h_y, self.h_yy)
     }
 

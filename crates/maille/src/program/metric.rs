@@ -11,7 +11,7 @@ use maille_geometry::Vec3;
 use nalgebra::Matrix2;
 
 /// F with F(C)ᵀ F(C) = C, upper triangular; `None` where C is not positive definite.
-pub fn factor(c: &Matrix2<f64>) -> Option<Matrix2<f64>> {
+pub(crate) fn factor(c: &Matrix2<f64>) -> Option<Matrix2<f64>> {
     let f11 = c[(0, 0)].sqrt();
     let f12 = c[(0, 1)] / f11;
     let f22 = (c[(1, 1)] - f12 * f12).sqrt();
@@ -27,7 +27,7 @@ pub(super) struct Factored {
 
 impl Factored {
     /// `None` where `c` is not positive definite.
-    pub fn new(c: &Matrix2<f64>, rates: &[Matrix2<f64>]) -> Option<Self> {
+    pub(crate) fn new(c: &Matrix2<f64>, rates: &[Matrix2<f64>]) -> Option<Self> {
         let f = factor(c)?;
         let inverse = f.try_inverse()?;
         let mut out = Factored { f, inverse, first: Vec::new() };
@@ -42,12 +42,12 @@ impl Factored {
     }
 
     /// Rate of the lattice vector of `reference` with parameter m.
-    pub fn rate(&self, m: usize, reference: &Vec3) -> Vec3 {
+    pub(crate) fn rate(&self, m: usize, reference: &Vec3) -> Vec3 {
         apply(&self.first[m], reference)
     }
 
     /// Its second derivative with parameters m and n.
-    pub fn bend(&self, m: usize, n: usize, reference: &Vec3) -> Vec3 {
+    pub(crate) fn bend(&self, m: usize, n: usize, reference: &Vec3) -> Vec3 {
         let product = self.first[m].transpose() * self.first[n];
         apply(&-self.half(&(product + product.transpose())), reference)
     }

@@ -108,7 +108,7 @@ impl Unit {
 /// One value of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
-pub enum Cell<'a> {
+pub enum Entry<'a> {
     /// Nothing: it was not earned.
     Empty,
     /// A name or a word.
@@ -121,39 +121,43 @@ pub enum Cell<'a> {
     Flag(bool),
 }
 
-impl<'a> Cell<'a> {
+impl<'a> Entry<'a> {
     /// Its text, if it is one.
+    #[doc(hidden)]
     pub fn text(self) -> Option<&'a str> {
-        if let Cell::Text(text) = self { Some(text) } else { None }
+        if let Entry::Text(text) = self { Some(text) } else { None }
     }
 
     /// Its number, if it is one.
+    #[doc(hidden)]
     pub fn number(self) -> Option<f64> {
-        if let Cell::Number(x) = self { Some(x) } else { None }
+        if let Entry::Number(x) = self { Some(x) } else { None }
     }
 
     /// Its whole number, if it is one.
+    #[doc(hidden)]
     pub fn count(self) -> Option<u64> {
-        if let Cell::Count(n) = self { Some(n) } else { None }
+        if let Entry::Count(n) = self { Some(n) } else { None }
     }
 
     /// Its flag, if it is one.
+    #[doc(hidden)]
     pub fn flag(self) -> Option<bool> {
-        if let Cell::Flag(flag) = self { Some(flag) } else { None }
+        if let Entry::Flag(flag) = self { Some(flag) } else { None }
     }
 }
 
 /// A type of the fields of [`LimitRow`]: as a cell, and read from the text of one. The error completes `"…" is `.
 trait Value: Sized {
     const KIND: Kind;
-    fn cell(&self) -> Cell<'_>;
+    fn cell(&self) -> Entry<'_>;
     fn read(text: &str) -> Result<Self, &'static str>;
 }
 
 impl Value for String {
     const KIND: Kind = Kind::Text;
-    fn cell(&self) -> Cell<'_> {
-        Cell::Text(self)
+    fn cell(&self) -> Entry<'_> {
+        Entry::Text(self)
     }
     fn read(text: &str) -> Result<Self, &'static str> {
         Ok(text.to_owned())
@@ -162,8 +166,8 @@ impl Value for String {
 
 impl Value for Status {
     const KIND: Kind = Kind::Text;
-    fn cell(&self) -> Cell<'_> {
-        Cell::Text(self.name())
+    fn cell(&self) -> Entry<'_> {
+        Entry::Text(self.name())
     }
     fn read(text: &str) -> Result<Self, &'static str> {
         Status::ALL.into_iter().find(|status| status.name() == text).ok_or("no status")
@@ -172,8 +176,8 @@ impl Value for Status {
 
 impl Value for f64 {
     const KIND: Kind = Kind::Number;
-    fn cell(&self) -> Cell<'_> {
-        Cell::Number(*self)
+    fn cell(&self) -> Entry<'_> {
+        Entry::Number(*self)
     }
     fn read(text: &str) -> Result<Self, &'static str> {
         let x: f64 = text.parse().map_err(|_| "not a number")?;
@@ -183,8 +187,8 @@ impl Value for f64 {
 
 impl Value for u64 {
     const KIND: Kind = Kind::Count;
-    fn cell(&self) -> Cell<'_> {
-        Cell::Count(*self)
+    fn cell(&self) -> Entry<'_> {
+        Entry::Count(*self)
     }
     fn read(text: &str) -> Result<Self, &'static str> {
         text.parse().map_err(|_| "not a whole number")
@@ -193,8 +197,8 @@ impl Value for u64 {
 
 impl Value for bool {
     const KIND: Kind = Kind::Flag;
-    fn cell(&self) -> Cell<'_> {
-        Cell::Flag(*self)
+    fn cell(&self) -> Entry<'_> {
+        Entry::Flag(*self)
     }
     fn read(text: &str) -> Result<Self, &'static str> {
         text.parse().map_err(|_| "not true or false")
@@ -204,8 +208,8 @@ impl Value for bool {
 /// What may be empty.
 impl<T: Value> Value for Option<T> {
     const KIND: Kind = T::KIND;
-    fn cell(&self) -> Cell<'_> {
-        self.as_ref().map_or(Cell::Empty, T::cell)
+    fn cell(&self) -> Entry<'_> {
+        self.as_ref().map_or(Entry::Empty, T::cell)
     }
     fn read(text: &str) -> Result<Self, &'static str> {
         if text.is_empty() { Ok(None) } else { T::read(text).map(Some) }
@@ -226,7 +230,7 @@ pub struct Column {
     /// What it says.
     pub meaning: &'static str,
     /// The value of a row.
-    pub get: fn(&LimitRow) -> Cell<'_>,
+    pub get: fn(&LimitRow) -> Entry<'_>,
     /// Reads the value from the text of a cell. The error says what the text is, as `not a number`.
     pub set: fn(&mut LimitRow, &str) -> Result<(), &'static str>,
 }

@@ -6,16 +6,16 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ContactLaw {
-    /// [`barrier`], eq. 4.1.3.
+    /// `barrier`, eq. 4.1.3.
     #[default]
     Barrier,
-    /// [`quadratic`], eq. 4.1.1.
+    /// `quadratic`, eq. 4.1.1.
     Quadratic,
 }
 
 impl ContactLaw {
     /// ψ, ψ′ and ψ″ at the core distance `distance`.
-    pub fn at(self, distance: f64, contact_distance: f64, alpha: f64) -> [f64; 3] {
+    pub(crate) fn at(self, distance: f64, contact_distance: f64, alpha: f64) -> [f64; 3] {
         match self {
             ContactLaw::Barrier => barrier(distance, contact_distance, alpha),
             ContactLaw::Quadratic => quadratic(distance, contact_distance, alpha),
@@ -25,7 +25,7 @@ impl ContactLaw {
 
 /// ψ, ψ′ and ψ″ of ψ(d) = α (d − r̂)² for d < r̂, and 0 from r̂ on. ψ″ jumps at r̂, and ψ(0) = α r̂² is finite: nothing
 /// in it keeps core circles from crossing.
-pub fn quadratic(distance: f64, contact_distance: f64, alpha: f64) -> [f64; 3] {
+pub(crate) fn quadratic(distance: f64, contact_distance: f64, alpha: f64) -> [f64; 3] {
     if distance >= contact_distance {
         return [0.0; 3];
     }
@@ -37,7 +37,7 @@ pub fn quadratic(distance: f64, contact_distance: f64, alpha: f64) -> [f64; 3] {
 ///
 /// d: distance of the core circles at the contact; r̂ = r1 + r2: where the tori touch. Units of α · length². Near
 /// touching ψ ≈ α (r̂ − d)³/r̂; it is infinite at d = 0, where the core circles would cross.
-pub fn barrier(distance: f64, contact_distance: f64, alpha: f64) -> [f64; 3] {
+pub(crate) fn barrier(distance: f64, contact_distance: f64, alpha: f64) -> [f64; 3] {
     if distance >= contact_distance {
         return [0.0; 3];
     }

@@ -28,6 +28,7 @@ pub enum MinimaMethod {
 }
 
 /// Parameters of the contact energy, in units of the reference radius.
+#[doc(hidden)]
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactOptions {
     /// What an overlap costs.

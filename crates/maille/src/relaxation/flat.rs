@@ -21,12 +21,12 @@ use maille_geometry::{Circle, Vec3};
 use std::f64::consts::TAU;
 
 /// κ from which on a pair is not flat; at half of it its minima no longer count.
-pub const FLAT_CURVATURE: f64 = 0.02;
+pub(crate) const FLAT_CURVATURE: f64 = 0.02;
 
 /// One of the two rings of a pair: its core circle, the reference point of its element, and the angle on the circle of a
 /// point that is fixed on the ring.
 #[derive(Clone, Copy, Debug)]
-pub struct Side {
+pub(crate) struct Side {
     /// Core circle.
     pub circle: Circle,
     /// Reference point of the ring's element.
@@ -37,7 +37,7 @@ pub struct Side {
 
 impl Side {
     /// Ring `ring` in `state`, moved by `shift`.
-    pub fn new(model: &Model, state: &State, ring: usize, shift: Vec3) -> Self {
+    pub(crate) fn new(model: &Model, state: &State, ring: usize, shift: Vec3) -> Self {
         let (of, at) = (&model.rings[ring], state.circle(model, ring, [0, 0]));
         let pose = &state.poses[of.element];
         let fixed = pose.rotation * Circle::new(Vec3::zeros(), of.normal, of.major_radius).frame().0;
@@ -48,7 +48,7 @@ impl Side {
 }
 
 /// κ² of two circles that touch at the core distance `touching`.
-pub fn curvature_sq(a: &Circle, b: &Circle, touching: f64) -> f64 {
+pub(crate) fn curvature_sq(a: &Circle, b: &Circle, touching: f64) -> f64 {
     let between = b.center - a.center;
     let heights_sq = 0.5 * (between.dot(&a.normal).powi(2) + between.dot(&b.normal).powi(2));
     let apart_sq = between.norm_squared() - heights_sq;
@@ -58,7 +58,7 @@ pub fn curvature_sq(a: &Circle, b: &Circle, touching: f64) -> f64 {
 }
 
 /// A pair that is flat at least in part.
-pub struct FlatPair {
+pub(crate) struct FlatPair {
     /// Points of B seen from A, and points of A seen from B.
     views: [PairFrame; 2],
     angles_rad: [f64; 2],
@@ -71,7 +71,7 @@ pub struct FlatPair {
 
 impl FlatPair {
     /// The pair with `points` points on each circle.
-    pub fn new(a: &Side, b: &Side, touching: f64, points: usize) -> Self {
+    pub(crate) fn new(a: &Side, b: &Side, touching: f64, points: usize) -> Self {
         let view = |a: &Side, b: &Side| PairFrame::new(&a.circle, &a.reference, &b.circle, &b.reference);
         let (ra, rb) = (a.circle.radius, b.circle.radius);
         FlatPair {
@@ -89,7 +89,7 @@ impl FlatPair {
     }
 
     /// E_circle, the sum of ψ over the points of both circles.
-    pub fn energy(&self, law: ContactLaw, alpha: f64) -> f64 {
+    pub(crate) fn energy(&self, law: ContactLaw, alpha: f64) -> f64 {
         let of = |view: usize| -> f64 {
             self.angles(view).map(|angle| law.at(self.views[view].distance(angle), self.touching, alpha)[0]).sum()
         };
@@ -97,7 +97,7 @@ impl FlatPair {
     }
 
     /// E_circle with gradient and Hessian in y = (x, α, β).
-    pub fn jet(&self, law: ContactLaw, alpha: f64) -> Jet {
+    pub(crate) fn jet(&self, law: ContactLaw, alpha: f64) -> Jet {
         let [mut seen, other] = [0, 1].map(|view| {
             let mut sum = Jet::ZERO;
             for angle in self.angles(view).filter(|angle| self.views[view].distance(*angle) < self.touching) {
@@ -112,7 +112,7 @@ impl FlatPair {
     }
 
     /// The weight w with gradient and Hessian.
-    pub fn weight(&self) -> Jet {
+    pub(crate) fn weight(&self) -> Jet {
         let [distance_sq, height_a, cosine] = self.views[0].center_jets();
         let height_b = exchanged(&self.views[1].center_jets()[1]);
         let apart_sq = sum(&[(1.0, &distance_sq), (-0.5, &square(&height_a)), (-0.5, &square(&height_b))]);
@@ -125,7 +125,7 @@ impl FlatPair {
 
 /// w, w′ and w″ at κ²: 1 up to (κ_flat / 2)², 0 from κ_flat² on, between them the polynomial of degree 5 that has
 /// neither slope nor curvature at its ends.
-pub fn share(curvature_sq: f64) -> [f64; 3] {
+pub(crate) fn share(curvature_sq: f64) -> [f64; 3] {
     const FULL: f64 = 0.25 * FLAT_CURVATURE * FLAT_CURVATURE;
     const WIDTH: f64 = 0.75 * FLAT_CURVATURE * FLAT_CURVATURE;
     let x = (curvature_sq - FULL) / WIDTH;

@@ -128,6 +128,7 @@ const SADDLE_TOLERANCE: f64 = 1e-5;
 const MAX_KICKS: usize = 3;
 
 /// The options with everything that follows from them or is fixed: what a record needs to repeat a run.
+#[doc(hidden)]
 #[derive(Clone, Debug, Serialize)]
 pub struct EnergyParameters {
     #[serde(flatten)]
@@ -143,13 +144,14 @@ pub struct EnergyParameters {
 
 impl EnergyOptions {
     /// As many points as can follow a flat pair's circle; 0 is allowed beside these.
+    #[doc(hidden)]
     pub const FLAT_POINTS: std::ops::RangeInclusive<usize> = 16..=1024;
 
     /// Whether they can be used.
     ///
     /// # Errors
     /// For a length, weight or angle that is not positive, and a number of points out of range.
-    pub fn check(&self) -> Result<(), InvalidInput> {
+    pub(crate) fn check(&self) -> Result<(), InvalidInput> {
         let positive = [
             ("alpha", self.alpha),
             ("corner_weight", self.corner_weight),
@@ -175,6 +177,7 @@ impl EnergyOptions {
     }
 
     /// All parameters and tolerances of a run on `model`.
+    #[doc(hidden)]
     pub fn parameters(&self, model: &Model) -> EnergyParameters {
         EnergyParameters {
             options: self.clone(),
@@ -189,6 +192,7 @@ impl EnergyOptions {
     }
 
     /// The contact energy on `model`.
+    #[doc(hidden)]
     pub fn contacts(&self, model: &Model) -> ContactOptions {
         ContactOptions {
             law: self.contact_law,
@@ -200,6 +204,7 @@ impl EnergyOptions {
     }
 
     /// Tolerances of one minimisation.
+    #[doc(hidden)]
     pub fn newton(&self) -> NewtonOptions {
         NewtonOptions {
             gradient_tolerance: self.gradient_tolerance,
@@ -212,6 +217,7 @@ impl EnergyOptions {
 
     /// Offsets of the non-minimal points. The default spacing follows the overlap that balances the pull at the
     /// threshold: depth p = √(4 β τ r̂ / (3 α)), half width √(2 r̂ p) / R; the points divide the half width evenly.
+    #[doc(hidden)]
     pub fn sample_offsets_rad(&self, model: &Model) -> Vec<f64> {
         let touching = 2.0 * model.rings.iter().map(|r| r.minor_radius).sum::<f64>() / model.rings.len() as f64;
         let depth = (4.0 * self.tau * touching / (3.0 * self.alpha)).sqrt();

@@ -25,7 +25,7 @@ pub struct PositionTarget {
 
 /// A half space that no ring may enter: z below `height` is solid.
 ///
-/// The contact law of rings acts between the plane and [`FLOOR_POINTS`] points of each core circle, which are fixed in
+/// The contact law of rings acts between the plane and `FLOOR_POINTS` points of each core circle, which are fixed in
 /// their ring. So a ring that lies flat has a smooth energy (its lowest point has none); a standing one may dip by
 /// R (1 − cos(π / points)) between two points.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,7 +37,7 @@ pub struct Floor {
 }
 
 /// Points of a core circle that feel the floor.
-pub const FLOOR_POINTS: usize = 32;
+pub(crate) const FLOOR_POINTS: usize = 32;
 
 /// Resistance to motion: an implicit step of overdamped motion from the poses `from`.
 ///
@@ -79,12 +79,12 @@ pub struct Loads {
 
 impl Loads {
     /// The unknowns that are none: positions of held elements.
-    pub fn held_unknowns(&self) -> Vec<usize> {
+    pub(crate) fn held_unknowns(&self) -> Vec<usize> {
         self.held.iter().flat_map(|e| 6 * e..6 * e + 3).collect()
     }
 
     /// Refuses a load under which some linked group of elements would fall for ever, and a floor that is not below.
-    pub fn check(&self, model: &Model) -> Result<(), InvalidInput> {
+    pub(crate) fn check(&self, model: &Model) -> Result<(), InvalidInput> {
         if let Some(floor) = self.floor {
             for (ring, r) in model.rings.iter().enumerate() {
                 let circle = model.start.circle(model, ring, [0, 0]);
@@ -147,7 +147,7 @@ impl Loads {
     }
 
     /// Adds gradient and Hessian.
-    pub fn add_derivatives(&self, model: &Model, state: &State, gradient: &mut [f64], hessian: &mut Curvature) {
+    pub(crate) fn add_derivatives(&self, model: &Model, state: &State, gradient: &mut [f64], hessian: &mut Curvature) {
         for (e, f) in &self.forces {
             for axis in 0..3 {
                 gradient[6 * e + axis] -= f[axis];

@@ -2,13 +2,17 @@
 
 pub mod barrier;
 mod contacts;
+#[doc(hidden)]
 pub mod flat;
 pub mod limit;
+#[doc(hidden)]
 pub mod load;
 pub mod simulate;
+#[doc(hidden)]
 pub mod target;
 
 pub use contacts::{ContactOptions, MinimaMethod};
+pub use target::Protocol;
 
 use crate::{
     model::Model,
@@ -41,6 +45,7 @@ pub enum HessianMethod {
 }
 
 /// A state with the fourth corner of its cell (relative to x1), which only the corner protocol leaves free.
+#[doc(hidden)]
 #[derive(Clone, Debug)]
 pub struct Configuration {
     /// Poses and lattice.
@@ -59,6 +64,7 @@ impl Configuration {
 
 /// E = E_c + E_b + E_f of a cell or of a finite sheet, as a function of six unknowns an element and, where the lattice
 /// has a target, those of the lattice.
+#[doc(hidden)]
 pub struct SheetEnergy<'a> {
     /// The sheet.
     pub model: &'a Model,

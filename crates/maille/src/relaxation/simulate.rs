@@ -29,6 +29,7 @@ use std::{
 
 /// The elements that `place` names: those of an edge (left and right along a1, bottom and top along a2), an element of
 /// one cell (`flat@0,1`), or its copies in all cells (`flat`).
+#[doc(hidden)]
 pub fn elements_at(model: &Model, place: &str) -> Result<Vec<usize>, InvalidInput> {
     let all = 0..model.elements.len();
     // An edge is where a coordinate along a lattice vector, or less it, is least.
@@ -188,6 +189,7 @@ struct Rest {
 }
 
 /// The displacement when `share` of the way is done: from 0 to its points in turn, each in an equal share.
+#[doc(hidden)]
 pub fn along(way: &[Vec3], share: f64) -> Vec3 {
     let done = share * way.len() as f64;
     let leg = (done.floor() as usize).min(way.len().saturating_sub(1));

@@ -76,7 +76,7 @@ impl Target {
     }
 
     /// Unknowns beyond the elements' six each: the lattice's six, and the fourth corner's three where it is free.
-    pub fn lattice_unknowns(&self) -> usize {
+    pub(crate) fn lattice_unknowns(&self) -> usize {
         match self.protocol {
             Protocol::Strain => 6,
             Protocol::Corners => 9,
@@ -97,7 +97,7 @@ impl Target {
     }
 
     /// Adds the derivatives; `first_lattice` is the index of a1's x among the unknowns.
-    pub fn add_derivatives(
+    pub(crate) fn add_derivatives(
         &self,
         state: &State,
         corner: &Vec3,
@@ -124,7 +124,7 @@ impl Target {
 
     /// How far the target is missed: |F − F_target| (Frobenius), or the largest distance of a corner from its target,
     /// in units of the reference radius.
-    pub fn residual(&self, model: &Model, state: &State, corner: &Vec3) -> f64 {
+    pub(crate) fn residual(&self, model: &Model, state: &State, corner: &Vec3) -> f64 {
         match self.protocol {
             Protocol::Strain => (self.measured(model, state, corner) - self.gradient).norm(),
             Protocol::Corners => self.misses(state, corner).take(4).map(|(_, miss)| miss.norm()).fold(0.0, f64::max),
@@ -132,7 +132,7 @@ impl Target {
     }
 
     /// The measured F (eq. 5.2.1). With a free fourth corner ∇u varies over the quadrilateral: taken at its centroid.
-    pub fn measured(&self, model: &Model, state: &State, corner: &Vec3) -> Matrix2<f64> {
+    pub(crate) fn measured(&self, model: &Model, state: &State, corner: &Vec3) -> Matrix2<f64> {
         match self.protocol {
             Protocol::Strain => state.deformation_gradient(model),
             Protocol::Corners => {

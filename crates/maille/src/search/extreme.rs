@@ -141,7 +141,7 @@ impl Target for Sought {
 
 impl Sought {
     /// Parameters at a start.
-    pub fn first_parameters(&self, model: &Model, state: &State) -> Vec<f64> {
+    pub(crate) fn first_parameters(&self, model: &Model, state: &State) -> Vec<f64> {
         let goal = match self.what {
             Extreme::ThickestWire => THIN_WIRE - 1.0,
             Extreme::LargestClearance => topology::smallest_gap(model, state).map_or(0.0, |(gap, _)| gap.min(0.0)),

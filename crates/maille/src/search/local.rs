@@ -38,7 +38,7 @@ pub(super) struct LocalSolution {
 
 impl LocalSolution {
     /// What was maximised.
-    pub fn value(&self) -> f64 {
+    pub(crate) fn value(&self) -> f64 {
         self.p[0]
     }
 

@@ -4,15 +4,19 @@
 //! maximised and from where: `stretch` (with `stretch_lattices`, and `unlinked` where no chain of links binds), `strain`, `extreme`
 //! (wire and clearance). `overlap` frees a start that overlaps. Every tolerance is in `options`.
 
+#[doc(hidden)]
 pub mod extreme;
 mod local;
 mod multistart;
 mod options;
 mod overlap;
 mod starts;
+#[doc(hidden)]
 pub mod strain;
+#[doc(hidden)]
 pub mod stretch;
 mod stretch_lattices;
 mod unlinked;
 
+pub use extreme::Extreme;
 pub use options::{ExactOptions, ExactParameters};

@@ -95,7 +95,7 @@ pub(super) struct LargerCells<'a> {
 
 impl<T: Target> Multistart<'_, T> {
     /// Solves `starts` in one cell and keeps the best: certified first, then by value; of equals the first.
-    pub fn run(&self, model: &Model, starts: Vec<Start>) -> SearchResult {
+    pub(crate) fn run(&self, model: &Model, starts: Vec<Start>) -> SearchResult {
         if self.upper_bound.is_finite() {
             let mut result = SearchResult::default();
             for start in starts {
@@ -157,7 +157,7 @@ impl<T: Target> Multistart<'_, T> {
     }
 
     /// Goes on from the first of `models` to larger ones, see [`LargerCells`]. `result` is what the first cell found.
-    pub fn larger_cells(&self, models: &[Model], result: SearchResult, rule: &LargerCells<'_>) -> CellSearch {
+    pub(crate) fn larger_cells(&self, models: &[Model], result: SearchResult, rule: &LargerCells<'_>) -> CellSearch {
         let mut by_cell = vec![result.by_cell(models[0].cell)];
         let mut starts: Vec<Option<Start>> = vec![None; models.len()];
         starts[0] = result.best.as_ref().map(|best| self.target.start(best));
@@ -204,7 +204,7 @@ impl SearchResult {
     }
 
     /// The answer with what the search took.
-    pub fn counted(&self, answer: Answer) -> Answer {
+    pub(crate) fn counted(&self, answer: Answer) -> Answer {
         Answer {
             n_starts: Some(self.runs),
             n_distinct: Some(self.distinct.len() as u64),
@@ -215,7 +215,7 @@ impl SearchResult {
     }
 
     /// Whether it has a better solution than `other`: certified first, and more than the same.
-    pub fn improves_on(&self, other: &SearchResult) -> bool {
+    pub(crate) fn improves_on(&self, other: &SearchResult) -> bool {
         match (&self.best, &other.best) {
             (Some(new), Some(old)) => (new.certified, new.value()) > (old.certified, old.value() + SAME_VALUE),
             (new, _) => new.is_some(),
@@ -223,7 +223,7 @@ impl SearchResult {
     }
 
     /// Whether the best certified value is the upper bound.
-    pub fn attains(&self, upper_bound: f64) -> bool {
+    pub(crate) fn attains(&self, upper_bound: f64) -> bool {
         self.best.as_ref().is_some_and(|best| best.certified && (best.value() - upper_bound).abs() <= ATTAINED)
     }
 
@@ -243,7 +243,7 @@ impl SearchResult {
     }
 
     /// Adds another search: its solution is taken where it is better by more than what makes two the same.
-    pub fn merge(&mut self, found: SearchResult) {
+    pub(crate) fn merge(&mut self, found: SearchResult) {
         let better = found.improves_on(self);
         self.count(&found);
         if better {

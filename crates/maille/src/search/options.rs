@@ -95,6 +95,7 @@ pub(super) const FREEING_PERTURBATIONS: [f64; 4] = [0.0, 0.03, 0.1, 0.3];
 pub(super) const THIN_WIRE: f64 = 0.2;
 
 /// The options with everything that is fixed: what a record needs to repeat a run.
+#[doc(hidden)]
 #[derive(Clone, Debug, Serialize)]
 pub struct ExactParameters {
     #[serde(flatten)]
@@ -131,6 +132,7 @@ pub struct ExactParameters {
 
 impl ExactOptions {
     /// All parameters and tolerances of a run.
+    #[doc(hidden)]
     pub fn parameters(&self) -> ExactParameters {
         ExactParameters {
             options: self.clone(),

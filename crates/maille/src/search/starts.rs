@@ -22,7 +22,7 @@ pub(super) struct Start {
 
 impl Start {
     /// A state with the written lattice.
-    pub fn written(state: State) -> Self {
+    pub(crate) fn written(state: State) -> Self {
         Start { state, l1: 0.0, l2: 0.0, shear: 0.0 }
     }
 }

@@ -107,7 +107,7 @@ impl<'a> StrainMethod<'a> {
     }
 
     /// The proven bound of p₀.
-    pub fn bound(&self, query: &StrainQuery) -> MetricBound {
+    pub(crate) fn bound(&self, query: &StrainQuery) -> MetricBound {
         let rates: Vec<Matrix2<f64>> = query.free.iter().map(|rate| rate * 2.0).collect();
         metric_bound(&self.chain, &(Matrix2::identity() + query.held * 2.0), &rates)
     }

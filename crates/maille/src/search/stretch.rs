@@ -65,7 +65,7 @@ pub(super) struct Stretch {
 }
 
 impl Stretch {
-    pub fn lattices(&self, model: &Model) -> StretchLattices {
+    pub(crate) fn lattices(&self, model: &Model) -> StretchLattices {
         StretchLattices::new(model, self.direction, self.across, self.sign)
     }
 }

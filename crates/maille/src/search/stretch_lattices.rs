@@ -54,7 +54,7 @@ pub(super) fn farthest(model: &Model, pull: &LatticeFamily, state: &State, cance
 
 impl StretchLattices {
     /// `sign` is 1 where l1 is maximised, −1 where it is minimised.
-    pub fn new(model: &Model, direction: Direction, across: Across, sign: f64) -> Self {
+    pub(crate) fn new(model: &Model, direction: Direction, across: Across, sign: f64) -> Self {
         StretchLattices { reference: [model.start.a1, model.start.a2], direction, across, sign }
     }
 
@@ -67,7 +67,7 @@ impl StretchLattices {
     }
 
     /// F at the parameters `p` of [`Self::pull`].
-    pub fn gradient(&self, p: &[f64], l2: f64) -> Matrix2<f64> {
+    pub(crate) fn gradient(&self, p: &[f64], l2: f64) -> Matrix2<f64> {
         let [l2, shear] = self.free_of(p, l2);
         self.direction.gradient(self.sign * p[0], l2, shear)
     }
@@ -86,7 +86,7 @@ impl StretchLattices {
     }
 
     /// l1 maximised, or −l1; l2 held at its value or free, γ held at 0 or free.
-    pub fn pull(&self, l2: f64) -> LatticeFamily {
+    pub(crate) fn pull(&self, l2: f64) -> LatticeFamily {
         let [along, lateral, shear] = self.rates();
         let parameter = |rate, weight| Parameter { rate, weight, ..Parameter::default() };
         let mut parameters = vec![parameter(along.map(|v| v * self.sign), 1.0)];
@@ -97,14 +97,14 @@ impl StretchLattices {
     }
 
     /// The parameters of [`Self::pull`] at a state.
-    pub fn parameters(&self, at: &Start) -> Vec<f64> {
+    pub(crate) fn parameters(&self, at: &Start) -> Vec<f64> {
         let lateral = self.across.lateral_free.then_some(at.l2);
         let shear = self.across.shear_free.then_some(at.shear);
         [Some(self.sign * at.l1), lateral, shear].into_iter().flatten().collect()
     }
 
     /// From the l2 of a state towards `to`, l1 free, γ as it is there.
-    pub fn approach(&self, at: &Start, to: f64) -> LatticeFamily {
+    pub(crate) fn approach(&self, at: &Start, to: f64) -> LatticeFamily {
         let [along, lateral, _] = self.rates();
         let sign = (to - at.l2).signum();
         let l1 = Parameter { rate: along, ..Parameter::default() };
@@ -115,7 +115,13 @@ impl StretchLattices {
 
     /// Least and largest l2 and γ that are found from the state of a limit, with l1 held there less a slack of
     /// [`FREE_SLACK`] (1 + l1); with the quadratic programs that it took.
-    pub fn ranges(&self, model: &Model, limit: &LocalSolution, l2: f64, cancel: &AtomicBool) -> (FreeRanges, u64) {
+    pub(crate) fn ranges(
+        &self,
+        model: &Model,
+        limit: &LocalSolution,
+        l2: f64,
+        cancel: &AtomicBool,
+    ) -> (FreeRanges, u64) {
         let l1 = self.sign * limit.p[0];
         let l1 = l1 - self.sign * FREE_SLACK * (1.0 + l1);
         let [l2, shear] = self.free_of(&limit.p, l2);
@@ -148,7 +154,7 @@ impl StretchLattices {
     ///
     /// l2 is bounded as l1 is, in the direction across: with l1 held there if γ is 0, else with all else free. γ is bounded by
     /// the chains, |F x| ≤ 1 with x = v/d: |(1 + l1) D·x + γ D⊥·x|² ≤ 1 − ((1 + l2) D⊥·x)², with l2 = −1 where it is free.
-    pub fn attainable(
+    pub(crate) fn attainable(
         &self,
         ranges: FreeRanges,
         (chain, link): (&ChainBound, &LinkBound),

@@ -32,14 +32,14 @@ pub struct Certificate {
 }
 
 /// Gaps may be negative by this, in units of the reference radius: rounding.
-pub const GAP_TOLERANCE: f64 = 1e-12;
+pub(crate) const GAP_TOLERANCE: f64 = 1e-12;
 /// Residuals of a certified limit.
-pub const RESIDUAL_TOLERANCE: f64 = 1e-9;
+pub(crate) const RESIDUAL_TOLERANCE: f64 = 1e-9;
 /// Overlaps below this can be cleared by what carries nothing, see the polish.
 const ALMOST: f64 = 0.03;
 
 /// A contact carries where its force for a unit pull is above this: what a record lists, and what counts for the curvature.
-pub const CARRIED: f64 = 1e-9;
+pub(crate) const CARRIED: f64 = 1e-9;
 /// Share of the largest multiplier above which one found with a sign counts.
 const CARRIES: f64 = 1e-8;
 
@@ -128,7 +128,7 @@ pub(super) fn certify<P: Program>(program: &P, x: &P::Point, active: &[Multiplie
 
 /// The figures of first order from true gaps, which are what a certificate claims: where the program solves by stricter rows,
 /// forces are sought on closed points instead.
-pub fn measure_gaps<P: Program>(program: &P, x: &P::Point, certificate: &mut Certificate) {
+pub(crate) fn measure_gaps<P: Program>(program: &P, x: &P::Point, certificate: &mut Certificate) {
     if let Some(rows) = program.closed_rows(x, BAND, &Loads::new(&certificate.multipliers)) {
         let (min_curvature, zero_modes) = (certificate.min_curvature, certificate.zero_modes);
         let by_gaps = first_order(&program.objective(), &rows, certificate.smallest_gap);
@@ -166,7 +166,7 @@ fn first_order(c: &[f64], chosen: &[Row], smallest_gap: f64) -> Certificate {
 }
 
 /// Adds the curvature's figures to a certificate of the point `x`, unless it has them.
-pub fn measure_curvature<P: Program>(program: &P, x: &P::Point, certificate: &mut Certificate) {
+pub(crate) fn measure_curvature<P: Program>(program: &P, x: &P::Point, certificate: &mut Certificate) {
     if !certificate.min_curvature.is_some_and(f64::is_nan) {
         return;
     }

@@ -13,7 +13,7 @@ use faer::{
 const BLOCKED_FROM: usize = 40;
 
 /// A symmetric matrix and its factor L (A = L Lᵀ).
-pub struct Cholesky {
+pub(crate) struct Cholesky {
     matrix: Symmetric,
     /// Values of a sparse factor; a dense one takes the place of its matrix.
     sparse: Vec<f64>,
@@ -22,7 +22,7 @@ pub struct Cholesky {
 
 impl Cholesky {
     /// For matrices like this one: of its size, and if it is sparse with its pattern.
-    pub fn new(matrix: Symmetric) -> Self {
+    pub(crate) fn new(matrix: Symmetric) -> Self {
         let n = matrix.n();
         let room = match matrix.entries() {
             None => MemBuffer::new(cholesky_in_place_scratch::<f64>(n, Par::Seq, Spec::default())),
@@ -32,12 +32,12 @@ impl Cholesky {
     }
 
     /// The matrix, to be written before each factorisation; only its lower triangle is read.
-    pub fn matrix_mut(&mut self) -> &mut Symmetric {
+    pub(crate) fn matrix_mut(&mut self) -> &mut Symmetric {
         &mut self.matrix
     }
 
     /// Factors the matrix; false where it is not positive. A dense matrix is lost.
-    pub fn factor(&mut self) -> bool {
+    pub(crate) fn factor(&mut self) -> bool {
         let n = self.matrix.n();
         if self.matrix.entries().is_some() {
             return self.factor_sparse().is_some();
@@ -87,7 +87,7 @@ impl Cholesky {
     }
 
     /// Puts A⁻¹ b in the place of b.
-    pub fn solve(&mut self, b: &mut [f64]) {
+    pub(crate) fn solve(&mut self, b: &mut [f64]) {
         let n = self.matrix.n();
         if let Some(symbolic) = self.matrix.entries().and_then(Entries::symbolic) {
             let right = MatMut::from_column_major_slice_mut(b, n, 1);

@@ -23,12 +23,12 @@ pub struct Row {
 
 impl Row {
     /// Its multiplier, of size `value`.
-    pub fn multiplier(&self, value: f64) -> Multiplier {
+    pub(crate) fn multiplier(&self, value: f64) -> Multiplier {
         Multiplier { key: self.key, angle: self.angle, minimum: self.minimum, value }
     }
 
     /// A row without derivatives.
-    pub fn value(key: u64, angle: f64, gap: f64) -> Row {
+    pub(crate) fn value(key: u64, angle: f64, gap: f64) -> Row {
         Row { key, angle, gap, minimum: true, columns: Vec::new(), gradient: Vec::new(), hessian: Vec::new() }
     }
 }
@@ -58,7 +58,7 @@ pub struct Multiplier {
 }
 
 /// Largest violation among `rows`.
-pub fn violation(rows: &[Row]) -> f64 {
+pub(crate) fn violation(rows: &[Row]) -> f64 {
     rows.iter().map(|r| -r.gap).fold(0.0, f64::max)
 }
 
@@ -78,18 +78,18 @@ impl Loads {
     }
 
     /// Whether a row with this key has a positive multiplier.
-    pub fn carries(&self, key: u64) -> bool {
+    pub(crate) fn carries(&self, key: u64) -> bool {
         let of_key = self.sorted[self.sorted.partition_point(|m| m.key < key)..].iter().take_while(|m| m.key == key);
         of_key.into_iter().any(|m| m.value > 0.0)
     }
 
     /// Multiplier of `row`: that of the nearest angle under the same key, or 0.
-    pub fn of(&self, row: &Row) -> f64 {
+    pub(crate) fn of(&self, row: &Row) -> f64 {
         self.at(row.key, row.angle, row.minimum)
     }
 
     /// [`Self::of`] the row with this key, angle and kind.
-    pub fn at(&self, key: u64, angle: f64, minimum: bool) -> f64 {
+    pub(crate) fn at(&self, key: u64, angle: f64, minimum: bool) -> f64 {
         let apart = |m: &Multiplier| {
             let turn = (m.angle - angle).rem_euclid(std::f64::consts::TAU);
             turn.min(std::f64::consts::TAU - turn)
@@ -106,7 +106,7 @@ impl Loads {
 }
 
 /// −Σ μ ∇²g over all unknowns; the rows with μ ≠ 0 must have Hessians. There is room for `more` blocks.
-pub fn lagrangian_hessian<'r>(
+pub(crate) fn lagrangian_hessian<'r>(
     n: usize,
     rows: impl IntoIterator<Item = &'r Row> + Clone,
     multipliers: &[f64],

@@ -9,7 +9,7 @@ const SHARES: [f64; 6] = [0.0, 0.0625, 0.125, 0.25, 0.5, 1.0];
 /// that keep them, so that the model stays exact there; then by `floor` and, where that is not enough, by a part of
 /// the diagonal that would make H dominant. That part follows the curvature of each unknown, and Cholesky's
 /// factorisation tells when it is enough: far cheaper than eigenvalues.
-pub fn convexified(mut h: Symmetric, rows: &[Row], multipliers: &[f64], floor: f64) -> Symmetric {
+pub(crate) fn convexified(mut h: Symmetric, rows: &[Row], multipliers: &[f64], floor: f64) -> Symmetric {
     let off_diagonal = h.off_diagonal_sums();
     let lack: Vec<f64> = off_diagonal.iter().enumerate().map(|(i, sum)| (sum - h.diagonal(i)).max(0.0)).collect();
     let sigma = 2.0 * (floor - least_eigenvalue(&h)).max(0.0);

@@ -80,7 +80,7 @@ impl Piece {
 
 impl Curvature {
     /// Zero, but for a unit diagonal of the unknowns that are held; blocks do not reach these.
-    pub fn new(n: usize, held: &[usize]) -> Self {
+    pub(crate) fn new(n: usize, held: &[usize]) -> Self {
         let kind = match n <= MOST_DENSE {
             true => Kind::Dense(Mat::zeros(n, n)),
             false => Kind::Sparse(Vec::new()),
@@ -99,7 +99,7 @@ impl Curvature {
     }
 
     /// Adds Σ c_p c_q B(p, q): `entries` are (row of the block B, unknown, coefficient c), B has `size` rows.
-    pub fn add(&mut self, entries: &[(usize, usize, f64)], size: usize, block: impl Fn(usize, usize) -> f64) {
+    pub(crate) fn add(&mut self, entries: &[(usize, usize, f64)], size: usize, block: impl Fn(usize, usize) -> f64) {
         let held = &self.held;
         let free = || entries.iter().filter(|e| !held[e.1]);
         match &mut self.kind {
@@ -222,7 +222,7 @@ impl Decomposed {
     }
 
     /// Whether no eigenvalue is below −`tolerance`.
-    pub fn no_saddle(&self, tolerance: f64) -> bool {
+    pub(crate) fn no_saddle(&self, tolerance: f64) -> bool {
         match self {
             Decomposed::Dense(eigen) => eigen.values[0] >= -tolerance,
             Decomposed::Sparse(hessian) => factored(hessian.exact.clone(), tolerance).is_some(),

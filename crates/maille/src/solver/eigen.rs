@@ -24,7 +24,7 @@ pub struct Eigen {
 }
 
 /// Decomposes the symmetric matrix `h` and checks max |H v − λ v| ≤ 1e-10 max |H| for every pair.
-pub fn symmetric_eigen(h: &Mat<f64>) -> Result<Eigen, EigenFailure> {
+pub(crate) fn symmetric_eigen(h: &Mat<f64>) -> Result<Eigen, EigenFailure> {
     if h.nrows() == 0 {
         // faer subtracts 1 from the size.
         return Ok(Eigen { values: Vec::new(), vectors: Mat::new() });
@@ -49,7 +49,7 @@ pub fn symmetric_eigen(h: &Mat<f64>) -> Result<Eigen, EigenFailure> {
 const LANCZOS_STEPS: usize = 16;
 
 /// About the least eigenvalue of the symmetric matrix `h`, from above: that of h on a Krylov space.
-pub fn least_eigenvalue(h: &Symmetric) -> f64 {
+pub(crate) fn least_eigenvalue(h: &Symmetric) -> f64 {
     let n = h.n();
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
     // A start that is orthogonal to no vector in particular.
@@ -92,7 +92,7 @@ pub fn least_eigenvalue(h: &Symmetric) -> f64 {
 
 impl Eigen {
     /// −Σ v_k (v_k·g) / max(|λ_k|, floor): Newton's step with every curvature made positive. Always descends.
-    pub fn descent_step(&self, gradient: &[f64], floor: f64) -> Vec<f64> {
+    pub(crate) fn descent_step(&self, gradient: &[f64], floor: f64) -> Vec<f64> {
         let n = gradient.len();
         let mut step = vec![0.0; n];
         for k in 0..n {
@@ -107,7 +107,7 @@ impl Eigen {
     }
 
     /// The eigenvector of the least eigenvalue.
-    pub fn lowest(&self) -> Vec<f64> {
+    pub(crate) fn lowest(&self) -> Vec<f64> {
         self.vectors.col(0).iter().copied().collect()
     }
 }

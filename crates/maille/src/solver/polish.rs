@@ -35,7 +35,10 @@ type Certified<X> = (X, Certificate);
 /// Newton on the rows of `end` that are loaded, by either measure of that; the better point with its certificate,
 /// whose curvature is measured if all else holds. Where it does not hold, also a point whose certificate holds at the cost of up to
 /// `LAST_LOSS`, if there is one: a last resort.
-pub fn polish<P: Program>(program: &P, end: &SqpEnd<P::Point>) -> (Certified<P::Point>, Option<Certified<P::Point>>) {
+pub(crate) fn polish<P: Program>(
+    program: &P,
+    end: &SqpEnd<P::Point>,
+) -> (Certified<P::Point>, Option<Certified<P::Point>>) {
     let mut last_resort = None;
     let most = end.multipliers.iter().map(|m| m.value).fold(0.0, f64::max);
     let mut best: Option<(P::Point, Certificate)> = None;

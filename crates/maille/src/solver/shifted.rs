@@ -15,7 +15,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What the printed algorithm leaves open or does wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reading {
+pub(crate) enum Reading {
     /// To the letter: trials add up, γ is kept.
     Printed,
     /// As it must be meant: trials start from the same point, γ begins anew in each iteration.
@@ -37,7 +37,7 @@ const ZERO: f64 = 1e-13;
 
 /// Minimises `objective` from `start`. Of the options the tolerances, the first shift (the floor of the curvature) and the
 /// iterations count; there are no kicks.
-pub fn shifted_newton<O: Objective>(
+pub(crate) fn shifted_newton<O: Objective>(
     objective: &O,
     start: O::Point,
     options: &NewtonOptions,

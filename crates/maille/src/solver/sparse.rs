@@ -19,13 +19,13 @@ use faer::{
 use std::sync::{Arc, OnceLock};
 
 /// Unknowns of a group: a rigid body's.
-pub const GROUP: usize = 6;
+pub(crate) const GROUP: usize = 6;
 /// A pattern is replaced once it has more blocks than this times those wanted.
 const STALE: f64 = 1.5;
 
 /// Where the lower triangle is not zero: each column's rows ascending, the diagonal first.
 #[derive(Debug)]
-pub struct Entries {
+pub(crate) struct Entries {
     /// First entry of each column, and the number of all.
     pub starts: Vec<usize>,
     /// Row of each entry.
@@ -45,7 +45,7 @@ impl Eq for Entries {}
 
 impl Entries {
     /// The diagonal, the entries of `first`, and what `cliques` of unknowns reach.
-    pub fn new<'c>(n: usize, first: Option<&Entries>, cliques: impl IntoIterator<Item = &'c [usize]>) -> Self {
+    pub(crate) fn new<'c>(n: usize, first: Option<&Entries>, cliques: impl IntoIterator<Item = &'c [usize]>) -> Self {
         let mut columns: Vec<Vec<usize>> = (0..n).map(|i| vec![i]).collect();
         if let Some(first) = first {
             (0..first.n()).for_each(|j| columns[j].extend_from_slice(first.column(j)));
@@ -69,7 +69,7 @@ impl Entries {
     }
 
     /// The whole triangle.
-    pub fn full(n: usize) -> Self {
+    pub(crate) fn full(n: usize) -> Self {
         Self::of_columns((0..n).map(|j| (j..n).collect()))
     }
 
@@ -104,7 +104,7 @@ impl Entries {
     ///
     /// # Panics
     /// Where there is none.
-    pub fn position(&self, i: usize, j: usize) -> usize {
+    pub(crate) fn position(&self, i: usize, j: usize) -> usize {
         let (row, column) = (i.max(j), i.min(j));
         let start = self.starts[column];
         let found = |rows: &[usize], row: usize| rows.binary_search(&row).expect("a clique reaches the entry");
@@ -164,7 +164,11 @@ pub struct Patterns {
 
 impl Patterns {
     /// A pattern of `n` unknowns with all blocks that these cliques of groups reach.
-    pub fn with<'c>(&mut self, n: usize, cliques: impl IntoIterator<Item = &'c [usize]> + Clone) -> Arc<Entries> {
+    pub(crate) fn with<'c>(
+        &mut self,
+        n: usize,
+        cliques: impl IntoIterator<Item = &'c [usize]> + Clone,
+    ) -> Arc<Entries> {
         let size = n.div_ceil(GROUP);
         let mut wanted = Entries::new(size, None, cliques.clone());
         let last = self.last.as_ref().filter(|last| last.n() == n);

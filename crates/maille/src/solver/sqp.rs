@@ -41,7 +41,7 @@ pub trait Program {
 
 /// Limits of the iteration.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SqpOptions {
+pub(crate) struct SqpOptions {
     /// First half width of the trust box.
     pub first_radius: f64,
     /// Largest half width.
@@ -74,7 +74,7 @@ impl Default for SqpOptions {
 
 /// Where the iteration ended.
 #[derive(Clone, Debug)]
-pub struct SqpEnd<P> {
+pub(crate) struct SqpEnd<P> {
     /// Last point.
     pub point: P,
     /// Multipliers of the last quadratic program.
@@ -185,7 +185,7 @@ fn adapted(radius: f64, ratio: f64, size: f64, most: f64) -> f64 {
 }
 
 /// Maximises `program` from `start`; `known` are multipliers of an earlier iteration, if there was one.
-pub fn maximize<P: Program>(
+pub(crate) fn maximize<P: Program>(
     program: &P,
     start: P::Point,
     known: Vec<Multiplier>,

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 /// From this size on zeros are left out. It lies between 133 unknowns, where a cell's matrices are nearly full, and 538,
 /// where dense factors took ten times as long.
-pub const SPARSE_FROM: usize = 200;
+pub(crate) const SPARSE_FROM: usize = 200;
 
 /// A symmetric matrix.
 #[derive(Clone, Debug)]
@@ -24,7 +24,7 @@ impl Symmetric {
     }
 
     /// `first` in the corner of a matrix of `n` rows, with room for `cliques`.
-    pub fn around<'c>(first: &Symmetric, n: usize, cliques: impl IntoIterator<Item = &'c [usize]>) -> Self {
+    pub(crate) fn around<'c>(first: &Symmetric, n: usize, cliques: impl IntoIterator<Item = &'c [usize]>) -> Self {
         let mut out = Self::with_room(n, Some(first), cliques);
         out.set(first);
         out
@@ -40,27 +40,27 @@ impl Symmetric {
     }
 
     /// Zero, with room for `entries`.
-    pub fn sparse(entries: Arc<Entries>) -> Self {
+    pub(crate) fn sparse(entries: Arc<Entries>) -> Self {
         Symmetric { n: entries.starts.len() - 1, values: vec![0.0; entries.rows.len()], at: Some(entries) }
     }
 
     /// Number of rows.
-    pub fn n(&self) -> usize {
+    pub(crate) fn n(&self) -> usize {
         self.n
     }
 
     /// Where a sparse matrix has entries; `None` of a dense one.
-    pub fn entries(&self) -> Option<&Entries> {
+    pub(crate) fn entries(&self) -> Option<&Entries> {
         self.at.as_deref()
     }
 
     /// The stored values; of a dense matrix column after column.
-    pub fn values(&self) -> &[f64] {
+    pub(crate) fn values(&self) -> &[f64] {
         &self.values
     }
 
     /// See [`Self::values`].
-    pub fn values_mut(&mut self) -> &mut [f64] {
+    pub(crate) fn values_mut(&mut self) -> &mut [f64] {
         &mut self.values
     }
 
@@ -78,13 +78,13 @@ impl Symmetric {
     }
 
     /// Adds to the entries (i, j) and (j, i) of a sparse matrix.
-    pub fn add_entry(&mut self, i: usize, j: usize, by: f64) {
+    pub(crate) fn add_entry(&mut self, i: usize, j: usize, by: f64) {
         let at = self.at.as_ref().expect("a sparse matrix").position(i, j);
         self.values[at] += by;
     }
 
     /// Sets the entries (i, j) and (j, i).
-    pub fn set_entry(&mut self, i: usize, j: usize, value: f64) {
+    pub(crate) fn set_entry(&mut self, i: usize, j: usize, value: f64) {
         match &self.at {
             None => (self.values[j * self.n + i], self.values[i * self.n + j]) = (value, value),
             Some(at) => self.values[at.position(i, j)] = value,
@@ -92,7 +92,7 @@ impl Symmetric {
     }
 
     /// Where [`Self::add_square`] will add for the unknowns `of`, which ascend; nothing of a dense matrix.
-    pub fn positions(&self, of: &[usize], out: &mut Vec<usize>) {
+    pub(crate) fn positions(&self, of: &[usize], out: &mut Vec<usize>) {
         let Some(at) = &self.at else { return };
         for (p, &j) in of.iter().enumerate() {
             let mut k = at.starts[j];
@@ -108,7 +108,13 @@ impl Symmetric {
 
     /// Adds weight · a aᵀ on the unknowns `of`, which ascend, to the lower triangle; of a sparse matrix at `positions`, of
     /// which those are given back that are left.
-    pub fn add_square<'p>(&mut self, of: &[usize], a: &[f64], weight: f64, positions: &'p [usize]) -> &'p [usize] {
+    pub(crate) fn add_square<'p>(
+        &mut self,
+        of: &[usize],
+        a: &[f64],
+        weight: f64,
+        positions: &'p [usize],
+    ) -> &'p [usize] {
         let mut at = positions;
         for (p, (&j, aj)) in of.iter().zip(a).enumerate() {
             let by = weight * aj;
@@ -129,18 +135,18 @@ impl Symmetric {
     }
 
     /// An entry of the diagonal.
-    pub fn diagonal(&self, i: usize) -> f64 {
+    pub(crate) fn diagonal(&self, i: usize) -> f64 {
         self.values[self.diagonal_at(i)]
     }
 
     /// Adds to an entry of the diagonal.
-    pub fn add_to_diagonal(&mut self, i: usize, by: f64) {
+    pub(crate) fn add_to_diagonal(&mut self, i: usize, by: f64) {
         let at = self.diagonal_at(i);
         self.values[at] += by;
     }
 
     /// Becomes `other`, a matrix of no more rows whose entries this one has room for, with zeros elsewhere.
-    pub fn set(&mut self, other: &Symmetric) {
+    pub(crate) fn set(&mut self, other: &Symmetric) {
         let (n, m) = (self.n, other.n);
         match (&self.at, &other.at) {
             (Some(at), Some(of)) if at == of => self.values.copy_from_slice(&other.values),
@@ -176,7 +182,7 @@ impl Symmetric {
     }
 
     /// out += A (factor · x).
-    pub fn add_times(&self, factor: f64, x: &[f64], out: &mut [f64]) {
+    pub(crate) fn add_times(&self, factor: f64, x: &[f64], out: &mut [f64]) {
         match &self.at {
             None => {
                 for (column, x) in self.values.chunks_exact(self.n.max(1)).zip(x) {
@@ -201,14 +207,14 @@ impl Symmetric {
     }
 
     /// xᵀ A x.
-    pub fn quadratic_form(&self, x: &[f64]) -> f64 {
+    pub(crate) fn quadratic_form(&self, x: &[f64]) -> f64 {
         let mut image = vec![0.0; self.n];
         self.add_times(1.0, x, &mut image);
         image.iter().zip(x).map(|(a, x)| a * x).sum()
     }
 
     /// Σ |A_ij| over j ≠ i, row by row.
-    pub fn off_diagonal_sums(&self) -> Vec<f64> {
+    pub(crate) fn off_diagonal_sums(&self) -> Vec<f64> {
         let mut sums = vec![0.0; self.n];
         for j in 0..self.n {
             self.each_below(j, |i, value| {
@@ -222,7 +228,7 @@ impl Symmetric {
     }
 
     /// Unknowns whose row is not zero.
-    pub fn met(&self) -> Vec<bool> {
+    pub(crate) fn met(&self) -> Vec<bool> {
         let mut met = vec![false; self.n];
         for j in 0..self.n {
             self.each_below(j, |i, value| {
@@ -235,7 +241,7 @@ impl Symmetric {
     }
 
     /// The dense rows and columns `of`.
-    pub fn block(&self, of: &[usize]) -> faer::Mat<f64> {
+    pub(crate) fn block(&self, of: &[usize]) -> faer::Mat<f64> {
         let mut at = vec![usize::MAX; self.n];
         of.iter().enumerate().for_each(|(k, &i)| at[i] = k);
         let mut out = faer::Mat::zeros(of.len(), of.len());

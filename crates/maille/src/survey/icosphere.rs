@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 /// Directions and triangles between them; new directions come last.
 #[derive(Clone, Debug)]
-pub struct Sphere {
+pub(crate) struct Sphere {
     /// Unit vectors.
     pub directions: Vec<Vec3>,
     /// The two directions that a direction lies between; itself where there are none.
@@ -19,7 +19,7 @@ const LEAST_ANGLE: f64 = 0.004;
 
 /// An edge whose middle is far from the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bent {
+pub(crate) struct Bent {
     /// Its corners.
     pub edge: [usize; 2],
     /// Expected distance of its middle from the surface.
@@ -30,7 +30,7 @@ pub struct Bent {
 
 impl Sphere {
     /// An icosahedron, each edge divided `times` times.
-    pub fn new(times: usize) -> Self {
+    pub(crate) fn new(times: usize) -> Self {
         let g = (1.0 + 5f64.sqrt()) / 2.0;
         let corners = [
             [-1.0, g, 0.0],
@@ -92,7 +92,7 @@ impl Sphere {
     }
 
     /// Divides edges; triangles with one, two or three of them fall into two, three or four.
-    pub fn divide(&mut self, marked: &[[usize; 2]]) {
+    pub(crate) fn divide(&mut self, marked: &[[usize; 2]]) {
         let mut middles = BTreeMap::new();
         for &[a, b] in marked {
             middles.insert([a, b], self.directions.len());
@@ -120,7 +120,7 @@ impl Sphere {
     /// Edges whose middle is expected further than `tolerance` from the surface through `points`, the worst first: an edge of
     /// length L between triangles that meet at the angle θ has an arch of about L θ/8. Of edges beside a direction without a
     /// point nothing is known.
-    pub fn bent(&self, points: &[Option<Vec3>], tolerance: f64) -> Vec<Bent> {
+    pub(crate) fn bent(&self, points: &[Option<Vec3>], tolerance: f64) -> Vec<Bent> {
         let mut out = Vec::new();
         for ([a, b], opposite) in self.edges() {
             let [c, d] = opposite[..] else { continue };

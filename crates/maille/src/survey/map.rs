@@ -26,6 +26,7 @@ use std::{
 /// direction that is solved, with the image of its state.
 ///
 /// The energy method repeats the thesis and checks the exact one, so it uses no symmetry: each direction is solved by itself.
+#[doc(hidden)]
 pub fn chains(model: &Model, question: &MapQuestion) -> Vec<Orbit> {
     symmetric_chains(model, &question.method, &question.directions_deg).1
 }

@@ -41,7 +41,7 @@ impl Method {
     }
 
     /// What is left to the sheet.
-    pub fn across(&self) -> Across {
+    pub(crate) fn across(&self) -> Across {
         match self {
             Method::Energy(_) => Across::HELD,
             Method::Exact(options) => options.across,
@@ -49,7 +49,7 @@ impl Method {
     }
 
     /// Whether l1 is made as small as can be.
-    pub fn compression(&self) -> bool {
+    pub(crate) fn compression(&self) -> bool {
         matches!(self, Method::Exact(ExactOptions { compression: true, .. }))
     }
 
@@ -96,6 +96,7 @@ const MOST_ELEMENTS: usize = 40;
 
 impl CellChoice {
     /// The cells to compile: for the energy method `auto` is the design's own.
+    #[doc(hidden)]
     pub fn cells(&self, method: &Method, elements: usize) -> Vec<Cell> {
         match (self, method) {
             (CellChoice::These(cells), _) => cells.clone(),
@@ -156,7 +157,7 @@ impl MapQuestion {
     /// # Errors
     /// Without directions or l2, for options of the energy method out of range, and where one of its limits is refused by
     /// [`Question::check`].
-    pub fn check(&self) -> Result<(), InvalidInput> {
+    pub(crate) fn check(&self) -> Result<(), InvalidInput> {
         for (field, list) in [("directions_deg", &self.directions_deg), ("l2", &self.l2)] {
             if list.is_empty() {
                 return Err(InvalidInput::new(field, "there is none", "give one or more"));
@@ -183,6 +184,7 @@ impl MapQuestion {
     }
 
     /// Its limits: every l2 with every direction, in the order of the table.
+    #[doc(hidden)]
     pub fn tasks(&self) -> Vec<Task> {
         tasks(&self.directions_deg, &self.l2)
     }

@@ -23,7 +23,7 @@ pub(super) struct Asked<'a> {
 
 impl Asked<'_> {
     /// The answer, a state of `model`, as a row and a state.
-    pub fn finished(&self, model: &Model, answer: &Answer, wall_s: f64) -> Finished {
+    pub(crate) fn finished(&self, model: &Model, answer: &Answer, wall_s: f64) -> Finished {
         Finished { row: self.row(model, answer, wall_s), state: self.state(model, answer) }
     }
 

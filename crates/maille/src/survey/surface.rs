@@ -67,6 +67,7 @@ pub struct BoundaryVertex {
 
 impl BoundaryVertex {
     /// (E_xx, E_yy, E_xy) at the distance `at`.
+    #[doc(hidden)]
     pub fn point(&self, at: f64) -> [f64; 3] {
         self.direction.map(|x| x * at)
     }
@@ -102,6 +103,7 @@ pub struct Boundary {
 const FIRST: usize = 2;
 
 /// A ray that is to be solved.
+#[doc(hidden)]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ray {
     /// Unit vector (E_xx, E_yy, E_xy).
@@ -111,9 +113,10 @@ pub struct Ray {
 }
 
 /// Solves rays of which none needs another: gets them, and whether they are new, and gives their ends in order, `None` after a stop.
-pub type SolveRays<'a> = &'a mut dyn FnMut(&[Ray], bool) -> Vec<Option<BoundaryVertex>>;
+pub(crate) type SolveRays<'a> = &'a mut dyn FnMut(&[Ray], bool) -> Vec<Option<BoundaryVertex>>;
 
 /// Solves rays, each for itself.
+#[doc(hidden)]
 pub struct RaySolver<'a>(StrainMethod<'a>);
 
 impl<'a> RaySolver<'a> {
@@ -176,6 +179,7 @@ pub fn boundary(
 
 /// The same with rays solved elsewhere: `solve` gets those of a pass; those that are not new are tried again from their neighbours'
 /// states.
+#[doc(hidden)]
 pub fn boundary_by(
     options: &BoundaryOptions,
     known: &[BoundaryVertex],

@@ -113,7 +113,7 @@ pub fn neighbours(model: &Model, element: usize) -> Vec<Neighbour> {
 }
 
 /// Elements that chains of links join, images included, with the lattice vectors by which such chains return to an element.
-pub struct LinkedPart {
+pub(crate) struct LinkedPart {
     /// Its elements, ascending.
     pub elements: Vec<usize>,
     /// Generators of the group of lattice vectors that chains of links join.
@@ -123,7 +123,7 @@ pub struct LinkedPart {
 /// The connected components of the periodic link graph (the elements are its nodes, the links its edges with shifts).
 ///
 /// Spanning trees give every element an offset; an edge that closes a loop gives the lattice vector by which it misses.
-pub fn linked_parts(model: &Model) -> Vec<LinkedPart> {
+pub(crate) fn linked_parts(model: &Model) -> Vec<LinkedPart> {
     let n = model.elements.len();
     let mut edges = vec![Vec::new(); n];
     for pair in model.links.iter().flat_map(|link| link.pair.both_ways()) {
@@ -169,7 +169,7 @@ pub fn binding_vectors(model: &Model) -> Vec<Shift> {
 }
 
 /// Whether a chain of links binds a pull along `direction` (a unit vector in the plane).
-pub fn binds(model: &Model, direction: [f64; 2]) -> bool {
+pub(crate) fn binds(model: &Model, direction: [f64; 2]) -> bool {
     binding_vectors(model).into_iter().any(|s| {
         let v = model.start.translation(s);
         (v.x * direction[0] + v.y * direction[1]).abs() > 1e-9 * v.norm()

@@ -6,7 +6,7 @@ use maille_geometry::{Circle, Minimum, circle_distance_lower_bound, circle_dista
 use std::cell::OnceCell;
 
 /// A pair of rings as it stands.
-pub struct NearPair {
+pub(crate) struct NearPair {
     /// Which rings.
     pub pair: RingPair,
     /// Core circle of the first.
@@ -22,23 +22,23 @@ pub struct NearPair {
 
 impl NearPair {
     /// All minima of the core distance, ascending. Complete; found at the first call.
-    pub fn minima(&self) -> &[Minimum] {
+    pub(crate) fn minima(&self) -> &[Minimum] {
         self.minima.get_or_init(|| circle_distance_minima(&self.a, &self.b).as_slice().into())
     }
 
     /// Least core distance.
-    pub fn distance(&self) -> f64 {
+    pub(crate) fn distance(&self) -> f64 {
         self.minima()[0].distance
     }
 
     /// Whether the gap is at most `band`; the minima are looked for only where the floor does not tell.
-    pub fn within(&self, band: f64) -> bool {
+    pub(crate) fn within(&self, band: f64) -> bool {
         self.floor - self.touching <= band && self.distance() - self.touching <= band
     }
 }
 
 /// All pairs whose tori may be within `margin` of each other, in the order of [`close_pairs`].
-pub fn near_pairs(model: &Model, state: &State, margin: f64) -> Vec<NearPair> {
+pub(crate) fn near_pairs(model: &Model, state: &State, margin: f64) -> Vec<NearPair> {
     let circles: Vec<Circle> = (0..model.rings.len()).map(|ring| state.circle(model, ring, [0, 0])).collect();
     let of = |pair: &RingPair| {
         let (a, b) = (circles[pair.ring_a], circles[pair.ring_b]);

@@ -15,7 +15,7 @@ use crate::{
 /// D·t = 0, or sign(D·t) (D·o) > ϱ, or |o − (D·o) D| > ϱ.
 ///
 /// Sufficient, not necessary: a body is taken for its ball. What touches in `state` itself is not looked at.
-pub fn comes_apart(model: &Model, state: &State, direction: Direction) -> bool {
+pub(crate) fn comes_apart(model: &Model, state: &State, direction: Direction) -> bool {
     let (along, across) = (direction.along(), direction.across());
     let thickest = model.rings.iter().map(|r| r.minor_radius).fold(0.0, f64::max);
     let f = state.deformation_gradient(model);

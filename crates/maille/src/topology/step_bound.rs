@@ -14,7 +14,7 @@ use maille_geometry::Vec3;
 use std::rc::Rc;
 
 /// A step: translation and rotation vector of every element, and the change of the lattice vectors.
-pub struct Motion {
+pub(crate) struct Motion {
     /// (translation, rotation vector) of each element.
     pub elements: Vec<(Vec3, Vec3)>,
     /// Change of a1 and a2.
@@ -25,7 +25,7 @@ pub struct Motion {
 
 impl Motion {
     /// Where the lattice carries element `e` to.
-    pub fn carries(&self, model: &Model, e: usize) -> Vec3 {
+    pub(crate) fn carries(&self, model: &Model, e: usize) -> Vec3 {
         let [u, v] = if self.carried { model.elements[e].anchor } else { [0.0; 2] };
         self.lattice[0] * u + self.lattice[1] * v
     }
@@ -43,18 +43,18 @@ pub struct StepBound {
 }
 
 /// Pairs up to this many largest radii apart bound a step one by one.
-pub const MARGIN: f64 = 1.5;
+pub(crate) const MARGIN: f64 = 1.5;
 /// Largest fraction of a pair's core distance that a step may use.
 const SAFETY: f64 = 0.9;
 
 impl StepBound {
     /// At `state`.
-    pub fn new(model: &Model, state: &State) -> Self {
+    pub(crate) fn new(model: &Model, state: &State) -> Self {
         Self::of(model, state, near_pairs(model, state, MARGIN * model.largest_radius).into())
     }
 
     /// At `state`, whose near pairs up to [`MARGIN`] largest radii or more are `pairs`.
-    pub fn of(model: &Model, state: &State, pairs: Rc<[NearPair]>) -> Self {
+    pub(crate) fn of(model: &Model, state: &State, pairs: Rc<[NearPair]>) -> Self {
         let origin = state.poses[0].position;
         let spread = 2.0 * state.poses.iter().map(|p| (p.position - origin).norm()).fold(0.0, f64::max);
         let beside = |(pose, element): (&Pose, &Element)| {
@@ -66,7 +66,7 @@ impl StepBound {
     }
 
     /// Largest fraction of `motion`, at most 1, in which no circles can meet and no element moves more than `cap`.
-    pub fn largest_fraction(&self, model: &Model, motion: &Motion, cap: f64) -> f64 {
+    pub(crate) fn largest_fraction(&self, model: &Model, motion: &Motion, cap: f64) -> f64 {
         let [da1, da2] = motion.lattice;
         let swing = |e: usize| model.elements[e].reach * motion.elements[e].1.norm();
         // What is carried along moves little where a large cell grows by much.

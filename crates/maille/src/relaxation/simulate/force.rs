@@ -71,6 +71,7 @@ pub fn force_row(model: &Model, setup: &Setup, grips: &[Grip], share: f64, energ
 /// With X_e and x_e the positions in the plane of the reference points at the start and now, both from their means,
 /// F = (Σ x_e X_eᵀ)(Σ X_e X_eᵀ)⁻¹ minimises Σ |x_e − F X_e|². It is exact where the sheet is deformed affinely. Nothing where
 /// the elements start on one line.
+#[doc(hidden)]
 pub fn deformation_gradient(model: &Model, state: &State) -> Option<Matrix2<f64>> {
     let count = model.elements.len() as f64;
     let mean = |s: &State| s.poses.iter().map(|pose| pose.position).sum::<Vec3>() / count;

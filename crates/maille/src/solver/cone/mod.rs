@@ -27,7 +27,7 @@ pub enum Cone {
 
 impl Cone {
     /// Rows of G that the cone takes.
-    pub fn rows(self) -> usize {
+    pub(crate) fn rows(self) -> usize {
         match self {
             Cone::Norm => 4,
             Cone::Positive => 10,
