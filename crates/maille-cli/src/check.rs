@@ -3,7 +3,7 @@
 use crate::{
     exit,
     input::{Input, problems},
-    output,
+    output, remedy,
     watch::watch,
 };
 use maille::{lattice::Cell, topology};
@@ -57,7 +57,7 @@ fn once(args: &Args) -> Result<ExitCode> {
                 files.push(found);
             }
             Err(report) => {
-                worst = worst.max(exit::code(&report));
+                worst = worst.max(remedy::code(&report));
                 if !args.json {
                     eprintln!("{report:?}");
                 }

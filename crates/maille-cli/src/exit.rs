@@ -1,8 +1,6 @@
 //! Exit codes by cause, for scripts.
 
-use crate::remedy::remedy;
 use maille::{error::InvalidInput, record::Status};
-use maille_io::{DesignError, study::StudyError};
 use miette::{Diagnostic, Report};
 use std::{fmt, process::ExitCode};
 
@@ -23,8 +21,9 @@ pub const INTERRUPTED: u8 = 130;
 
 /// Something wrong that is no error of a library, with what to do next.
 #[derive(Debug)]
-struct Wrong {
-    code: u8,
+pub struct Wrong {
+    /// The exit code.
+    pub code: u8,
     problem: String,
     help: String,
 }
@@ -76,12 +75,4 @@ pub fn of_answer(status: Status) -> ExitCode {
         Status::Interrupted => INTERRUPTED,
         _ => INCOMPLETE,
     })
-}
-
-/// The exit code of what went wrong.
-pub fn code(report: &Report) -> u8 {
-    let of_design = report.downcast_ref::<DesignError>().map(|_| DESIGN);
-    let of_study = report.downcast_ref::<StudyError>().map(|_| USAGE);
-    let own = report.downcast_ref::<Wrong>().map(|wrong| wrong.code);
-    own.or(of_design).or(of_study).or(remedy(report).map(|(code, _)| code)).unwrap_or(FAILED)
 }

@@ -134,7 +134,7 @@ fn main() -> ExitCode {
         Command::View(args) => done(view::run(&args)),
     };
     ended.unwrap_or_else(|report| {
-        let code = exit::code(&report);
+        let code = remedy::code(&report);
         eprintln!("{:?}", remedy::added(report));
         ExitCode::from(code)
     })

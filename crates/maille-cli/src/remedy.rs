@@ -1,7 +1,7 @@
-//! What to do about errors of the library, in the words of the command line.
+//! How errors end the program, and what to do about those of the library, in the words of the command line.
 
-use crate::exit::{FAILED, RECORD, USAGE};
-use maille_io::{mesh::MeshError, record::RecordError, render::RenderError};
+use crate::exit::{DESIGN, FAILED, RECORD, USAGE, Wrong};
+use maille_io::{DesignError, mesh::MeshError, record::RecordError, render::RenderError, study::StudyError};
 use miette::{Diagnostic, Report};
 use std::{error::Error, fmt};
 
@@ -16,8 +16,16 @@ pub fn added(report: Report) -> Report {
     }
 }
 
+/// The exit code of what went wrong.
+pub fn code(report: &Report) -> u8 {
+    let of_design = report.downcast_ref::<DesignError>().map(|_| DESIGN);
+    let of_study = report.downcast_ref::<StudyError>().map(|_| USAGE);
+    let own = report.downcast_ref::<Wrong>().map(|wrong| wrong.code);
+    own.or(of_design).or(of_study).or(remedy(report).map(|(code, _)| code)).unwrap_or(FAILED)
+}
+
 /// The exit code of an error of the library, and what to do next.
-pub fn remedy(report: &Report) -> Option<(u8, Option<&'static str>)> {
+fn remedy(report: &Report) -> Option<(u8, Option<&'static str>)> {
     let record = report.downcast_ref().map(of_record);
     record.or_else(|| report.downcast_ref().map(of_mesh)).or_else(|| report.downcast_ref().map(of_picture))
 }

@@ -5,7 +5,7 @@ use crate::{
     input::{Input, file_name},
     map::{self, RunArgs, Solved, Tally},
     output::{self, say},
-    records,
+    records, remedy,
 };
 use maille_io::{
     builtin,
@@ -100,7 +100,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     for planned in &plan {
         match map::open(&planned.map, &planned.input) {
             Ok(map) => open.push((&planned.name, map)),
-            Err(report) if exit::code(&report) == exit::DESIGN => unused.push((&planned.name, report)),
+            Err(report) if remedy::code(&report) == exit::DESIGN => unused.push((&planned.name, report)),
             Err(report) => return Err(report),
         }
     }
