@@ -11,6 +11,6 @@ mod report;
 mod statements;
 
 pub use map::{MINIMA, Map, SCALED, STEPS};
-pub use plan::{Chosen, DESIGNS, Planned, plan};
+pub use plan::{Chosen, DESIGNS, MINIMA_DEG, NOTCHED, Planned, plan};
 pub use report::{Report, ReportError, report};
-pub use statements::{Finding, MINIMA_DEG, NOTCHED, Part, Verdict, statements};
+pub use statements::{Finding, Part, Verdict, statements};

@@ -240,3 +240,30 @@ pub(crate) fn step(turn: &[(f64, f64)]) -> f64 {
 pub(crate) fn answered(row: &LimitRow) -> bool {
     row.l1.is_some() || matches!(row.status, Status::L2Unreachable | Status::Unbounded)
 }
+
+/// `0°, 5°`; many directions are counted.
+pub(crate) fn degrees(list: &[f64]) -> String {
+    match list.len() {
+        n if n > 6 => format!("{n} directions"),
+        _ => list.iter().map(|d| format!("{d}°")).collect::<Vec<_>>().join(", "),
+    }
+}
+
+/// `1.1, r = R/10, exact, l₂ = −0.25`.
+pub(crate) fn at(map: &Map, l2: f64) -> String {
+    format!("{}, l₂ = {}", map.label(), signed(l2))
+}
+
+/// Maps of two radii of the same sheet and method, the thicker first.
+pub(crate) fn by_radius(maps: &[Map]) -> Vec<(&Map, &Map)> {
+    let mut pairs = Vec::new();
+    for thick in maps {
+        let same = |thin: &&Map| {
+            (&thin.design, &thin.method, thin.corners, thin.rearranged, thin.minima)
+                == (&thick.design, &thick.method, thick.corners, thick.rearranged, thick.minima)
+                && thin.ratio < thick.ratio
+        };
+        pairs.extend(maps.iter().filter(same).map(|thin| (thick, thin)));
+    }
+    pairs
+}

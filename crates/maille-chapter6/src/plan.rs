@@ -1,9 +1,6 @@
 //! Which maps chapter 6 needs.
 
-use crate::{
-    map::{MINIMA, SCALED, STEPS},
-    statements::{MINIMA_DEG, NOTCHED},
-};
+use crate::map::{MINIMA, SCALED, STEPS};
 use maille::{
     design::{Design, Source},
     error::InvalidInput,
@@ -38,6 +35,11 @@ const COST_L2: [f64; 3] = [-0.25, 0.0, 0.25];
 pub(crate) const COSTS: [&str; 4] = ["1.1", "3.1", "2", "5.2"];
 const STEPPED_DEG: f64 = 30.0;
 const STEPPED_L2: [f64; 2] = [-0.25, 0.25];
+
+/// Designs whose minima statement 8 speaks of.
+pub const NOTCHED: [&str; 2] = ["1.2", "4.3"];
+/// Those directions: the minima, and this far beside them.
+pub const MINIMA_DEG: [f64; 6] = [0.0, 0.5, 89.5, 90.0, 90.5, 179.5];
 
 /// A design of the chapter.
 pub struct Chosen {

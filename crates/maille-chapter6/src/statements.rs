@@ -14,9 +14,8 @@ mod radii;
 pub(crate) use cases::RULE;
 pub use cases::{Finding, Part, Verdict};
 pub(crate) use radii::MAJOR;
-pub use radii::{MINIMA_DEG, NOTCHED};
 
-use crate::map::{Map, signed};
+use crate::map::Map;
 use directions::{arrangement, compression_raises, least_along_interlocking};
 use effort::{shown, steps};
 use radii::{major_radius, scale, sharpness, thinner_goes_further};
@@ -34,32 +33,6 @@ pub fn statements(maps: &[Map]) -> Vec<Finding> {
         sharpness(maps),
         shown(maps),
     ]
-}
-
-/// `0°, 5°`; many directions are counted.
-fn degrees(list: &[f64]) -> String {
-    match list.len() {
-        n if n > 6 => format!("{n} directions"),
-        _ => list.iter().map(|d| format!("{d}°")).collect::<Vec<_>>().join(", "),
-    }
-}
-
-fn at(map: &Map, l2: f64) -> String {
-    format!("{}, l₂ = {}", map.label(), signed(l2))
-}
-
-/// Maps of two radii of the same sheet and method, the thicker first.
-fn by_radius(maps: &[Map]) -> Vec<(&Map, &Map)> {
-    let mut pairs = Vec::new();
-    for thick in maps {
-        let same = |thin: &&Map| {
-            (&thin.design, &thin.method, thin.corners, thin.rearranged, thin.minima)
-                == (&thick.design, &thick.method, thick.corners, thick.rearranged, thick.minima)
-                && thin.ratio < thick.ratio
-        };
-        pairs.extend(maps.iter().filter(same).map(|thin| (thick, thin)));
-    }
-    pairs
 }
 
 #[cfg(test)]

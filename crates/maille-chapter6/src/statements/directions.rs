@@ -1,12 +1,10 @@
 //! In which directions the limit is least and largest, and what compression and the cell do to that.
 
 use super::{
-    at,
     cases::{Cases, Finding, Verdict, finding},
     cause::cause,
-    degrees,
 };
-use crate::map::{Map, apart, extreme, midway, signed, step};
+use crate::map::{Map, apart, at, degrees, extreme, midway, signed, step};
 
 /// Statement 1.
 pub(super) fn least_along_interlocking(maps: &[Map]) -> Finding {

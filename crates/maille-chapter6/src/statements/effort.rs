@@ -1,11 +1,8 @@
 //! What limits cost, and which were found.
 
-use super::{
-    at,
-    cases::{Cases, Finding, finding},
-};
+use super::cases::{Cases, Finding, finding};
 use crate::{
-    map::{Map, answered},
+    map::{Map, answered, at},
     plan::shown_l2,
 };
 

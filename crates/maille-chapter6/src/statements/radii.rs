@@ -1,12 +1,13 @@
 //! What the radii of the rings and the size of the sheet do to limits.
 
 use super::{
-    at, by_radius,
     cases::{Cases, Finding, finding},
     cause::cause,
-    degrees,
 };
-use crate::map::{EXACT_TIE, Map, SCALED, extreme, range, ratio_label, signed};
+use crate::{
+    map::{EXACT_TIE, Map, SCALED, at, by_radius, degrees, extreme, range, ratio_label, signed},
+    plan::MINIMA_DEG,
+};
 
 /// Statement 2.
 pub(super) fn thinner_goes_further(maps: &[Map]) -> Finding {
@@ -148,11 +149,6 @@ pub(super) fn scale(maps: &[Map]) -> Finding {
     let evidence = vec![format!("{} agree to 1e-9; largest difference of l₁ {most:.1e}.", cases.score())];
     finding(5, "Scaling every length by one factor leaves the limits unchanged.", evidence, vec![cases])
 }
-
-/// Designs whose minima statement 8 speaks of.
-pub const NOTCHED: [&str; 2] = ["1.2", "4.3"];
-/// Those directions: the minima, and this far beside them.
-pub const MINIMA_DEG: [f64; 6] = [0.0, 0.5, 89.5, 90.0, 90.5, 179.5];
 
 /// Statement 8.
 pub(super) fn sharpness(maps: &[Map]) -> Finding {

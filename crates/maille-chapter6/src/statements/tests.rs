@@ -1,6 +1,7 @@
 //! Cases in which each statement fails.
 
 use super::*;
+use crate::plan::MINIMA_DEG;
 use maille::record::{LimitRow, Status};
 
 /// A made-up sheet with chains along 0° and 90°, directions each 15°.
