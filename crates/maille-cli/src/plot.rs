@@ -32,7 +32,7 @@ Examples:
   maille plot r-0.05 r-0.1 r-0.2 --kind difference --quantity l1 -o spread.svg -o spread.png
   maille plot 1.1-free --kind poisson                  of `maille characterize 1.1 --lateral free --out maille-out/1.1-free`
   maille plot maille-out/1.1 --kind times --where 'direction<=90'
-  maille plot 1.1 3.1 --reference widest --where l2=0  each from its widest cell: comparable, whatever their files start from
+  maille plot 1.1 3.1 --reference largest-cell --where l2=0    each from its largest cell: comparable, whatever their files start from
   maille plot 1.1-simulate --kind force                of `maille simulate 1.1 --fix left --pull right=8,0,0 --steps 40`
 
 Kinds: polar shows limits against the direction of the pull, 0\u{b0} right, counter-clockwise; difference the largest \
@@ -113,17 +113,19 @@ enum Cell {
     /// That of the design file
     Start,
     /// Of greatest area
-    Widest,
+    #[value(alias = "widest")]
+    LargestCell,
     /// Of least area
-    Tightest,
+    #[value(alias = "tightest")]
+    SmallestCell,
 }
 
 impl From<Cell> for Reference {
     fn from(cell: Cell) -> Self {
         match cell {
             Cell::Start => Reference::Start,
-            Cell::Widest => Reference::Widest,
-            Cell::Tightest => Reference::Tightest,
+            Cell::LargestCell => Reference::LargestCell,
+            Cell::SmallestCell => Reference::SmallestCell,
         }
     }
 }
@@ -273,7 +275,7 @@ fn reference_cells(from: Cell, records: &[NamedRecord]) -> Result<Vec<ReferenceC
     };
     match from {
         Cell::Start => Ok(Vec::new()),
-        Cell::Widest | Cell::Tightest => records.iter().map(cell).collect(),
+        Cell::LargestCell | Cell::SmallestCell => records.iter().map(cell).collect(),
     }
 }
 

@@ -46,7 +46,7 @@ fn every_kind_is_drawn_from_records() {
     assert!(wrong(&["plot", "a", "--kind", "steps", "--quantity", "l1"]).contains("have a --quantity"));
 }
 
-/// Stretches from the widest cell: a record that knows the wide limits of 1.1 measures from one of them, another from its start.
+/// Stretches from the largest cell: a record that knows the wide limits of 1.1 measures from one of them, another from its start.
 #[test]
 fn a_reference_cell_is_drawn() {
     let folder = tempfile::tempdir().unwrap();
@@ -55,7 +55,9 @@ fn a_reference_cell_is_drawn() {
         done(folder, &["characterize", "1.1", "--directions", "0,45,90", l2, "--quiet", "--out", out]);
     }
     let text = |file: &str| std::fs::read_to_string(folder.join(file)).unwrap();
-    for (reference, word) in [("widest", "Widest cell"), ("tightest", "Tightest cell")] {
+    for (reference, word) in
+        [("largest-cell", "Largest cell"), ("smallest-cell", "Smallest cell"), ("tightest", "Smallest cell")]
+    {
         done(folder, &["plot", "a", "--reference", reference, "--where", "l2=0", "-o", "r.svg", "-o", "r.png"]);
         assert!(text("r.svg").contains(word) && text("r.svg").contains('λ'), "{reference}");
         assert!(std::fs::read(folder.join("r.png")).unwrap().starts_with(b"\x89PNG"));
@@ -64,9 +66,11 @@ fn a_reference_cell_is_drawn() {
         done(folder, &["plot", record, "--reference", reference, "--where", "l2=0", "-o", "c.svg"]);
         text("c.svg")
     };
-    assert!(curve("a", "widest") != curve("b", "widest") && curve("a", "start") != curve("a", "widest"));
-    done(folder, &["plot", "a", "b", "--reference", "widest", "--where", "l2=0", "-o", "both.svg"]);
-    assert_eq!(text("both.svg").matches("Widest cell").count(), 2);
+    assert!(
+        curve("a", "largest-cell") != curve("b", "largest-cell") && curve("a", "start") != curve("a", "largest-cell")
+    );
+    done(folder, &["plot", "a", "b", "--reference", "largest-cell", "--where", "l2=0", "-o", "both.svg"]);
+    assert_eq!(text("both.svg").matches("Largest cell").count(), 2);
 }
 
 /// Largest and least stretch of a sheet in one figure: the range.

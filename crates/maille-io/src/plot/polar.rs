@@ -186,7 +186,7 @@ impl PolarPlot {
     pub fn measured_from(mut self, reference: Reference, cells: &[ReferenceCell]) -> Self {
         self.reference = reference;
         let labels = &self.records.1;
-        let extreme = if reference == Reference::Tightest { "tight" } else { "wide" };
+        let extreme = if reference == Reference::SmallestCell { "small" } else { "large" };
         let caption = |(i, cell): (usize, &ReferenceCell)| {
             let whose = labels.get(i).map(|label| format!("{label}:  ")).unwrap_or_default();
             let place = match cell.limit {
@@ -209,8 +209,8 @@ impl PolarPlot {
     fn cell_word(&self) -> &'static str {
         match self.reference {
             Reference::Start => "Starting",
-            Reference::Widest => "Widest",
-            Reference::Tightest => "Tightest",
+            Reference::LargestCell => "Largest",
+            Reference::SmallestCell => "Smallest",
         }
     }
 
@@ -218,8 +218,8 @@ impl PolarPlot {
         let area = match self.reference {
             Reference::Start if self.quantity == Quantity::Lambda1 => return self.quantity.subtitle().to_owned(),
             Reference::Start => return format!("{} {}", self.ends, self.quantity.subtitle()),
-            Reference::Widest => "greatest",
-            Reference::Tightest => "least",
+            Reference::LargestCell => "greatest",
+            Reference::SmallestCell => "least",
         };
         let quantity = if self.quantity == Quantity::Stretch { "stretch λ" } else { "elongation λ − 1" };
         format!("{} {quantity} along each direction of pull, from the cell of {area} area", self.ends)

@@ -1,7 +1,7 @@
 //! The reference cell of a record: the state of the lattice that stretches are measured from.
 //!
-//! The record gives lattices A = (a1 a2), columns in units of R, one a limit, and the design file the start A₀. The widest
-//! cell is the one of greatest |det A| among them, the tightest that of least. A line of rings that lies along the unit
+//! The record gives lattices A = (a1 a2), columns in units of R, one a limit, and the design file the start A₀. The largest
+//! cell is the one of greatest |det A| among them, the smallest that of least. A line of rings that lies along the unit
 //! vector D at a limit lay along A_ref A⁻¹ D in the reference cell, so it is stretched by
 //!
 //! λ(D) = 1 / |A_ref A⁻¹ D|.
@@ -22,9 +22,9 @@ pub enum Reference {
     #[default]
     Start,
     /// That of greatest area.
-    Widest,
+    LargestCell,
     /// That of least area.
-    Tightest,
+    SmallestCell,
 }
 
 /// Areas that differ by less than this share are one area: the first in order of direction and l2 is taken.
@@ -67,7 +67,7 @@ impl Record {
             }
         }
         let area = |cell: &Matrix2<f64>| cell.determinant().abs();
-        let sign = if reference == Reference::Tightest { -1.0 } else { 1.0 };
+        let sign = if reference == Reference::SmallestCell { -1.0 } else { 1.0 };
         let best = cells.iter().map(|(_, cell)| sign * area(cell)).fold(f64::NEG_INFINITY, f64::max);
         let mut same = cells.into_iter().filter(|(_, cell)| sign * area(cell) >= best - SAME_AREA * best.abs());
         let (limit, lattice) = same.next()?;
@@ -154,19 +154,19 @@ mod tests {
     #[test]
     fn cells_are_those_of_greatest_and_least_area() {
         let all = record(limits(), 1.0);
-        let widest = all.reference(Reference::Widest).unwrap();
-        assert_eq!((widest.limit, widest.ties), (Some((45.0, 0.0)), 0));
+        let largest = all.reference(Reference::LargestCell).unwrap();
+        assert_eq!((largest.limit, largest.ties), (Some((45.0, 0.0)), 0));
         // Of three elements.
-        assert!((widest.area - 1.774 * 6.25 / 3.0).abs() < 1e-12);
-        let tightest = all.reference(Reference::Tightest).unwrap();
-        assert_eq!((tightest.limit, tightest.ties), (Some((0.0, -0.5)), 0));
+        assert!((largest.area - 1.774 * 6.25 / 3.0).abs() < 1e-12);
+        let smallest = all.reference(Reference::SmallestCell).unwrap();
+        assert_eq!((smallest.limit, smallest.ties), (Some((0.0, -0.5)), 0));
         let start = all.reference(Reference::Start).unwrap();
         assert_eq!((start.limit, start.lattice), (None, Matrix2::new(2.5, 0.0, 0.0, 2.5)));
         // Without the trellis two limits are as wide; the first direction is taken, and nothing is tighter than the start.
         let held = record(limits()[..2].to_vec(), 1.0);
-        let widest = held.reference(Reference::Widest).unwrap();
-        assert_eq!((widest.limit, widest.ties), (Some((0.0, 0.0)), 1));
-        assert_eq!(held.reference(Reference::Tightest).unwrap().limit, None);
+        let largest = held.reference(Reference::LargestCell).unwrap();
+        assert_eq!((largest.limit, largest.ties), (Some((0.0, 0.0)), 1));
+        assert_eq!(held.reference(Reference::SmallestCell).unwrap().limit, None);
     }
 
     /// 1 / |A_ref A⁻¹ D|, from the recorded lattices alone.
@@ -178,7 +178,7 @@ mod tests {
     #[test]
     fn stretches_are_measured_from_the_cell() {
         let all = record(limits(), 1.0);
-        for reference in [Reference::Start, Reference::Widest, Reference::Tightest] {
+        for reference in [Reference::Start, Reference::LargestCell, Reference::SmallestCell] {
             let cell = all.reference(reference).unwrap();
             for row in &all.rows {
                 let measured = cell.measured(row);
@@ -188,21 +188,21 @@ mod tests {
                 assert!((bound - (lambda - 1.0) - gap).abs() < 1e-12);
             }
         }
-        // Closed forms: the widest cell without the trellis is diag(1.44, 1).
-        let cell = record(limits()[..2].to_vec(), 1.0).reference(Reference::Widest).unwrap();
+        // Closed forms: the largest cell without the trellis is diag(1.44, 1).
+        let cell = record(limits()[..2].to_vec(), 1.0).reference(Reference::LargestCell).unwrap();
         let lambda = |row: &LimitRow| 1.0 + cell.measured(row).l1.unwrap();
         assert!((lambda(&all.rows[1]) - 1.0).abs() < 1e-12);
         assert!((lambda(&all.rows[0]) - 1.44).abs() < 1e-12);
         assert!((lambda(&all.rows[3]) - 1.774 / (1.44_f64.powi(2) / 2.0 + 0.5).sqrt()).abs() < 1e-12);
     }
 
-    /// A file that starts from another spacing has other l1 of the same limits, and the same stretch from the widest cell.
+    /// A file that starts from another spacing has other l1 of the same limits, and the same stretch from the largest cell.
     #[test]
     fn the_spacing_of_the_file_does_not_enter() {
         let spacing = 1.2;
         let respaced = |row: &LimitRow| LimitRow { l1: row.l1.map(|l1| (1.0 + l1) / spacing - 1.0), ..row.clone() };
         let (one, other) = (record(limits(), 1.0), record(limits().iter().map(respaced).collect(), spacing));
-        for reference in [Reference::Widest, Reference::Tightest] {
+        for reference in [Reference::LargestCell, Reference::SmallestCell] {
             let cells = [&one, &other].map(|record| record.reference(reference).unwrap());
             for (a, b) in one.rows.iter().zip(&other.rows) {
                 let [a, b] = [(a, &cells[0]), (b, &cells[1])].map(|(row, cell)| cell.measured(row).l1.unwrap());
@@ -216,10 +216,10 @@ mod tests {
         let mut rows = limits();
         rows[1].a1_x = None;
         let old = record(rows.clone(), 1.0);
-        assert_eq!(old.reference(Reference::Widest), None);
+        assert_eq!(old.reference(Reference::LargestCell), None);
         assert!(old.reference(Reference::Start).is_some());
         // A search without a limit has none, and needs none.
         rows[1].l1 = None;
-        assert!(record(rows, 1.0).reference(Reference::Widest).is_some());
+        assert!(record(rows, 1.0).reference(Reference::LargestCell).is_some());
     }
 }
