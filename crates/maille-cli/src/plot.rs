@@ -50,8 +50,8 @@ pub struct Args {
     quantity: Option<Shown>,
     /// The cell that stretches are measured from: of the design file, or of greatest or least area among the start and
     /// all limits of the record. A line of rings along D at a limit with lattice A is stretched by 1/|A_ref A^-1 D|
-    #[arg(long, value_enum, default_value_t = Cell::Start, value_name = "CELL")]
-    reference: Cell,
+    #[arg(long, value_enum, default_value_t = MeasuredFrom::Start, value_name = "CELL")]
+    reference: MeasuredFrom,
     /// Only rows that meet these conditions, as l2=0; may be given several times
     #[arg(long = "where", value_name = "CONDITIONS", value_parser = table::conditions, allow_hyphen_values = true)]
     conditions: Vec<table::Conditions>,
@@ -109,7 +109,7 @@ impl From<Shown> for Quantity {
 
 /// `--reference`.
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum Cell {
+enum MeasuredFrom {
     /// That of the design file
     Start,
     /// Of greatest area
@@ -120,12 +120,12 @@ enum Cell {
     SmallestCell,
 }
 
-impl From<Cell> for Reference {
-    fn from(cell: Cell) -> Self {
+impl From<MeasuredFrom> for Reference {
+    fn from(cell: MeasuredFrom) -> Self {
         match cell {
-            Cell::Start => Reference::Start,
-            Cell::LargestCell => Reference::LargestCell,
-            Cell::SmallestCell => Reference::SmallestCell,
+            MeasuredFrom::Start => Reference::Start,
+            MeasuredFrom::LargestCell => Reference::LargestCell,
+            MeasuredFrom::SmallestCell => Reference::SmallestCell,
         }
     }
 }
@@ -150,7 +150,7 @@ pub fn run(args: &Args) -> Result<()> {
     }
     let outputs: Vec<(&Path, Format)> =
         args.output.iter().map(|file| Ok((file.as_path(), format(file)?))).collect::<Result<_>>()?;
-    if args.reference != Cell::Start && (args.kind != Kind::Polar || matches!(args.quantity, Some(Shown::Lambda1))) {
+    if args.reference != MeasuredFrom::Start && (args.kind != Kind::Polar || matches!(args.quantity, Some(Shown::Lambda1))) {
         return Err(wrong(
             exit::USAGE,
             "--reference is for polar plots of the stretch along the pull",
@@ -274,8 +274,8 @@ fn reference_cells(from: Cell, records: &[NamedRecord]) -> Result<Vec<ReferenceC
         })
     };
     match from {
-        Cell::Start => Ok(Vec::new()),
-        Cell::LargestCell | Cell::SmallestCell => records.iter().map(cell).collect(),
+        MeasuredFrom::Start => Ok(Vec::new()),
+        MeasuredFrom::LargestCell | MeasuredFrom::SmallestCell => records.iter().map(cell).collect(),
     }
 }
 
