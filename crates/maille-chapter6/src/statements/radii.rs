@@ -212,7 +212,7 @@ pub(super) fn sharpness(maps: &[Map]) -> Finding {
 
 /// How much the polar curve ρ = λ1 − 1 is curved inwards at a direction: (ρ ρ″ − ρ² − 2 ρ′²)/(ρ² + ρ′²)^(3/2), the derivatives by
 /// central differences; below 0 it bulges, as a circle does.
-fn notch(map: &Map, l2: f64, direction_deg: f64) -> Option<f64> {
+pub(super) fn notch(map: &Map, l2: f64, direction_deg: f64) -> Option<f64> {
     let step_deg = MINIMA_DEG[1];
     let of = |d: f64| map.lambda1((direction_deg + d).rem_euclid(180.0), l2).filter(|rho| *rho > 0.0);
     let (before, here, after, step) = (of(-step_deg)?, of(0.0)?, of(step_deg)?, step_deg.to_radians());

@@ -1,7 +1,10 @@
 //! Cases in which each statement fails.
 
-use super::*;
-use crate::plan::MINIMA_DEG;
+use super::{radii::notch, *};
+use crate::{
+    map::apart,
+    plan::{MINIMA_DEG, shown_l2},
+};
 use maille::record::{LimitRow, Status};
 
 /// A made-up sheet with chains along 0° and 90°, directions each 15°.
@@ -244,7 +247,7 @@ fn ties_are_counted_apart() {
 #[test]
 fn every_l2_must_be_answered() {
     let all = |answered: bool| {
-        let mut map = map("1.1", 0.1, &SHOWN, |d, l2| grid(d, l2, 0.0));
+        let mut map = map("1.1", 0.1, shown_l2("1.1"), |d, l2| grid(d, l2, 0.0));
         for row in map.rows.iter_mut().filter(|row| row.l2 > 0.2) {
             row.l1 = None;
             row.status = if answered { Status::L2Unreachable } else { Status::L2NotReached };
