@@ -150,7 +150,9 @@ pub fn run(args: &Args) -> Result<()> {
     }
     let outputs: Vec<(&Path, Format)> =
         args.output.iter().map(|file| Ok((file.as_path(), format(file)?))).collect::<Result<_>>()?;
-    if args.reference != MeasuredFrom::Start && (args.kind != Kind::Polar || matches!(args.quantity, Some(Shown::Lambda1))) {
+    if args.reference != MeasuredFrom::Start
+        && (args.kind != Kind::Polar || matches!(args.quantity, Some(Shown::Lambda1)))
+    {
         return Err(wrong(
             exit::USAGE,
             "--reference is for polar plots of the stretch along the pull",
@@ -263,7 +265,7 @@ fn of_simulation(args: &Args, report: miette::Report) -> miette::Report {
 }
 
 /// The cell of each record that its stretches are measured from; none where that is the start.
-fn reference_cells(from: Cell, records: &[NamedRecord]) -> Result<Vec<ReferenceCell>> {
+fn reference_cells(from: MeasuredFrom, records: &[NamedRecord]) -> Result<Vec<ReferenceCell>> {
     let cell = |named: &NamedRecord| {
         named.record.reference(from.into()).ok_or_else(|| {
             wrong(
