@@ -90,6 +90,9 @@ impl Sense {
     }
 }
 
+/// Directions, in degrees, and l2 are at most this.
+const MOST: f64 = 1e6;
+
 fn usual_seed() -> u64 {
     1
 }
@@ -150,7 +153,7 @@ impl Question {
     /// Whether it can be asked.
     ///
     /// # Errors
-    /// Without starts; for a number that is not finite, an l2 of −1 or less, a strain that is named twice, strains that no
+    /// Without starts; for a number that is not finite, a direction or l2 beyond a million, an l2 of −1 or less, a strain that is named twice, strains that no
     /// lattice has, a ray whose direction is no unit vector, and for the least wire or clearance, which nothing bounds.
     pub fn check(&self) -> Result<(), InvalidInput> {
         if self.starts == Some(0) {
@@ -160,17 +163,25 @@ impl Question {
             true => Ok(()),
             false => Err(InvalidInput::new(field, format!("{x} is no number"), "give a finite number")),
         };
+        // Beyond, a float has too few digits left for a direction, or for a width to be held.
+        let within = |field: &str, x: f64| match x.abs() <= MOST {
+            _ if !x.is_finite() => finite(field, x),
+            true => Ok(()),
+            false => {
+                Err(InvalidInput::new(field, format!("{x} is out of range"), format!("give numbers up to {MOST}")))
+            }
+        };
         match &self.goal {
             Goal::Stretch { direction_deg, l2, .. } => {
-                finite("direction_deg", *direction_deg)?;
-                finite("l2", *l2)?;
+                within("direction_deg", *direction_deg)?;
+                within("l2", *l2)?;
                 if *l2 <= -1.0 {
                     let problem = format!("l2 = {l2} would press the sheet to nothing");
                     return Err(InvalidInput::new("l2", problem, "give values above -1 (0 holds the width)"));
                 }
             }
             Goal::Strain { direction_deg, fix, .. } => {
-                finite("direction_deg", *direction_deg)?;
+                within("direction_deg", *direction_deg)?;
                 fix.iter().try_for_each(|(_, value)| finite("fix", *value))?;
             }
             Goal::Ray { direction } => {

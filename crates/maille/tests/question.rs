@@ -26,6 +26,7 @@ fn what_cannot_be_asked_is_refused_with_its_field() {
     for (question, field) in [
         (Question { starts: Some(0), ..stretch.clone() }, "starts"),
         (Question::stretch_along(f64::NAN), "direction_deg"),
+        (Question::stretch_along(1e19), "direction_deg"),
         (stretch.clone().with_lateral(-1.0), "l2"),
         (stretch.clone().with_lateral(f64::INFINITY), "l2"),
         (strain(vec![(Strain::Exx, 0.1)], vec![]), "fix"),
@@ -61,6 +62,7 @@ fn what_a_map_cannot_ask_is_refused_with_its_field() {
         (map(&exact, &[], None), "directions_deg"),
         (map(&exact, &[0.0], Some(&[])), "l2"),
         (map(&exact, &[0.0, f64::NAN], None), "direction_deg"),
+        (map(&exact, &[0.0, -1e7], None), "direction_deg"),
         (map(&exact, &[0.0], Some(&[0.0, -1.0])), "l2"),
         (map(&width_free, &[0.0], Some(&[0.0])), "l2"),
         (map(&without_starts, &[0.0], None), "starts"),

@@ -9,18 +9,10 @@ use std::{
     path::Path,
 };
 
-/// Circles that are known, each with its crate and all files below `src`, or all folders, that reach each other,
-/// sorted. Take a circle out here when it is opened, and shorten it when it gets smaller; a new one is not to be added.
-/// Uses between the files of one are not counted: what they add is seen only when it draws another file in.
-const KNOWN: &[(&str, &[&str])] = &[];
-
 /// Crates whose folders below `src` stand in no circle either; a file there is a folder of one.
 const FOLDERS: &[&str] = &["maille-io"];
 
-/// This file.
-const HERE: &str = "crates/xtask/src/circles.rs";
-
-/// New circles, and known ones that are no more.
+/// The circles. Uses between the files of one are not counted apart: what they add is seen only when it draws another file in.
 pub fn check(root: &Path) -> Vec<Finding> {
     let folders = std::fs::read_dir(root.join("crates")).into_iter().flatten().flatten();
     let mut names: Vec<String> = folders.map(|f| f.file_name().to_string_lossy().into_owned()).collect();
@@ -36,8 +28,7 @@ fn check_crate(root: &Path, name: &str) -> Result<Vec<Finding>, Finding> {
     if FOLDERS.contains(&name) {
         graphs.push(between_folders(&uses));
     }
-    let known: Vec<&[&str]> = KNOWN.iter().filter(|(of, _)| *of == name).map(|(_, circle)| *circle).collect();
-    Ok(judge(&folder, &graphs, &known))
+    Ok(judge(&folder, &graphs))
 }
 
 /// A use of one file or folder by another, with the first line that makes it.
@@ -53,28 +44,14 @@ fn graph(uses: &[uses::Use]) -> Graph {
     out
 }
 
-/// Findings on the circles in `graphs`: those that are not `known`, and the known that are in none of them.
-fn judge(folder: &str, graphs: &[Graph], known: &[&[&str]]) -> Vec<Finding> {
-    let mut out = Vec::new();
-    let mut found = BTreeSet::new();
-    for graph in graphs {
-        for circle in circles(graph) {
-            if !known.contains(&circle.iter().map(String::as_str).collect::<Vec<_>>().as_slice()) {
-                let inside = graph.iter().filter(|((from, to), _)| circle.contains(from) && circle.contains(to));
-                let uses: String = inside.map(|((from, to), line)| format!("\n  {from}:{line} uses {to}")).collect();
-                out.push(Finding::new(folder, 0, format!("a circle of {}{uses}", circle.join(", "))));
-            }
-            found.insert(circle);
-        }
-    }
-    for circle in known {
-        if !found.contains(&circle.iter().map(|file| file.to_string()).collect::<Vec<_>>()) {
-            let circle = circle.join(", ");
-            let problem = format!("the known circle of {circle} in {folder} is opened or changed: correct the list");
-            out.push(Finding::new(HERE, 0, problem));
-        }
-    }
-    out
+/// A finding for each circle in `graphs`.
+fn judge(folder: &str, graphs: &[Graph]) -> Vec<Finding> {
+    let finding = |graph: &Graph, circle: Vec<String>| {
+        let inside = graph.iter().filter(|((from, to), _)| circle.contains(from) && circle.contains(to));
+        let uses: String = inside.map(|((from, to), line)| format!("\n  {from}:{line} uses {to}")).collect();
+        Finding::new(folder, 0, format!("a circle of {}{uses}", circle.join(", ")))
+    };
+    graphs.iter().flat_map(|graph| circles(graph).into_iter().map(move |circle| finding(graph, circle))).collect()
 }
 
 /// Uses between the folders and files at the top; those of the crate's root are left out.
@@ -162,13 +139,10 @@ mod tests {
     }
 
     #[test]
-    fn known_circles_pass_until_they_are_opened() {
+    fn a_finding_names_the_uses_of_its_circle() {
         let round = uses(&[("lib.rs", "mod a; mod b;"), ("a.rs", "use crate::b::B;"), ("b.rs", "use super::a::A;")]);
         let straight = uses(&[("lib.rs", "mod a; mod b;"), ("a.rs", "use crate::b::B;"), ("b.rs", "pub struct B;")]);
-        let known: &[&[&str]] = &[&["a.rs", "b.rs"]];
-        let round = [round];
-        assert_eq!(judge("src", &round, known), []);
-        assert!(judge("src", &round, &[])[0].problem.contains("b.rs:1 uses a.rs"));
-        assert_eq!(judge("src", &[straight], known)[0].file, HERE);
+        assert!(judge("src", &[round])[0].problem.contains("b.rs:1 uses a.rs"));
+        assert_eq!(judge("src", &[straight]), []);
     }
 }
