@@ -135,11 +135,9 @@ fn named(chosen: &[Pair<'_>]) -> Vec<NamedRecord> {
 /// Limits of one sheet in λ1 − 1, with its directions and, where there is one, the energy method's limits as markers.
 fn polar(number: &'static str, (named, map): Pair<'_>, pairs: &[Pair<'_>]) -> Figure {
     let mut plot = plot(named).without_bounds();
-    let alike = |other: &Map| (&other.design, other.rearranged, other.corners) == (&map.design, map.rearranged, false);
     // R/10 and R/20 on one scale.
-    plot.room_for = lambda1(pairs, |other| alike(other) && other.method == "exact");
-    let checks = |(_, other): &&Pair<'_>| alike(other) && other.ratio == map.ratio && other.method == "energy";
-    if let Some((check, _)) = pairs.iter().find(checks) {
+    plot.room_for = lambda1(pairs, |other| other.alike(map) && other.method == "exact");
+    if let Some((check, _)) = pairs.iter().find(|(_, other)| other.checks(map)) {
         plot = plot.checked_by(&check.record.rows, "energy method");
         let words = parameter_words(&check.record.run).join("  ·  ");
         plot.caption.push(format!("Lines: exact method. Markers: energy method, {words}."));

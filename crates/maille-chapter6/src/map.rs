@@ -53,6 +53,16 @@ impl Map {
         })
     }
 
+    /// Whether this is of the same design in the same cell, without the bias of the corners.
+    pub(crate) fn alike(&self, map: &Map) -> bool {
+        (&self.design, self.rearranged, self.corners) == (&map.design, map.rearranged, false)
+    }
+
+    /// Whether its limits are the markers on the curves of `map`: those of the energy method, but for pulls whose steps were kept.
+    pub(crate) fn checks(&self, map: &Map) -> bool {
+        self.alike(map) && self.ratio == map.ratio && self.method == "energy" && !self.steps
+    }
+
     /// A design of the thesis in its own cell, and no bias of the corners.
     pub(crate) fn is_plain(&self) -> bool {
         !self.rearranged && !self.corners && !self.minima && !self.steps && !self.design.ends_with(SCALED)

@@ -70,7 +70,7 @@ fn words(chosen: &[Chosen], quick: bool, maps: &[Map]) -> String {
     };
     format!(
         "Made by {command}, version {}, from {} records with {} limits of {} designs. Limits are those of each design's \
-         own cell, as in the thesis. {coordinates}",
+         own cell, as in the thesis, and of the rectangular cell for 3.x. {coordinates}",
         env!("CARGO_PKG_VERSION"),
         maps.len(),
         maps.iter().map(|map| map.rows.len()).sum::<usize>(),

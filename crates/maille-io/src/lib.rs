@@ -1,7 +1,7 @@
-//! Formats of maille: design files, studies, records, tables, plots, meshes, pictures.
+//! Formats of maille: design files, studies, records, tables, plots, meshes, pictures; and maps from a design to its record.
 //!
-//! Everything here works on text, bytes and readers; only doors open paths. The one exception is
-//! [`record::RecordFolder`], which owns a folder because its writes must be atomic.
+//! Nearly everything here works on text, bytes and readers: front ends open paths. The exceptions are the folders of records and
+//! of surfaces, whose writes must be atomic, and [`files`].
 
 pub mod answer;
 pub mod boundary;

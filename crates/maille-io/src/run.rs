@@ -1,4 +1,4 @@
-//! What is run for all doors: limits are asked for, records kept, plots drawn, rows of records solved again.
+//! What is run for all front ends: limits are asked for, records kept, plots drawn, rows of records solved again.
 
 mod map;
 mod replay;

@@ -1,4 +1,4 @@
-//! The native part of the Python package `maille`: a door like the program, with no mechanics of its own.
+//! The native part of the Python package `maille`: a front end like the program, with no mechanics of its own.
 //!
 //! What is here turns Python's arguments into those of the crates, lets other Python threads run meanwhile, listens for
 //! Ctrl-C, and turns errors into the classes of `maille.errors`. What needs no native code is Python, in `python/maille`.

@@ -1,4 +1,4 @@
-//! Cells of a plane lattice: supercells, and the images within reach.
+//! Cells of a plane lattice: supercells, the images within reach, directions, and what of a stretch is held or free.
 
 use crate::error::InvalidInput;
 use maille_geometry::Vec3;
@@ -156,7 +156,7 @@ impl FromStr for Cell {
     }
 }
 
-/// What of a pull is left to the sheet. With D at the left of D⊥,
+/// What of a pull is left to the sheet. With D⊥ to the left of D,
 ///
 /// F = (1 + l1) D Dᵀ + (1 + l2) D⊥ D⊥ᵀ + γ D D⊥ᵀ:
 ///

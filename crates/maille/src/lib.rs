@@ -30,9 +30,9 @@
 //! | [`design`], [`model`], [`state`], [`lattice`] | the file's content; compiled to indices and units of R; poses and lattice vectors; cells |
 //! | [`question`], [`sheet`], [`answer`] | what is asked, to whom, and what came of it |
 //! | [`search`] | the exact method: many starts, local maximisation, certificate, larger cells |
-//! | [`program`] | what is maximised: gaps between rings as inequalities, with their derivatives |
-//! | [`bound`] | proofs that no state lies beyond a value |
-//! | [`solver`] | solvers that know nothing of rings: sequential quadratic programming, Newton's method, certificates |
+//! | `program` | what is maximised: gaps between rings as inequalities, with their derivatives |
+//! | `bound` | proofs that no state lies beyond a value |
+//! | `solver` | solvers that know nothing of rings: sequential quadratic programming, Newton's method, certificates |
 //! | [`relaxation`] | the thesis's energy method, and finite sheets under weight and pulls |
 //! | [`survey`] | many questions: maps over directions and lateral strains, as rows of a [`record`], and the surface of all strains |
 //!
@@ -68,13 +68,16 @@ pub mod symmetry;
 pub mod topology;
 
 pub use answer::Answer;
+pub use bound::BoundKind;
 pub use design::Design;
 pub use error::InvalidInput;
 pub use lattice::{Across, Cell, Direction};
 pub use model::Model;
+pub use program::Contact;
 pub use question::{Goal, Question, Sense, Strain};
 pub use record::Status;
 pub use sheet::Sheet;
+pub use solver::certificate::Certificate;
 pub use state::State;
 pub use survey::{CellChoice, MapQuestion};
 

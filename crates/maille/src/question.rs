@@ -90,7 +90,7 @@ impl Sense {
     }
 }
 
-/// Directions, in degrees, and l2 are at most this.
+/// Directions, in degrees, and l2 are at most this in size.
 const MOST: f64 = 1e6;
 
 fn usual_seed() -> u64 {
@@ -164,24 +164,24 @@ impl Question {
             false => Err(InvalidInput::new(field, format!("{x} is no number"), "give a finite number")),
         };
         // Beyond, a float has too few digits left for a direction, or for a width to be held.
-        let within = |field: &str, x: f64| match x.abs() <= MOST {
+        let within = |field: &str, what: &str, x: f64| match x.abs() <= MOST {
             _ if !x.is_finite() => finite(field, x),
             true => Ok(()),
             false => {
-                Err(InvalidInput::new(field, format!("{x} is out of range"), format!("give numbers up to {MOST}")))
+                Err(InvalidInput::new(field, format!("{what} = {x} is out of range"), format!("give up to {MOST}")))
             }
         };
         match &self.goal {
             Goal::Stretch { direction_deg, l2, .. } => {
-                within("direction_deg", *direction_deg)?;
-                within("l2", *l2)?;
+                within("direction_deg", "direction", *direction_deg)?;
+                within("l2", "l2", *l2)?;
                 if *l2 <= -1.0 {
                     let problem = format!("l2 = {l2} would press the sheet to nothing");
                     return Err(InvalidInput::new("l2", problem, "give values above -1 (0 holds the width)"));
                 }
             }
             Goal::Strain { direction_deg, fix, .. } => {
-                within("direction_deg", *direction_deg)?;
+                within("direction_deg", "direction", *direction_deg)?;
                 fix.iter().try_for_each(|(_, value)| finite("fix", *value))?;
             }
             Goal::Ray { direction } => {
@@ -236,7 +236,10 @@ impl Question {
             return None;
         }
         let l2 = if across.lateral_free { 0.0 } else { (1.0 + 2.0 * held(side)).sqrt() - 1.0 };
-        let goal = Goal::Stretch { direction_deg: direction_deg + turn_deg, l2, across };
+        if l2 > MOST {
+            return None;
+        }
+        let goal = Goal::Stretch { direction_deg: (direction_deg + turn_deg).rem_euclid(360.0), l2, across };
         Some(Question { goal, ..self.clone() })
     }
 }

@@ -42,8 +42,9 @@ impl Sheet {
     /// The same with a choice of cells.
     ///
     /// # Errors
-    /// Everything that is wrong with the design.
+    /// Everything that is wrong with the design; a choice of no cell.
     pub fn in_cells(design: &Design, cells: CellChoice) -> Result<Self, Vec<InvalidInput>> {
+        cells.check().map_err(|problem| vec![problem])?;
         let cells = cells.exact_cells(design.elements.len());
         let models = cells.into_iter().map(|cell| Model::compile(design, cell)).collect::<Result<_, _>>()?;
         Ok(Sheet { models })

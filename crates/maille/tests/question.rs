@@ -41,6 +41,10 @@ fn what_cannot_be_asked_is_refused_with_its_field() {
         assert!(!problem.help.is_empty());
     }
     assert_eq!(stretch.check(), Ok(()));
+    // The stretch that asks the same is asked only where it can be, too.
+    let far = Goal::Strain { component: Strain::Eyy, direction_deg: 1e6, fix: vec![], free: vec![] };
+    assert_eq!(Question::new(far, Sense::Largest).as_stretch().unwrap().check(), Ok(()));
+    assert_eq!(strain(vec![(Strain::Eyy, 1e13)], vec![]).as_stretch(), None);
 }
 
 /// A map is refused where one of its limits is, and for what its method cannot do.
@@ -63,6 +67,7 @@ fn what_a_map_cannot_ask_is_refused_with_its_field() {
         (map(&exact, &[0.0], Some(&[])), "l2"),
         (map(&exact, &[0.0, f64::NAN], None), "direction_deg"),
         (map(&exact, &[0.0, -1e7], None), "direction_deg"),
+        (MapQuestion::new(exact.clone(), CellChoice::These(Vec::new()), None, None), "cells"),
         (map(&exact, &[0.0], Some(&[0.0, -1.0])), "l2"),
         (map(&width_free, &[0.0], Some(&[0.0])), "l2"),
         (map(&without_starts, &[0.0], None), "starts"),

@@ -258,3 +258,13 @@ fn every_l2_must_be_answered() {
     assert_eq!(shown(&[all(false)]).verdict, Verdict::HoldsWithExceptions);
     assert_eq!(shown(&[map("1.1", 0.1, &[0.0], |_, _| 0.4)]).verdict, Verdict::Fails);
 }
+
+/// The plan has the pulls whose steps are kept before the other maps of the energy method.
+#[test]
+fn markers_are_not_the_pulls_whose_steps_are_kept() {
+    let exact = map("5.2", 0.1, &L2, |d, l2| grid(d, l2, 0.0));
+    let energy = Map { method: "energy".into(), ..exact.clone() };
+    let steps = Map { steps: true, ..energy.clone() };
+    let thinner = Map { ratio: 0.05, ..energy.clone() };
+    assert_eq!([&energy, &steps, &thinner, &exact].map(|other| other.checks(&exact)), [true, false, false, false]);
+}

@@ -51,8 +51,11 @@ impl RunRecord {
     /// # Errors
     /// Where `parameters` do not say it: the file was not written by this program.
     pub fn question(&self) -> Result<MapQuestion, RecordError> {
-        serde_json::from_value(self.parameters.clone())
-            .map_err(|e| RecordError::malformed("run.json", 1, format!("parameters: {e}")))
+        let wrong = |problem: String| RecordError::malformed("run.json", 1, format!("parameters: {problem}"));
+        let question: MapQuestion =
+            serde_json::from_value(self.parameters.clone()).map_err(|e| wrong(e.to_string()))?;
+        question.check().map_err(|e| wrong(e.to_string()))?;
+        Ok(question)
     }
 }
 
@@ -62,9 +65,9 @@ impl RunRecord {
 pub struct Counters {
     /// Rows of each status.
     pub rows: BTreeMap<String, u64>,
-    /// Newton iterations of all rows.
+    /// Quadratic programs (exact) or Newton iterations (energy) of all rows.
     pub iterations: u64,
-    /// Minimisations of all rows.
+    /// Starts (exact) or minimisations (energy) of all rows.
     pub runs: u64,
 }
 

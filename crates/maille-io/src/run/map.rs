@@ -19,8 +19,8 @@ const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// A map that could not be kept.
 #[derive(Debug, Error)]
 pub enum MapError {
-    /// The record could not be written; the run has stopped.
-    #[error("the record could not be written; the run has stopped")]
+    /// Its record, after which a run stops.
+    #[error("the record could not be written")]
     Record(#[from] RecordError),
     /// Its plot could not be drawn.
     #[cfg(feature = "plot")]

@@ -110,7 +110,7 @@ impl Model {
         self.rings[ring_a].minor_radius + self.rings[ring_b].minor_radius
     }
 
-    /// A name for a ring of an image: `gyroscope ring 2 (+1,0)`.
+    /// A name for a ring of an image: `"gyroscope" ring 2 in cell (+1,+0)`.
     pub fn ring_label(&self, ring: usize, shift: Shift) -> String {
         let element = &self.elements[self.rings[ring].element];
         let mut label = format!("\"{}\"", element.name);

@@ -95,6 +95,16 @@ const LARGER: [&str; 4] = ["2x1", "1x2", "2x2", "3x3"];
 const MOST_ELEMENTS: usize = 40;
 
 impl CellChoice {
+    /// Whether it names a cell.
+    pub(crate) fn check(&self) -> Result<(), InvalidInput> {
+        match self {
+            CellChoice::These(cells) if cells.is_empty() => {
+                Err(InvalidInput::new("cells", "there is none", "give one or more"))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// The cells to compile: for the energy method `auto` is the design's own.
     #[doc(hidden)]
     pub fn cells(&self, method: &Method, elements: usize) -> Vec<Cell> {
@@ -155,14 +165,16 @@ impl MapQuestion {
     /// Whether it can be asked.
     ///
     /// # Errors
-    /// Without directions or l2, for options of the energy method out of range, and where one of its limits is refused by
+    /// Without directions, l2 or cells, for options of the energy method out of range, and where one of its limits is refused by
     /// [`Question::check`].
-    pub(crate) fn check(&self) -> Result<(), InvalidInput> {
+    #[doc(hidden)]
+    pub fn check(&self) -> Result<(), InvalidInput> {
         for (field, list) in [("directions_deg", &self.directions_deg), ("l2", &self.l2)] {
             if list.is_empty() {
                 return Err(InvalidInput::new(field, "there is none", "give one or more"));
             }
         }
+        self.cells.check()?;
         if let Method::Energy(options) = &self.method {
             options.check()?;
         }
