@@ -16,7 +16,7 @@
 //!
 //! **Larger cells.** The sublattice of a larger cell goes to the sublattice of [`Operation::cell`], which may be another one.
 //!
-//! **Tolerance.** The design as it is written has the operation to [`TOLERANCE`]: what is symmetric only to the digits of its
+//! **Tolerance.** The design as it is written has the operation to `TOLERANCE`: what is symmetric only to the digits of its
 //! file has it not.
 
 use crate::{

@@ -1,6 +1,6 @@
 //! Patterns of sparse symmetric matrices, with what Cholesky's factorisation takes from the pattern alone.
 //!
-//! In a sheet's Hessian unknowns come in groups ([`GROUP`]): its pattern and the order of elimination (approximate minimum
+//! In a sheet's Hessian unknowns come in groups (`GROUP`): its pattern and the order of elimination (approximate minimum
 //! degree) are those of the graph of groups, a sixth of the size. They are kept as long as they hold every block that is
 //! wanted and not many more: contacts come and go, and a new pattern costs more than a factorisation.
 
