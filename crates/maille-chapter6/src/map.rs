@@ -7,7 +7,7 @@ use maille::{
     model::Model,
     record::{LimitRow, Status},
     relaxation::target::Protocol,
-    survey::{MapQuestion, Method},
+    survey::Method,
 };
 use maille_io::record::{NamedRecord, RecordError};
 
@@ -44,7 +44,7 @@ impl Map {
             design: run.design.name.clone(),
             ratio: run.design.minor_radius.unwrap_or(f64::NAN) / run.design.reference_radius,
             method: question.method.name().to_owned(),
-            corners: imposed_on_corners(&question),
+            corners: matches!(&question.method, Method::Energy(options) if options.protocol == Protocol::Corners),
             rearranged: question.cells.cells(&question.method, 1).first() != Some(&Cell::PRIMITIVE),
             minima: named.name.ends_with(MINIMA),
             steps: named.name.ends_with(STEPS),
@@ -142,11 +142,6 @@ impl Map {
     pub(crate) fn tie(&self) -> f64 {
         if self.method == "exact" { EXACT_TIE } else { ENERGY_TIE }
     }
-}
-
-/// Whether a map imposes the deformation on the cell's corners.
-pub(super) fn imposed_on_corners(question: &MapQuestion) -> bool {
-    matches!(&question.method, Method::Energy(options) if options.protocol == Protocol::Corners)
 }
 
 /// Added to the name of a design that is another one in another size.

@@ -14,9 +14,9 @@ use serde_json::json;
 /// What keeps the report from being made.
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {
-    /// A design cannot be compiled.
-    #[error("the design of {0} cannot be compiled: {1:?}")]
-    Design(String, Vec<InvalidInput>),
+    /// A design cannot be compiled, or its record read.
+    #[error("{0} cannot be used: {1}")]
+    Design(String, InvalidInput),
     /// A design cannot be drawn.
     #[error("cannot draw {0}")]
     Render(&'static str, #[source] RenderError),
@@ -35,7 +35,7 @@ const PICTURE: [u32; 2] = [480, 360];
 
 /// The figures, the pictures of the designs, the verdicts and the page; `quick` as in [`plan`](crate::plan).
 pub fn report(chosen: &[Chosen], quick: bool, records: &[NamedRecord]) -> Result<Report, ReportError> {
-    let map = |named| Map::of(named).map_err(|problems| ReportError::Design(named.name.clone(), problems));
+    let map = |named| Map::of(named).map_err(|problems| ReportError::Design(named.name.clone(), problems[0].clone()));
     let maps: Vec<Map> = records.iter().map(map).collect::<Result<_, _>>()?;
     let findings = statements(&maps);
     let figures = figures(records, &maps);
@@ -45,7 +45,7 @@ pub fn report(chosen: &[Chosen], quick: bool, records: &[NamedRecord]) -> Result
     let mut sheets = Vec::new();
     for Chosen { name, design, given } in chosen {
         let model = Model::compile(design, Cell::PRIMITIVE)
-            .map_err(|problems| ReportError::Design(name.to_string(), problems))?;
+            .map_err(|problems| ReportError::Design(name.to_string(), problems[0].clone()))?;
         let png = sheet_png(design, &model, PICTURE).map_err(|e| ReportError::Render(name, e))?;
         files.push((format!("sheets/{name}.png"), png.clone()));
         let counts = [model.elements.len(), model.links.len()];

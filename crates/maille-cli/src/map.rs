@@ -66,7 +66,7 @@ pub fn solve(open: Vec<(&str, OpenMap)>, out: &Path, threads: Option<u16>, quiet
         let words = error.to_string();
         match error {
             MapError::Record(error) => Report::new(error).wrap_err(words),
-            MapError::Plot(error) => Err::<(), _>(error).into_diagnostic().unwrap_err().wrap_err(words),
+            MapError::Plot(error) => Report::from_err(error).wrap_err(words),
         }
     })?;
     let tally = Tally::of(records.iter().flat_map(|record| &record.rows), total - left);

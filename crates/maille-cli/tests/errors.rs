@@ -51,8 +51,8 @@ fn prepare(folder: &Path) {
     let copy = |from: &str, to: &str| fs::copy(repository().join(from), folder.join(to)).unwrap();
     copy("tests/errors/negative-minor-radius.toml", "negative.toml");
     copy("tests/errors/syntax-decimal-comma.toml", "comma.toml");
-    copy("designs/1.1.toml", "mine.toml");
-    copy("designs/1.2.toml", "other.toml");
+    copy("crates/maille-io/designs/1.1.toml", "mine.toml");
+    copy("crates/maille-io/designs/1.2.toml", "other.toml");
     let overlapping =
         fs::read_to_string(folder.join("mine.toml")).unwrap().replace("minor_radius = 0.1", "minor_radius = 0.3");
     fs::write(folder.join("overlap.toml"), overlapping).unwrap();

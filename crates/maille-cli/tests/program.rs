@@ -91,7 +91,7 @@ fn a_new_design_has_the_inner_diameter_that_was_asked_for() {
 #[test]
 fn wire_and_weight_are_those_of_tori() {
     let folder = tempfile::tempdir().unwrap();
-    let text = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../designs/1.1.toml")).unwrap();
+    let text = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../maille-io/designs/1.1.toml")).unwrap();
     fs::write(folder.path().join("mm.toml"), text.replace("minor_radius = 0.1", "minor_radius = 0.1\nunit = \"mm\""))
         .unwrap();
     let found = json(folder.path(), "inspect mm.toml --json --density 7.85g/cm3");
@@ -161,7 +161,7 @@ fn limits_that_are_not_found_have_an_exit_code_of_their_own() {
 fn watch_runs_again_when_the_file_is_saved() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("mine.toml");
-    let text = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../designs/1.1.toml")).unwrap();
+    let text = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../maille-io/designs/1.1.toml")).unwrap();
     fs::write(&path, &text).unwrap();
     let log = folder.path().join("log");
     let mut child = Command::new(env!("CARGO_BIN_EXE_maille"))

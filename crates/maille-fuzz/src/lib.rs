@@ -19,7 +19,7 @@ pub fn sound(target: &str) -> Vec<Vec<u8>> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let folder = match target {
         "circles" => return Vec::new(),
-        "design" => root.join("../../designs"),
+        "design" => root.join("../maille-io/designs"),
         _ => root.join("corpus").join(target),
     };
     let read = || -> std::io::Result<Vec<Vec<u8>>> {

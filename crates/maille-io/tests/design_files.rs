@@ -24,7 +24,7 @@ fn every_builtin_design_is_read_and_survives_the_round_trip() {
 
 #[test]
 fn the_embedded_designs_are_all_those_of_the_folder() {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../designs");
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/designs");
     let stems = |folder: &str| -> Vec<String> {
         let files = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap());
         files.filter_map(|name| Some(name.strip_suffix(".toml")?.to_owned())).collect()

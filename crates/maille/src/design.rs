@@ -132,127 +132,129 @@ impl Design {
     ///
     /// Overlap and links need the compiled model: see `Model`.
     pub fn problems(&self) -> Vec<InvalidInput> {
-        let mut out = Vec::new();
-        let mut bad = |field: String, problem: String, help: &str| out.push(InvalidInput::new(field, problem, help));
+        let mut out = Problems::default();
         if self.schema != DESIGN_SCHEMA {
-            bad("schema".into(), format!("version {} is not known", self.schema), "this program reads schema = 1");
+            out.add("schema", format!("version {} is not known", self.schema), "this program reads schema = 1");
         }
         if self.name.trim().is_empty() {
-            bad("name".into(), "is empty".into(), "give the design a short name");
+            out.add("name", "is empty", "give the design a short name");
         }
-        let positive = |x: f64| x.is_finite() && x > 0.0;
-        if !positive(self.reference_radius) {
-            bad(
-                "reference_radius".into(),
-                format!("{} is not a positive length", self.reference_radius),
-                "give the major radius that ratios such as r = R/10 refer to",
-            );
-        }
-        let mut rings = self.elements.iter().flat_map(|e| &e.rings);
-        let no_minor_radius = self.minor_radius.is_none() && rings.all(|ring| ring.minor_radius.is_none());
-        if no_minor_radius && self.elements.iter().any(|e| !e.rings.is_empty()) {
-            bad(
-                "minor_radius".into(),
-                "is missing".into(),
+        let help = "give the major radius that ratios such as r = R/10 refer to";
+        out.positive("reference_radius", self.reference_radius, help);
+        if self.lacks_minor_radii() && self.elements.iter().any(|e| !e.rings.is_empty()) {
+            out.add(
+                "minor_radius",
+                "is missing",
                 "add minor_radius = 0.1, the wire's radius, or give each ring its own",
             );
         }
-        if let Some(r) = self.minor_radius
-            && !positive(r)
-        {
-            bad(
-                "minor_radius".into(),
-                format!("{r} is not a positive length"),
-                "give the wire's radius (half of its diameter)",
-            );
+        if let Some(r) = self.minor_radius {
+            out.positive("minor_radius", r, WIRE_RADIUS);
         }
-        for (field, a) in [("lattice.a1", self.lattice.a1), ("lattice.a2", self.lattice.a2)] {
-            if !a.iter().all(|x| x.is_finite()) {
-                bad(field.into(), format!("{a:?} is not finite"), "give three finite numbers");
-            } else if a[2] != 0.0 {
-                bad(
-                    field.into(),
-                    format!("z = {} leaves the sheet's plane", a[2]),
-                    "lattice vectors lie in the plane z = 0",
-                );
-            } else if a == [0.0; 3] {
-                bad(field.into(), "is zero".into(), "give the translation to the next cell");
-            }
-        }
-        let (a, b) = (self.lattice.a1, self.lattice.a2);
-        let cross = a[0] * b[1] - a[1] * b[0];
-        let lengths = (a[0].hypot(a[1])) * (b[0].hypot(b[1]));
-        if lengths.is_finite() && lengths > 0.0 && cross.abs() < 1e-9 * lengths {
-            bad("lattice.a2".into(), format!("{b:?} is parallel to a1 = {a:?}"), "give two independent translations");
-        }
+        self.lattice.add_problems(&mut out);
         if self.elements.is_empty() {
-            bad("elements".into(), "there is none".into(), "add an [[elements]] table with at least one ring");
+            out.add("elements", "there is none", "add an [[elements]] table with at least one ring");
         }
         for (i, e) in self.elements.iter().enumerate() {
             let at = format!("elements[{i}]");
             if let Some(j) = self.elements[..i].iter().position(|o| o.name == e.name) {
-                bad(
-                    format!("{at}.name"),
-                    format!("\"{}\" is already the name of elements[{j}]", e.name),
-                    "give every element a name of its own",
-                );
+                let problem = format!("\"{}\" is already the name of elements[{j}]", e.name);
+                out.add(format!("{at}.name"), problem, "give every element a name of its own");
             }
-            if !e.center.iter().all(|x| x.is_finite()) {
-                bad(format!("{at}.center"), format!("{:?} is not finite", e.center), "give three finite numbers");
-            }
+            out.finite(format!("{at}.center"), &e.center);
             if e.rings.is_empty() {
-                bad(format!("{at}.rings"), "there is none".into(), "give at least { major_radius, normal }");
+                out.add(format!("{at}.rings"), "there is none", "give at least { major_radius, normal }");
             }
             for (k, ring) in e.rings.iter().enumerate() {
-                let at = format!("{at}.rings[{k}]");
-                if !positive(ring.major_radius) {
-                    bad(
-                        format!("{at}.major_radius"),
-                        format!("{} is not a positive length", ring.major_radius),
-                        "give the radius of the ring's core circle",
-                    );
-                }
-                if !ring.normal.iter().all(|x| x.is_finite()) {
-                    bad(
-                        format!("{at}.normal"),
-                        format!("{:?} is not finite", ring.normal),
-                        "give three finite numbers",
-                    );
-                } else if ring.normal == [0.0; 3] {
-                    bad(format!("{at}.normal"), "is zero".into(), "give any non-zero vector, as [0.0, 0.0, 1.0]");
-                }
-                if !ring.offset.iter().all(|x| x.is_finite()) {
-                    bad(
-                        format!("{at}.offset"),
-                        format!("{:?} is not finite", ring.offset),
-                        "give three finite numbers",
-                    );
-                }
-                match ring.minor_radius.or(self.minor_radius) {
-                    None if no_minor_radius => {}
-                    None => bad(
-                        format!("{at}.minor_radius"),
-                        "is given neither here nor for the whole design".into(),
-                        "add minor_radius = … at the top of the file, or to this ring",
-                    ),
-                    Some(r) if ring.minor_radius.is_some() && !positive(r) => bad(
-                        format!("{at}.minor_radius"),
-                        format!("{r} is not a positive length"),
-                        "give the wire's radius (half of its diameter)",
-                    ),
-                    Some(r) if positive(r) && positive(ring.major_radius) && r >= ring.major_radius => bad(
-                        if ring.minor_radius.is_some() {
-                            format!("{at}.minor_radius")
-                        } else {
-                            format!("{at}.major_radius")
-                        },
-                        format!("minor radius {r} is not smaller than major radius {}", ring.major_radius),
-                        "a ring has a hole only if r < R",
-                    ),
-                    Some(_) => {}
-                }
+                self.add_problems_of(ring, &format!("{at}.rings[{k}]"), &mut out);
             }
         }
-        out
+        out.0
+    }
+
+    /// Whether neither the design nor any ring has a minor radius.
+    fn lacks_minor_radii(&self) -> bool {
+        let mut rings = self.elements.iter().flat_map(|e| &e.rings);
+        self.minor_radius.is_none() && rings.all(|ring| ring.minor_radius.is_none())
+    }
+
+    fn add_problems_of(&self, ring: &RingSpec, at: &str, out: &mut Problems) {
+        let major_radius =
+            out.positive(format!("{at}.major_radius"), ring.major_radius, "give the radius of the ring's core circle");
+        if out.finite(format!("{at}.normal"), &ring.normal) && ring.normal == [0.0; 3] {
+            out.add(format!("{at}.normal"), "is zero", "give any non-zero vector, as [0.0, 0.0, 1.0]");
+        }
+        out.finite(format!("{at}.offset"), &ring.offset);
+        let Some(r) = ring.minor_radius.or(self.minor_radius) else {
+            if !self.lacks_minor_radii() {
+                let help = "add minor_radius = … at the top of the file, or to this ring";
+                out.add(format!("{at}.minor_radius"), "is given neither here nor for the whole design", help);
+            }
+            return;
+        };
+        let own = ring.minor_radius.is_some();
+        // That of the design is judged once.
+        let minor_radius =
+            if own { out.positive(format!("{at}.minor_radius"), r, WIRE_RADIUS) } else { is_positive(r) };
+        if minor_radius && major_radius && r >= ring.major_radius {
+            let field = format!("{at}.{}", if own { "minor_radius" } else { "major_radius" });
+            let problem = format!("minor radius {r} is not smaller than major radius {}", ring.major_radius);
+            out.add(field, problem, "a ring has a hole only if r < R");
+        }
+    }
+}
+
+const WIRE_RADIUS: &str = "give the wire's radius (half of its diameter)";
+
+fn is_positive(x: f64) -> bool {
+    x.is_finite() && x > 0.0
+}
+
+/// What is wrong with a design.
+#[derive(Default)]
+struct Problems(Vec<InvalidInput>);
+
+impl Problems {
+    fn add(&mut self, field: impl Into<String>, problem: impl Into<String>, help: &str) {
+        self.0.push(InvalidInput::new(field, problem, help));
+    }
+
+    /// Whether `x` is a positive length.
+    fn positive(&mut self, field: impl Into<String>, x: f64, help: &str) -> bool {
+        if !is_positive(x) {
+            self.add(field, format!("{x} is not a positive length"), help);
+        }
+        is_positive(x)
+    }
+
+    /// Whether `v` is finite.
+    fn finite(&mut self, field: impl Into<String>, v: &[f64; 3]) -> bool {
+        let finite = v.iter().all(|x| x.is_finite());
+        if !finite {
+            self.add(field, format!("{v:?} is not finite"), "give three finite numbers");
+        }
+        finite
+    }
+}
+
+impl LatticeSpec {
+    fn add_problems(&self, out: &mut Problems) {
+        let (a, b) = (self.a1, self.a2);
+        for (field, a) in [("lattice.a1", a), ("lattice.a2", b)] {
+            if !out.finite(field, &a) {
+                continue;
+            }
+            if a[2] != 0.0 {
+                let problem = format!("z = {} leaves the sheet's plane", a[2]);
+                out.add(field, problem, "lattice vectors lie in the plane z = 0");
+            } else if a == [0.0; 3] {
+                out.add(field, "is zero", "give the translation to the next cell");
+            }
+        }
+        let cross = a[0] * b[1] - a[1] * b[0];
+        let lengths = (a[0].hypot(a[1])) * (b[0].hypot(b[1]));
+        if lengths.is_finite() && lengths > 0.0 && cross.abs() < 1e-9 * lengths {
+            out.add("lattice.a2", format!("{b:?} is parallel to a1 = {a:?}"), "give two independent translations");
+        }
     }
 }

@@ -12,32 +12,20 @@ use maille::{
         target::Protocol,
     },
     search::ExactOptions,
-    survey::{CellChoice, Finished, MapQuestion, Method, Task, characterize, tasks},
+    survey::{CellChoice, Finished, MapQuestion, Method},
 };
-use std::sync::{Mutex, atomic::AtomicBool};
+use std::sync::atomic::AtomicBool;
 
-fn rows(model: &Model, options: &EnergyOptions, tasks: &[Task]) -> Vec<Finished> {
-    let out = Mutex::new(Vec::new());
-    let (mut directions, mut l2): (Vec<f64>, Vec<f64>) = tasks.iter().map(|t| (t.direction_deg, t.l2)).unzip();
-    for list in [&mut directions, &mut l2] {
-        list.sort_by(f64::total_cmp);
-        list.dedup();
-    }
-    let (cells, directions_deg) = (CellChoice::Auto, directions);
-    let question = MapQuestion { method: Method::Energy(options.clone()), cells, directions_deg, l2 };
-    characterize(std::slice::from_ref(model), None, &question, &|_| true, &AtomicBool::new(false), &|row| {
-        out.lock().unwrap().push(row);
-    });
-    let mut out = out.into_inner().unwrap();
-    let key = |f: &Finished| tasks.iter().position(|t| t.l2 == f.row.l2 && t.direction_deg == f.row.direction_deg);
-    out.sort_by_key(key);
-    out
+fn rows(model: &Model, options: &EnergyOptions, directions: &[f64], l2: &[f64]) -> Vec<Finished> {
+    let method = Method::Energy(options.clone());
+    let (directions_deg, l2) = (directions.to_vec(), l2.to_vec());
+    let question = MapQuestion { method, cells: CellChoice::Auto, directions_deg, l2 };
+    common::rows(std::slice::from_ref(model), &question)
 }
 
 fn limits(model: &Model, options: &EnergyOptions, directions: &[f64], l2: &[f64]) -> Vec<f64> {
-    let rows = rows(model, options, &tasks(directions, l2));
-    assert_eq!(rows.len(), directions.len() * l2.len());
-    rows.iter()
+    rows(model, options, directions, l2)
+        .iter()
         .map(|f| {
             let what = format!("{} at {}°, l2 {}", f.row.design, f.row.direction_deg, f.row.l2);
             assert_eq!(f.row.status, Status::ThresholdReached, "{what}: {:?}", f.state.note);
@@ -95,12 +83,12 @@ fn the_error_shrinks_with_the_parameters() {
 /// Lengths scaled by 1000 and 0.001 change no dimensionless output.
 #[test]
 fn limits_do_not_depend_on_the_unit() {
-    let tasks = tasks(&[0.0, 30.0], &[-0.125, 0.0]);
+    let (directions, l2) = ([0.0, 30.0], [-0.125, 0.0]);
     let base = design("1.1", 0.1);
-    let reference = rows(&Model::compile(&base, Cell::PRIMITIVE).unwrap(), &EnergyOptions::default(), &tasks);
+    let reference = rows(&Model::compile(&base, Cell::PRIMITIVE).unwrap(), &EnergyOptions::default(), &directions, &l2);
     for factor in [1000.0, 0.001] {
         let model = Model::compile(&base.scaled(factor), Cell::PRIMITIVE).unwrap();
-        for (a, b) in reference.iter().zip(rows(&model, &EnergyOptions::default(), &tasks)) {
+        for (a, b) in reference.iter().zip(rows(&model, &EnergyOptions::default(), &directions, &l2)) {
             assert_near(b.row.l1.unwrap(), a.row.l1.unwrap(), 1e-6, "l1");
             assert_near(b.row.lambda2.unwrap(), a.row.lambda2.unwrap(), 1e-6, "lambda2");
             assert_near(b.row.max_overlap.unwrap() / factor, a.row.max_overlap.unwrap(), 1e-6, "overlap");
@@ -143,7 +131,7 @@ fn strain_protocol_is_unbiased_where_corner_pins_are_not() {
 }
 
 fn limits_with_overlap(model: &Model, options: &EnergyOptions, directions: &[f64]) -> Vec<f64> {
-    rows(model, options, &tasks(directions, &[0.0])).iter().map(|f| f.row.l1.expect("a limit")).collect()
+    rows(model, options, directions, &[0.0]).iter().map(|f| f.row.l1.expect("a limit")).collect()
 }
 
 /// Chains in one direction alone leave the other unbounded; unlinked rings are unbounded everywhere.
@@ -152,7 +140,7 @@ fn directions_without_a_chain_are_unbounded() {
     let mut chain = design("1.1", 0.1);
     chain.elements.truncate(2); // the flat rings and those that join them along x
     let chain = Model::compile(&chain, Cell::PRIMITIVE).unwrap();
-    let found = rows(&chain, &EnergyOptions::default(), &tasks(&[0.0, 90.0], &[0.0]));
+    let found = rows(&chain, &EnergyOptions::default(), &[0.0, 90.0], &[0.0]);
     assert_eq!(found[1].row.status, Status::Unbounded);
     assert_eq!(found[1].row.l1, None);
     assert_near(found[0].row.l1.unwrap(), 0.44, 0.001, "along the chain");
@@ -160,7 +148,7 @@ fn directions_without_a_chain_are_unbounded() {
     loose.elements.truncate(1);
     let loose = Model::compile(&loose, Cell::PRIMITIVE).unwrap();
     assert!(loose.links.is_empty());
-    for row in rows(&loose, &EnergyOptions::default(), &tasks(&[0.0, 45.0], &[0.0])) {
+    for row in rows(&loose, &EnergyOptions::default(), &[0.0, 45.0], &[0.0]) {
         assert_eq!(row.row.status, Status::Unbounded);
     }
 }
@@ -176,7 +164,7 @@ fn an_overlapping_start_is_resolved() {
 /// Where l1 = 0 is out of reach at the wanted l2, the largest reachable l1 is below zero.
 #[test]
 fn limits_below_zero_are_found() {
-    let found = rows(&model("1.2", 0.1), &EnergyOptions::default(), &tasks(&[0.0, 45.0], &[0.25]));
+    let found = rows(&model("1.2", 0.1), &EnergyOptions::default(), &[0.0, 45.0], &[0.25]);
     assert_eq!(found[0].row.status, Status::L2NotReached);
     assert_eq!(found[0].row.l1, None);
     assert!(found[0].state.residual.unwrap() > 0.002);
@@ -188,10 +176,9 @@ fn limits_below_zero_are_found() {
 #[test]
 fn limits_do_not_depend_on_threads() {
     let model = model("2-oblong", 0.1);
-    let tasks = tasks(&[0.0, 45.0, 90.0], &[-0.125, 0.0]);
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let found = pool.install(|| rows(&model, &EnergyOptions::default(), &tasks));
+        let found = pool.install(|| rows(&model, &EnergyOptions::default(), &[0.0, 45.0, 90.0], &[-0.125, 0.0]));
         found.into_iter().map(|f| (f.row.l1, f.row.iterations, f.state.poses)).collect::<Vec<_>>()
     };
     assert_eq!(on(1), on(3));
@@ -216,7 +203,7 @@ fn doubled_weaves_come_to_rest_at_their_limits() {
     for model in [model("5.1", 0.1), closer_5_2(0.05)] {
         for (direction, l2) in [(0.0, -0.25), (37.5, 0.0), (15.0, 0.25)] {
             let exact = &map(std::slice::from_ref(&model), &[direction], &[l2], &ExactOptions::default())[0].row;
-            let found = &rows(&model, &options, &tasks(&[direction], &[l2]))[0];
+            let found = &rows(&model, &options, &[direction], &[l2])[0];
             let what = format!("{} at {direction}°, l2 = {l2}", exact.design);
             assert_eq!(found.row.status, Status::ThresholdReached, "{what}: {:?}", found.state.note);
             let above = found.row.l1.unwrap() - exact.l1.unwrap();
@@ -233,7 +220,7 @@ fn without_rest_there_is_no_limit() {
     let minima_alone = EnergyOptions { flat_points: 0, ..Default::default() };
     let never = EnergyOptions { gradient_tolerance: 1e-30, max_iterations: 50, ..Default::default() };
     for options in [minima_alone, never] {
-        let row = &rows(&model, &options, &tasks(&[0.0], &[0.0]))[0].row;
+        let row = &rows(&model, &options, &[0.0], &[0.0])[0].row;
         assert_eq!((row.status, row.l1), (Status::NotConverged, None));
     }
 }
@@ -244,7 +231,7 @@ fn shifts_lead_to_the_same_limit_and_the_printed_loop_stalls() {
     let model = model("1.1", 0.1);
     let with = |minimiser| {
         let options = EnergyOptions { minimiser, ..Default::default() };
-        rows(&model, &options, &tasks(&[0.0], &[0.0])).remove(0).row
+        rows(&model, &options, &[0.0], &[0.0]).remove(0).row
     };
     assert_near(with(Minimiser::NewtonShifted).l1.unwrap(), 0.44, 0.001, "shifted");
     assert_eq!(with(Minimiser::NewtonPrinted).status, Status::NotConverged);

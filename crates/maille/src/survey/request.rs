@@ -198,7 +198,8 @@ impl MapQuestion {
     /// Its limits: every l2 with every direction, in the order of the table.
     #[doc(hidden)]
     pub fn tasks(&self) -> Vec<Task> {
-        tasks(&self.directions_deg, &self.l2)
+        let along = |&l2: &f64| self.directions_deg.iter().map(move |&direction_deg| Task { direction_deg, l2 });
+        self.l2.iter().flat_map(along).collect()
     }
 }
 
@@ -218,9 +219,4 @@ pub struct Finished {
     pub row: LimitRow,
     /// The state at the limit.
     pub state: StateRecord,
-}
-
-/// The tasks of a map: every l2 with every direction, in the order of the table.
-pub fn tasks(directions_deg: &[f64], l2: &[f64]) -> Vec<Task> {
-    l2.iter().flat_map(|&l2| directions_deg.iter().map(move |&direction_deg| Task { direction_deg, l2 })).collect()
 }

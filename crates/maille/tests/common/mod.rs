@@ -41,9 +41,13 @@ pub fn exact_map(options: &ExactOptions, directions: &[f64], l2: &[f64]) -> MapQ
 
 /// The rows of a map by the exact method, in the order of its table.
 pub fn map(models: &[Model], directions: &[f64], l2: &[f64], options: &ExactOptions) -> Vec<Finished> {
+    rows(models, &exact_map(options, directions, l2))
+}
+
+/// The rows of a map, in the order of its table.
+pub fn rows(models: &[Model], question: &MapQuestion) -> Vec<Finished> {
     let out = Mutex::new(Vec::new());
-    let question = exact_map(options, directions, l2);
-    characterize(models, None, &question, &|_| true, &AtomicBool::new(false), &|row| out.lock().unwrap().push(row));
+    characterize(models, None, question, &|_| true, &AtomicBool::new(false), &|row| out.lock().unwrap().push(row));
     let order = question.tasks();
     let mut out: Vec<Finished> = out.into_inner().unwrap();
     out.sort_by_key(|f| order.iter().position(|t| (t.direction_deg, t.l2) == (f.row.direction_deg, f.row.l2)));

@@ -325,12 +325,7 @@ impl<'a> Newton<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-
-    fn sample() -> Matrix4<f64> {
-        let m = Matrix4::from_fn(|i, j| ((3 * i + 5 * j * j + 1) as f64).sin());
-        m * m.transpose()
-    }
+    use super::{packed::tests::sample, *};
 
     /// The scaled blocks invert each other, and W z = W⁻ᵀ s.
     #[test]

@@ -102,10 +102,11 @@ fn rotate_columns(m: &mut Matrix4<f64>, p: usize, q: usize, c: f64, s: f64) {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
-    fn sample() -> Matrix4<f64> {
+    /// A positive semidefinite matrix.
+    pub(in super::super) fn sample() -> Matrix4<f64> {
         let m = Matrix4::from_fn(|i, j| ((3 * i + 5 * j * j + 1) as f64).sin());
         m * m.transpose()
     }
