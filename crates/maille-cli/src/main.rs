@@ -24,6 +24,7 @@ mod numbers;
 mod output;
 mod plot;
 mod progress;
+mod prove;
 mod records;
 mod remedy;
 mod render;
@@ -37,6 +38,7 @@ mod sweep;
 mod table;
 mod units;
 mod verify;
+mod verify_proof;
 mod view;
 mod watch;
 
@@ -54,6 +56,7 @@ Examples:
   maille characterize my-weave.toml --directions 0:90:5 --l2 0
   maille replay maille-out/1.3            solve the rows without a limit again
   maille verify maille-out/1.3            derive each state of a record anew
+  maille prove 2 --direction 0            no state of the cell goes further: a proof
   maille sweep radius.toml                many designs, radii and spacings
   maille reproduce --quick                chapter 6 of the thesis, computed anew
   maille limit 1.1 --maximize exx --free eyy,exy    one strain as large as can be
@@ -88,6 +91,7 @@ enum Command {
     Designs(designs::Args),
     Replay(replay::Args),
     Verify(verify::Args),
+    Prove(prove::Args),
     Sweep(sweep::Args),
     Limit(limit::Args),
     Boundary(boundary::Args),
@@ -116,6 +120,7 @@ fn main() -> ExitCode {
         Command::New(args) => done(new::run(&args)),
         Command::Replay(args) => replay::run(&args),
         Command::Verify(args) => verify::run(&args),
+        Command::Prove(args) => prove::run(&args),
         Command::Sweep(args) => sweep::run(&args),
         Command::Limit(args) => limit::run(&args),
         Command::Boundary(args) => boundary::run(&args),

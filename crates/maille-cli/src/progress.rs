@@ -14,6 +14,7 @@ use std::{
 pub struct Progress {
     bar: ProgressBar,
     total: AtomicU64,
+    what: &'static str,
     plain: Option<Mutex<(u64, Instant)>>,
 }
 
@@ -21,17 +22,22 @@ pub struct Progress {
 const PLAIN_INTERVAL: Duration = Duration::from_secs(5);
 
 impl Progress {
-    /// Starts at 0 of `total`.
+    /// Starts at 0 of `total` limits.
     pub fn new(total: u64, quiet: bool) -> Progress {
+        Progress::of(total, quiet, "limits")
+    }
+
+    /// Starts at 0 of `total` of something.
+    pub fn of(total: u64, quiet: bool, what: &'static str) -> Progress {
         let terminal = std::io::stderr().is_terminal();
         let bar = if quiet || !terminal { ProgressBar::hidden() } else { ProgressBar::new(total) };
-        let style = "{bar:30} {pos} of {len} limits, {eta} left  {msg}";
-        bar.set_style(ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar()));
+        let style = format!("{{bar:30}} {{pos}} of {{len}} {what}, {{eta}} left  {{msg}}");
+        bar.set_style(ProgressStyle::with_template(&style).unwrap_or_else(|_| ProgressStyle::default_bar()));
         if !quiet && terminal {
             bar.enable_steady_tick(Duration::from_millis(200));
         }
         let plain = (!quiet && !terminal).then(|| Mutex::new((0, Instant::now())));
-        Progress { bar, total: AtomicU64::new(total), plain }
+        Progress { bar, total: AtomicU64::new(total), what, plain }
     }
 
     /// One limit is done; `what` names it.
@@ -41,7 +47,8 @@ impl Progress {
             plain.0 += 1;
             if plain.1.elapsed() >= PLAIN_INTERVAL {
                 plain.1 = Instant::now();
-                eprintln!("{} of {} limits, last {what}", plain.0, self.total.load(Ordering::Relaxed));
+                let last = if what.is_empty() { String::new() } else { format!(", last {what}") };
+                eprintln!("{} of {} {}{last}", plain.0, self.total.load(Ordering::Relaxed), self.what);
             }
         }
         self.bar.set_message(what);

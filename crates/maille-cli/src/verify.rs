@@ -7,6 +7,7 @@ use crate::{
     records,
     remedy::DAMAGED,
     source::is_record,
+    verify_proof::{self, VerifiedProof},
 };
 use maille_verify::{Check, Finding, RowReport, Texts, Verdict, Verifier};
 use miette::{IntoDiagnostic, Result, WrapErr};
@@ -32,13 +33,14 @@ Examples:
   maille verify maille-out/*              many, with one line for each check
   maille verify 1.1 --rows                a line for each row
   maille verify 1.1 --json
+  maille verify maille-out/2-0deg.proof   a proof that `maille prove` wrote
 
 What a row claims is derived, or false, or open. Not judged: what the search did (n_starts, n_distinct, iterations, runs, wall_s), and
 that rings never crossed on the way. docs/reliability.md has the method.
 
 Exit codes: 0 all certified rows are proved, 4 something is false or unreadable, 5 something could not be proved.")]
 pub struct Args {
-    /// Folders of records; NAME stands for maille-out/NAME
+    /// Folders of records, NAME stands for maille-out/NAME; or files of `maille prove`
     #[arg(required = true, value_name = "RECORD")]
     records: Vec<PathBuf>,
     /// A line for each row, not only for those that are not proved
@@ -73,17 +75,22 @@ const NAMED: usize = 20;
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let pool = map::pool(args.threads)?;
-    let mut all = Vec::new();
+    let (mut all, mut proofs) = (Vec::new(), Vec::new());
     for named in &args.records {
-        all.push(verified(&records::folder(named), &pool, args.quiet)?);
+        match verify_proof::is_proof(named) {
+            true => proofs.push(verify_proof::verified(named, &pool, args.quiet)?),
+            false => all.push(verified(&records::folder(named), &pool, args.quiet)?),
+        }
     }
     if args.json {
-        output::print_json(&serde_json::json!({ "records": all }))?;
+        output::print_json(&serde_json::json!({ "records": all, "proofs": proofs }))?;
     } else {
         all.iter().for_each(|record| tell(record, args.rows));
+        proofs.iter().for_each(VerifiedProof::tell);
     }
-    let worst = all.iter().map(Verified::code).max().unwrap_or(exit::DONE);
-    let refuted = all.iter().any(|record| record.code() == exit::RECORD);
+    let codes = || all.iter().map(Verified::code).chain(proofs.iter().map(VerifiedProof::code));
+    let worst = codes().max().unwrap_or(exit::DONE);
+    let refuted = codes().any(|code| code == exit::RECORD);
     Ok(ExitCode::from(if refuted { exit::RECORD } else { worst }))
 }
 

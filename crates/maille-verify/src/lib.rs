@@ -16,6 +16,7 @@ mod forces;
 mod gaps;
 mod image;
 mod linking;
+pub mod proof;
 mod record;
 mod report;
 mod sheet;

@@ -16,7 +16,7 @@ use std::{collections::BTreeMap, path::Path, process::Command};
 const CRATES: &[&[&str]] = &[
     &["maille-geometry"],
     &["maille", "maille-verify"],
-    &["maille-io"],
+    &["maille-io", "maille-prove"],
     &["maille-chapter6", "maille-view", "maille-fuzz"],
     &["maille-cli", "maille-py"],
     &["xtask"],
