@@ -79,6 +79,14 @@ impl<'a> Chooser<'a> {
                 {
                     return true;
                 }
+                for ring in 0..2 {
+                    let below = plain::dot(&w, &middle[ring]) < 0.0;
+                    if out.try_out(Reason::Plane { pair, of: ring, below })
+                        || out.try_out(Reason::Chord { pair, of: ring })
+                    {
+                        return true;
+                    }
+                }
             } else if of.rings[0] != of.rings[1] && out.try_out(Reason::Through { pair }) {
                 return true;
             }

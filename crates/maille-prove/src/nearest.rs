@@ -4,10 +4,10 @@ use maille_verify::proof::plain::{across, add, cross, dot, length, unit};
 use std::f64::consts::TAU;
 
 /// Points of the second circle from which minima are sought.
-const POINTS: usize = 32;
-/// Newton steps, and the farthest that one goes, in radians.
-const STEPS: usize = 6;
-const FARTHEST: f64 = 0.2;
+const POINTS: usize = 48;
+/// The golden ratio, and cuts of the arc between two points: to 1e-4 of it.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+const CUTS: usize = 18;
 /// Steps towards the direction along which linked circles overlap least.
 const TURNS: usize = 14;
 
@@ -37,49 +37,49 @@ pub(crate) fn minima(a: &Circle, b: &Circle, table: &[(f64, f64)], reach: f64) -
     let axis = if normal[0].abs() < 0.6 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
     let u = unit(&cross(normal, &axis));
     let v = cross(normal, &u);
-    let arms: Vec<[f64; 3]> = table.iter().map(|(cos, sin)| add(&u.map(|x| x * cos), *sin, &v)).collect();
-    let far: Vec<f64> = arms.iter().map(|arm| foot(a, &add(centre, *radius, arm)).1).collect();
+    let on = |cos: f64, sin: f64| add(&u.map(|x| x * cos), sin, &v);
+    let arm = |angle: f64| on(angle.cos(), angle.sin());
+    let far: Vec<f64> = table.iter().map(|(cos, sin)| foot(a, &add(centre, *radius, &on(*cos, *sin))).1).collect();
     let mut out: Vec<Near> = Vec::new();
-    let n = arms.len();
+    let n = far.len();
     for k in 0..n {
         let least = far[k] <= far[(k + 1) % n] && far[k] < far[(k + n - 1) % n];
-        if !least || far[k] > (reach + 0.25 * radius).powi(2) {
+        if !least || far[k] > (reach + 0.2 * radius).powi(2) {
             continue;
         }
-        let (near, distance) = refined(a, b, arms[k]);
-        let known = |other: &Near| dot(&other[0], &near[0]) > 0.999 && dot(&other[1], &near[1]) > 0.999;
-        if distance < reach && !out.iter().any(known) {
+        let step = TAU / n as f64;
+        let (near, distance) = refined(a, b, arm, (k as f64 - 1.0) * step, (k as f64 + 1.0) * step);
+        if distance < reach {
             out.push(near);
         }
     }
     out
 }
 
-/// Newton's method for the squared distance of points at angles along both circles.
-fn refined(a: &Circle, b: &Circle, start: [f64; 3]) -> (Near, f64) {
-    let between = |x: &[f64; 3], y: &[f64; 3]| add(&add(&add(&b.0, b.2, y), -1.0, &a.0), -a.2, x);
-    let (mut x, mut y) = (foot(a, &add(&b.0, b.2, &start)).0, start);
-    for _ in 0..STEPS {
-        let (s, t, v) = (cross(&a.1, &x), cross(&b.1, &y), between(&x, &y));
-        let (g, h) = (-a.2 * dot(&v, &s), b.2 * dot(&v, &t));
-        let mut xx = a.2 * (a.2 + dot(&v, &x));
-        let mut yy = b.2 * (b.2 - dot(&v, &y));
-        let xy = -a.2 * b.2 * dot(&s, &t);
-        let mut det = xx * yy - xy * xy;
-        if det < 0.05 * (a.2 * b.2).powi(2) {
-            let more = 0.1 * a.2 * b.2 + xy.abs();
-            (xx, yy) = (xx.max(0.0) + more, yy.max(0.0) + more);
-            det = xx * yy - xy * xy;
-        }
-        let (dx, dy) = (-(yy * g - xy * h) / det, -(xx * h - xy * g) / det);
-        let far = dx.abs().max(dy.abs());
-        let part = if far > FARTHEST { FARTHEST / far } else { 1.0 };
-        (x, y) = (unit(&add(&x, dx * part, &s)), unit(&add(&y, dy * part, &t)));
-        if far < 1e-6 {
-            break;
+/// The least distance of a point of b from circle a, by golden section between the two neighbours of a point of the table: where
+/// the circles run side by side the minimum is flat, and Newton's method leaves it.
+fn refined(a: &Circle, b: &Circle, arm: impl Fn(f64) -> [f64; 3], mut low: f64, mut high: f64) -> (Near, f64) {
+    let at = |angle: f64| {
+        let y = arm(angle);
+        let (x, square) = foot(a, &add(&b.0, b.2, &y));
+        ([x, y], square)
+    };
+    let inner = |low: f64, high: f64| high - GOLDEN * (high - low);
+    let (mut p, mut q) = (inner(low, high), inner(high, low));
+    let (mut at_p, mut at_q) = (at(p), at(q));
+    for _ in 0..CUTS {
+        if at_p.1 < at_q.1 {
+            (high, q, at_q) = (q, p, at_p);
+            p = inner(low, high);
+            at_p = at(p);
+        } else {
+            (low, p, at_p) = (p, q, at_q);
+            q = inner(high, low);
+            at_q = at(q);
         }
     }
-    ([x, y], length(&between(&x, &y)))
+    let (near, square) = if at_p.1 < at_q.1 { at_p } else { at_q };
+    (near, square.sqrt())
 }
 
 /// The unit vector n for which R_a √(1 − (n·n_a)²) + R_b √(1 − (n·n_b)²) − n·w is about smallest.

@@ -267,20 +267,25 @@ impl Cell {
         self.alike && (one > other || one == other && piece.line(0)[0] > piece.line(1)[1])
     }
 
+    /// A² and B² of [`Cell::interlocked`].
+    pub(crate) fn chords(&self, along: &[Forms; 2], w: &Forms) -> [Form; 2] {
+        let c = cross(&along[0], &along[1]);
+        let cc = dot(&c, &c);
+        [0, 1].map(|ring| {
+            let radius = Form::number(self.radii[ring]);
+            let (own, high) = (dot(&along[ring], &along[ring]), dot(w, &along[1 - ring]));
+            radius.mul(&radius).mul(&cc).sub(&own.mul(&high.mul(&high)))
+        })
+    }
+
     /// Whether rings of the two normals (of any length) are linked, w apart.
     ///
     /// With c = m_a × m_b, the circles cut the line of their planes in chords of half-lengths A/|c| and B/|c|, with
     /// A² = R_a² |c|² − |m_a|² (w·m_b)² and B² = R_b² |c|² − |m_b|² (w·m_a)², whose middles are |w·c|/|c| apart. They are linked if and
     /// only if the chords overlap and none is in the other: |A − B| < |w·c| < A + B, which is 4 A² B² > ((w·c)² − A² − B²)².
     pub(crate) fn interlocked(&self, along: &[Forms; 2], w: &Forms) -> Interlocked {
-        let c = cross(&along[0], &along[1]);
-        let (cc, wc) = (dot(&c, &c), dot(w, &c));
-        let half = |ring: usize| {
-            let radius = Form::number(self.radii[ring]);
-            let (own, high) = (dot(&along[ring], &along[ring]), dot(w, &along[1 - ring]));
-            radius.mul(&radius).mul(&cc).sub(&own.mul(&high.mul(&high)))
-        };
-        let (a, b) = (half(0), half(1));
+        let [a, b] = self.chords(along, w);
+        let wc = dot(w, &cross(&along[0], &along[1]));
         let middle = wc.mul(&wc).sub(&a).sub(&b);
         let test = a.mul(&b).times(4.0).sub(&middle.mul(&middle));
         if test.inf() > 0.0 && a.inf() > 0.0 && b.inf() > 0.0 {

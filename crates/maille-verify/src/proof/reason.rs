@@ -24,6 +24,23 @@ pub enum Reason {
         /// n.
         along: Chosen,
     },
+    /// Linked rings reach through each other's planes: ± w·n_a ≤ R_b |n_a × n_b| − (r_a + r_b), and the same with a and b exchanged.
+    Plane {
+        /// A link.
+        pair: usize,
+        /// Whose plane: 0 or 1, of the pair.
+        of: usize,
+        /// Whether the sign is −.
+        below: bool,
+    },
+    /// On the line of both planes, the chord of the one ring does not end within that of the other: sign w·c ≥ (r_a + r_b) |c| ± (ℓ_a − ℓ_b) |c|
+    /// with c = n_a × n_b and the half-lengths ℓ of the chords.
+    Chord {
+        /// A link.
+        pair: usize,
+        /// Whose chord is to end outside that of the other: 0 or 1, of the pair.
+        of: usize,
+    },
     /// A point of the one circle and a point of the other are r_a + r_b apart or more.
     Touch {
         /// Any pair.
@@ -55,6 +72,8 @@ impl Cell {
         match *reason {
             Reason::Turn { pair } => self.turn(rings, self.pairs.get(pair)?),
             Reason::Apart { pair, along } => self.apart(rings, self.pairs.get(pair)?, &along.map(f64::from)),
+            Reason::Plane { pair, of, below } => self.plane(rings, self.pairs.get(pair)?, of, below),
+            Reason::Chord { pair, of } => self.chord(rings, self.pairs.get(pair)?, of),
             Reason::Touch { pair, first, second } => {
                 self.touch(rings, self.pairs.get(pair)?, [first, second].map(|x| x.map(f64::from)))
             }
@@ -91,6 +110,33 @@ impl Cell {
             out = out.add(&above.times(self.radii[ring] / root * (1.0 + ROUNDING)));
         }
         Some(out)
+    }
+
+    fn plane(&self, rings: &Rings, pair: &Pair, of: usize, below: bool) -> Option<Form> {
+        pair.sign?;
+        let (own, other) = (rings.normals.get(of)?, rings.normals.get(1 - of)?);
+        // |n_a × n_b| = √(1 − t²) with t = n_a·n_b, and t t₀ + √(1 − t²) √(1 − t₀²) ≤ 1.
+        let near = plain::dot(&rings.middle[0], &rings.middle[1]);
+        let root = (1.0 - near * near).sqrt();
+        if !(root > 0.1) {
+            return None;
+        }
+        let reach = dot(own, other).times(-near).plus(1.0).times(self.radii[1 - of] / root * (1.0 + ROUNDING));
+        let height = dot(&self.between(rings, pair), own);
+        let height = if below { height.neg() } else { height };
+        Some(reach.plus(-pair.touching).sub(&height))
+    }
+
+    fn chord(&self, rings: &Rings, pair: &Pair, of: usize) -> Option<Form> {
+        let turn = self.turn(rings, pair)?;
+        let halves = self.chords(&rings.along, &self.between(rings, pair));
+        let root = |square: &Form| Some(square.mul(&square.inverse_root()?));
+        let (a, b) = (root(&halves[0])?, root(&halves[1])?);
+        match of {
+            0 => Some(turn.sub(&b).add(&a)),
+            1 => Some(turn.sub(&a).add(&b)),
+            _ => None,
+        }
     }
 
     fn through(&self, rings: &Rings, pair: &Pair) -> Option<Form> {

@@ -2,7 +2,7 @@
 //! line with the SHA-256 of all before it.
 //!
 //! A node is one line: `/ 3`, split in two halves along unknown 3; `=`, out of order, see [`Cell::out_of_order`]; `?`, not refuted, and
-//! not above the claim; or the inequalities that refute it: `s` link, `a` link n, `t` pair first second, `u` pair, each with
+//! not above the claim; or the inequalities that refute it: `s` link, `a` link n, `t` pair first second, `p` link ring sign, `c` link ring, `u` pair, each with
 //! its weight after `*`.
 
 use super::{Cell, Chosen, Piece, Reason, Rings};
@@ -106,6 +106,8 @@ pub fn write(claim: &Claim, nodes: impl Iterator<Item = Node>) -> String {
                     out.push_str(if k == 0 { "" } else { " " });
                     match reason {
                         Reason::Turn { pair } => _ = write!(out, "s {pair}"),
+                        Reason::Plane { pair, of, below } => _ = write!(out, "p {pair} {of} {}", u8::from(*below)),
+                        Reason::Chord { pair, of } => _ = write!(out, "c {pair} {of}"),
                         Reason::Through { pair } => _ = write!(out, "u {pair}"),
                         Reason::Apart { pair, along } => {
                             _ = write!(out, "a {pair}");
@@ -219,18 +221,26 @@ fn node_of(line: &str) -> Option<Node> {
     let mut terms = Vec::new();
     while let Some(kind) = words.next() {
         let pair = words.next()?.parse().ok()?;
-        let mut chosen = || -> Option<Chosen> {
-            let mut number = || words.next()?.parse::<i32>().ok();
-            Some([number()?, number()?, number()?])
-        };
+        let mut number = || words.next()?.parse::<i32>().ok();
         let reason = match kind {
             "s" => Reason::Turn { pair },
             "u" => Reason::Through { pair },
-            "a" => Reason::Apart { pair, along: chosen()? },
-            "t" => Reason::Touch { pair, first: chosen()?, second: chosen()? },
+            "a" => Reason::Apart { pair, along: chosen(&mut number)? },
+            "p" => Reason::Plane { pair, of: which(number()?)?, below: which(number()?)? == 1 },
+            "c" => Reason::Chord { pair, of: which(number()?)? },
+            "t" => Reason::Touch { pair, first: chosen(&mut number)?, second: chosen(&mut number)? },
             _ => return None,
         };
         terms.push((reason, words.next()?.strip_prefix('*')?.parse().ok()?));
     }
     Some(Node::Refuted(terms))
+}
+
+fn chosen(number: &mut impl FnMut() -> Option<i32>) -> Option<Chosen> {
+    Some([number()?, number()?, number()?])
+}
+
+/// 0 or 1.
+fn which(number: i32) -> Option<usize> {
+    usize::try_from(number).ok().filter(|x| *x < 2)
 }
