@@ -90,7 +90,7 @@ pub(crate) fn least_overlap(normals: &[[f64; 3]; 2], radii: [f64; 2], w: &[f64; 
         let flat = normals.map(|normal| across(&n, &normal));
         let sizes = [length(&flat[0]), length(&flat[1])];
         let overlap = radii[0] * sizes[0] + radii[1] * sizes[1] - dot(&n, w);
-        if overlap < best.0 && sizes[0] > 0.12 && sizes[1] > 0.12 {
+        if overlap < best.0 {
             best = (overlap, n);
         }
         let mut rise = w.map(|x| -x);

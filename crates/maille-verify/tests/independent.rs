@@ -6,8 +6,9 @@ use std::fs;
 fn nothing_is_shared_with_the_solver_but_the_circle() {
     let root = concat!(env!("CARGO_MANIFEST_DIR"), "/src");
     let mut found = 0;
-    for entry in fs::read_dir(root).unwrap() {
-        let path = entry.unwrap().path();
+    let files = |folder: &str| -> Vec<_> { fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect() };
+    let all = files(root).into_iter().chain(files(&format!("{root}/proof")));
+    for path in all.filter(|path| path.is_file()) {
         let text = fs::read_to_string(&path).unwrap();
         for (at, _) in text.match_indices("maille_geometry::") {
             let rest = &text[at + "maille_geometry::".len()..];

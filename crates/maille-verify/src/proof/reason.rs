@@ -59,6 +59,8 @@ pub enum Reason {
 
 /// Slack for the rounding of a few operations on numbers below 100.
 const ROUNDING: f64 = 1e-12;
+/// The largest cosine at which a root is replaced by its tangent.
+const STEEPEST: f64 = 0.995;
 /// Tangents whose planes meet at a smaller sine give no direction of their own.
 const CROSSING: f64 = 0.3;
 /// Regularises where the points go for tangents that are nearly parallel.
@@ -100,11 +102,8 @@ impl Cell {
         let mut out = dot_numbers(&self.between(rings, pair), n).neg().plus(-pair.touching * length);
         for ring in pair.rings {
             // u u₀ + √(n² − u²) √(n² − u₀²) ≤ n² for u = n·n_ring and each u₀.
-            let near = plain::dot(n, &rings.middle[ring]);
+            let near = plain::dot(n, &rings.middle[ring]).clamp(-STEEPEST * length, STEEPEST * length);
             let root = (n2 - near * near).sqrt();
-            if !(root > 0.1 * length) {
-                return None;
-            }
             let above = dot_numbers(&rings.normals[ring], n).times(-near).plus(n2);
             // The form is of what is never negative: a factor that is too large is an upper bound.
             out = out.add(&above.times(self.radii[ring] / root * (1.0 + ROUNDING)));
@@ -115,12 +114,12 @@ impl Cell {
     fn plane(&self, rings: &Rings, pair: &Pair, of: usize, below: bool) -> Option<Form> {
         pair.sign?;
         let (own, other) = (rings.normals.get(of)?, rings.normals.get(1 - of)?);
-        // |n_a × n_b| = √(1 − t²) with t = n_a·n_b, and t t₀ + √(1 − t²) √(1 − t₀²) ≤ 1.
-        let near = plain::dot(&rings.middle[0], &rings.middle[1]);
+        // |n_a × n_b| = √(1 − t²) with t = n_a·n_b, and t t₀ + √(1 − t²) √(1 − t₀²) ≤ 1 for each t₀. In nearly parallel planes t₀ is
+        // chosen so that the reach stays below r_a + r_b.
+        let least = (0.5 * pair.touching / self.radii[1 - of]).clamp(0.02, 0.1);
+        let most = (1.0 - least * least).sqrt();
+        let near = plain::dot(&rings.middle[0], &rings.middle[1]).clamp(-most, most);
         let root = (1.0 - near * near).sqrt();
-        if !(root > 0.1) {
-            return None;
-        }
         let reach = dot(own, other).times(-near).plus(1.0).times(self.radii[1 - of] / root * (1.0 + ROUNDING));
         let height = dot(&self.between(rings, pair), own);
         let height = if below { height.neg() } else { height };
