@@ -19,10 +19,15 @@ fn design(name: &str, minor_radius: f64) -> Design {
 /// Rings of two sizes, in an oblique cell.
 fn unlike() -> Design {
     let mut design = design("2", 0.08);
-    design.elements[1].rings[0].major_radius = 1.1;
-    design.elements[1].rings[0].minor_radius = Some(0.06);
-    design.lattice.a2 = [0.05, 2.22, 0.0];
+    design.elements[1].rings[0].major_radius = 1.05;
+    design.elements[1].rings[0].minor_radius = Some(0.05);
+    design.lattice.a2 = [0.04, 2.26, 0.0];
     design
+}
+
+/// The power of two that a proof counts in.
+fn unit(design: &Design) -> f64 {
+    2_f64.powf(design.elements[0].rings[0].major_radius.log2().floor())
 }
 
 fn claim(design: &Design, direction_deg: f64, l2: f64, l1: f64) -> Claim {
@@ -88,9 +93,9 @@ fn images(weave: &Weave, state: &State, turn: [i32; 2], alike: bool) -> Vec<Stat
 fn cases() -> Vec<(Design, f64, f64, bool)> {
     vec![
         (design("2", 0.1), 0.0, 0.0, true),
-        (design("2", 0.05), 37.5, -0.05, true),
+        (design("2", 0.05), 37.5, 0.02, true),
         (design("european-4-in-1", 0.15), 100.0, 0.0, true),
-        (unlike(), 62.0, 0.02, false),
+        (unlike(), 62.0, 0.0, false),
     ]
 }
 
@@ -100,7 +105,7 @@ fn inequalities_hold_at_feasible_states() {
     let mut rng = ChaCha8Rng::seed_from_u64(5);
     let mut seen = [0_usize; 6];
     for (design, direction, l2, _) in cases() {
-        let unit = design.reference_radius;
+        let unit = unit(&design);
         let cell = claim(&design, direction, l2, -0.5).cell().unwrap();
         let weave = Weave::new(&design, direction, l2);
         for state in states(&weave, 300, 7) {
@@ -175,7 +180,7 @@ fn tree(nodes: &mut impl Iterator<Item = Node>) -> Tree {
 #[test]
 fn boxes_hold_all_states_and_none_with_a_state_is_refuted() {
     for (design, direction, l2, alike) in cases() {
-        let unit = design.reference_radius;
+        let unit = unit(&design);
         let cell = claim(&design, direction, l2, -0.2).cell().unwrap();
         let outcome = searched(&cell, 6_000);
         assert!(!outcome.closed());
@@ -253,6 +258,8 @@ fn a_proof_is_read_again_and_planted_faults_are_found() {
     open[at] = Node::OutOfOrder;
     refused(&claim, &open, "not out of order");
     open[at] = Node::Refuted(Vec::new());
+    refused(&claim, &open, "no node of a proof");
+    open[at] = Node::Refuted(vec![(Reason::Turn { pair: 99 }, 1)]);
     refused(&claim, &open, "not refuted");
     for (key, value) in [("minor_radius", 0.09), ("reference_radius", 1.0)] {
         let mut design = claim.design.clone();

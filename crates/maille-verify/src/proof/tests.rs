@@ -61,7 +61,7 @@ impl Random {
         form
     }
 
-    fn point(&mut self) -> [f64; UNKNOWNS] {
+    fn corner(&mut self) -> [f64; UNKNOWNS] {
         // Corners are where bounds are met.
         std::array::from_fn(|_| match self.0.random_range(0..3) {
             0 => 1.0,
@@ -75,7 +75,7 @@ impl Random {
 fn sums_and_products_are_enclosed() {
     let mut random = Random(ChaCha8Rng::seed_from_u64(1));
     for _ in 0..20_000 {
-        let (f, g, y) = (random.form(), random.form(), random.point());
+        let (f, g, y) = (random.form(), random.form(), random.corner());
         let [p, q] = [0, 1].map(|_| [-1.0, 0.0, 1.0][random.0.random_range(0..3)]);
         let (x, z) = (at(&f, &y, p), at(&g, &y, q));
         assert!(holds(&f.add(&g), &y, x.add(z)));
@@ -92,7 +92,7 @@ fn inverse_roots_are_enclosed() {
     let mut random = Random(ChaCha8Rng::seed_from_u64(2));
     let mut tried = 0;
     while tried < 20_000 {
-        let (f, y) = (random.form(), random.point());
+        let (f, y) = (random.form(), random.corner());
         let Some(root) = f.inverse_root() else { continue };
         tried += 1;
         let x = at(&f, &y, 0.0);
