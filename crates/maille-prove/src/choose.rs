@@ -112,7 +112,7 @@ fn combined(list: &[(Reason, Form)]) -> Option<Vec<(Reason, u32)>> {
     };
     let rows: Vec<Row> = list.iter().zip(&scales).map(row).collect();
     let (value, mut weights) = weights(&rows);
-    if !(value < 0.0) {
+    if value >= 0.0 || value.is_nan() {
         return None;
     }
     weights.iter_mut().zip(&scales).for_each(|(weight, scale)| *weight *= scale);

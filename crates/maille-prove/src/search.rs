@@ -96,15 +96,25 @@ fn widest(piece: &Piece) -> (usize, f64) {
 }
 
 /// What is found out about one box.
-fn judged(cell: &Cell, chooser: &Chooser<'_>, piece: &Piece) -> Result<Found, Option<(usize, [Piece; 2])>> {
+enum Judged {
+    Leaf(Found),
+    /// Along which unknown.
+    Halves(usize, Box<[Piece; 2]>),
+    TooNarrow,
+}
+
+fn judged(cell: &Cell, chooser: &Chooser<'_>, piece: &Piece) -> Judged {
     if cell.out_of_order(piece) {
-        return Ok(Found::OutOfOrder);
+        return Judged::Leaf(Found::OutOfOrder);
     }
     if let Some(terms) = chooser.refutation(piece) {
-        return Ok(Found::Refuted(terms));
+        return Judged::Leaf(Found::Refuted(terms));
     }
     let (unknown, width) = widest(piece);
-    Err(piece.halves(unknown).filter(|_| width > NARROWEST).map(|halves| (unknown, halves)))
+    match piece.halves(unknown).filter(|_| width > NARROWEST) {
+        Some(halves) => Judged::Halves(unknown, Box::new(halves)),
+        None => Judged::TooNarrow,
+    }
 }
 
 /// Looks for a proof that no state of the cell has l1 above that of its roots.
@@ -130,14 +140,14 @@ pub fn search(cell: &Cell, options: Options, cancel: &AtomicBool, told: impl Fn(
         let found: Vec<_> = round.par_iter().with_max_len(8).map(|of| judged(cell, &chooser, &of.piece)).collect();
         for (of, found) in round.into_iter().zip(found) {
             match found {
-                Ok(found) => nodes[of.node] = found,
-                Err(Some((unknown, halves))) => {
+                Judged::Leaf(found) => nodes[of.node] = found,
+                Judged::Halves(unknown, halves) => {
                     let first = nodes.len();
                     nodes[of.node] = Found::Split(unknown, first);
                     nodes.extend([Found::Open, Found::Open]);
                     queue.extend([0, 1].map(|k| Waiting { piece: halves[k], node: first + k }));
                 }
-                Err(None) => {
+                Judged::TooNarrow => {
                     narrow = true;
                     queue.push(of);
                 }

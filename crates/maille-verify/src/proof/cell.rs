@@ -136,8 +136,8 @@ impl Cell {
 
     /// R_a + R_b − r_a − r_b of the linked rings, rounded up.
     fn longest(&self) -> f64 {
-        let wire = (self.wires[0] + self.wires[1]).next_down();
-        (self.radii[0] + self.radii[1] - wire).next_up().next_up()
+        let wires = Form::number(self.wires[0]).plus(self.wires[1]);
+        Form::number(self.radii[0]).plus(self.radii[1]).sub(&wires).sup()
     }
 
     /// The boxes of the whole cell.
@@ -162,7 +162,7 @@ impl Cell {
             let step = self.pair([0, 1], shift, basis, None).step[0];
             lo[1] = lo[1].max(step.times(-0.5).inf());
         }
-        if (0..4).any(|k| !(lo[k] <= hi[k])) {
+        if (0..4).any(|k| lo[k] > hi[k]) {
             return Ok(());
         }
         let (mut low, mut high) = ([-1.0; UNKNOWNS], [1.0; UNKNOWNS]);

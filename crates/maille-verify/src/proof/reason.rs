@@ -261,7 +261,7 @@ fn not_nearer(v: &Forms, u: &Numbers, s: f64) -> Option<Form> {
         Some(along.neg().plus(-least))
     } else if lo.is_finite() && hi.is_finite() {
         // Between lo and hi, ν² is below its chord (lo + hi) ν − lo hi.
-        let product = up(lo * hi * -1.0);
+        let product = up(-(lo * hi));
         let chord = along.times(lo + hi).plus(product).plus(-least * least * (1.0 - ROUNDING));
         Some(chord.plus(ROUNDING * (lo * lo + hi * hi)))
     } else {

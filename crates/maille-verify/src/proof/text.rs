@@ -52,6 +52,13 @@ pub enum Node {
     Refuted(Vec<(Reason, u32)>),
 }
 
+/// A box, what refutes it, and its line.
+struct Leaf {
+    piece: Piece,
+    terms: Vec<(Reason, u32)>,
+    line: usize,
+}
+
 /// A proof that was read: its claim, and each box that is to be refuted with what refutes it.
 pub struct Proof {
     /// What is claimed.
@@ -59,7 +66,7 @@ pub struct Proof {
     /// Name of the design.
     pub design: String,
     cell: Cell,
-    boxes: Vec<(Piece, Vec<(Reason, u32)>, usize)>,
+    boxes: Vec<Leaf>,
     nodes: usize,
 }
 
@@ -79,7 +86,7 @@ impl Claim {
                 self.schema, self.cell
             ));
         }
-        if !(self.l1_at_most >= self.l1_from) {
+        if self.l1_at_most < self.l1_from {
             return Err(format!("l1 <= {} is claimed of states from {} on", self.l1_at_most, self.l1_from));
         }
         Cell::new(&design, self.direction_deg, self.l2, self.l1_from)
@@ -177,7 +184,7 @@ impl Proof {
                     let words = format!("a box with l1 up to {} is not refuted, above the claim", piece.hi[0] - 1.0);
                     return Err((line, words));
                 }
-                Node::Refuted(terms) => self.boxes.push((piece, terms, line)),
+                Node::Refuted(terms) => self.boxes.push(Leaf { piece, terms, line }),
             }
         }
         Ok(())
@@ -200,7 +207,7 @@ impl Proof {
 
     /// Checks box `k`, counted from 0: that its inequalities contradict each other. Its line otherwise.
     pub fn check(&self, k: usize) -> Result<(), usize> {
-        let (piece, terms, line) = &self.boxes[k];
+        let Leaf { piece, terms, line } = &self.boxes[k];
         if self.cell.refutes(&Rings::of(piece), terms) { Ok(()) } else { Err(*line) }
     }
 }
