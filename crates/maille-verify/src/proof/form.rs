@@ -2,13 +2,13 @@
 //!
 //! A box is the image of [−1, 1]^8, and a [`Form`] stands for all functions f of y with
 //!
-//!     |f(y) − c − Σ b_i y_i| ≤ r    for all y in [−1, 1]^8.
+//! |f(y) − c − Σ b_i y_i| ≤ r    for all y in [−1, 1]^8.
 //!
 //! Sums keep the linear part, so what cancels between two forms cancels; products and roots put what is not linear into r. Forms
 //! without a linear part are intervals.
 //!
 //! **Rounding.** One operation of IEEE arithmetic errs by at most 2⁻⁵³ of its result, and by 2⁻¹⁰⁷⁵ if that underflows. Every
-//! operation here adds at least twice that for each rounding to r, and [`up`] makes up for the rounding of r itself. A number
+//! operation here adds at least twice that for each rounding to r, and `up` makes up for the rounding of r itself. A number
 //! that overflows or is not a number ends as an r that is no number, and with such a form nothing is ever refuted: all
 //! comparisons that refute are false for it.
 
