@@ -19,6 +19,7 @@ pub struct Summary {
     statuses: BTreeMap<&'static str, usize>,
     images: usize,
     grows_with_cell: usize,
+    better_chance: Option<f64>,
     solved: usize,
     wall_s: f64,
     interrupted: bool,
@@ -70,6 +71,7 @@ impl Summary {
             statuses: Status::ALL.iter().map(|s| (s.name(), count(*s))).filter(|(_, n)| *n > 0).collect(),
             images: rows.iter().filter(|r| r.image_of_deg.is_some()).count(),
             grows_with_cell: rows.iter().filter(|r| r.l1.is_some() && r.grows_with_cell == Some(true)).count(),
+            better_chance: rows.iter().filter_map(|r| r.better_chance).max_by(f64::total_cmp),
             solved,
             wall_s: took.as_secs_f64(),
             interrupted,
@@ -89,6 +91,12 @@ impl Summary {
             if let Some(count) = self.statuses.get(status.name()) {
                 output::say!("{count} {}", status.name());
             }
+        }
+        if let Some(chance) = self.better_chance {
+            let percent = 100.0 * chance;
+            output::say!(
+                "estimated chance that one more start raises a limit: up to {percent:.0} %; see better_chance"
+            );
         }
         match self.grows_with_cell {
             0 => {}

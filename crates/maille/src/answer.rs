@@ -57,6 +57,8 @@ pub struct Answer {
     pub n_starts: Option<u64>,
     /// Distinct certified values among them, more than 1e-7 from each other (exact method).
     pub n_distinct: Option<u64>,
+    /// Estimated chance that another start finds more, where the bound is not attained (exact method).
+    pub better_chance: Option<f64>,
     /// Minimisations, or local maximisations.
     pub runs: u64,
     /// Newton iterations, or quadratic programs, of all runs.
@@ -124,6 +126,7 @@ impl Answer {
             by_cell: Vec::new(),
             n_starts: None,
             n_distinct: None,
+            better_chance: None,
             runs: 0,
             iterations: 0,
             residual: None,

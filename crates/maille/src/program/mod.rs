@@ -122,6 +122,8 @@ pub struct SheetProgram<'a> {
     columns: Vec<(Option<usize>, usize)>,
     spins_freely: Vec<bool>,
     first_parameter: usize,
+    /// Wire, as a share of the model's.
+    wire: f64,
     /// Pairs whose rows are heights, see [`flat`].
     flat: BTreeSet<u64>,
     /// Pairs that were flat, and are not to be again.
@@ -170,7 +172,12 @@ impl<'a> SheetProgram<'a> {
             .collect();
         let first_parameter = next;
         let (flat, released) = Default::default();
-        SheetProgram { model, pull, columns, spins_freely, first_parameter, flat, released }
+        SheetProgram { model, pull, columns, spins_freely, first_parameter, wire: 1.0, flat, released }
+    }
+
+    /// The same program with all minor radii this share of the model's.
+    pub(crate) fn with_wire(self, wire: f64) -> Self {
+        SheetProgram { wire, ..self }
     }
 
     /// Poses of `state` with the lattice of the parameters `p`.
@@ -195,7 +202,7 @@ impl<'a> SheetProgram<'a> {
     /// The core distance that rings which touch at `touching` must keep at `x`.
     fn required(&self, x: &Posed, touching: f64) -> f64 {
         let parameters = self.pull.parameters.iter().zip(&x.p);
-        touching + parameters.map(|(parameter, p)| p * parameter.keeps(touching)).sum::<f64>()
+        self.wire * touching + parameters.map(|(parameter, p)| p * parameter.keeps(touching)).sum::<f64>()
     }
 
     /// The near pairs of `x`.

@@ -63,7 +63,7 @@ pub(super) fn local_maximize(
     model: &Model,
     program: &mut SheetProgram<'_>,
     start: Posed,
-    restarts: usize,
+    (restarts, first_radius): (usize, f64),
     rng: &mut ChaCha8Rng,
     cancel: &AtomicBool,
 ) -> (Option<LocalSolution>, u64) {
@@ -75,7 +75,7 @@ pub(super) fn local_maximize(
             program.forget_released_pairs();
             x = program.posed(perturbed(model, &x.state, size, rng), x.p.clone());
         }
-        let (end, solve) = rounds.round(program, x);
+        let (end, solve) = rounds.round(program, x, first_radius);
         if solve.certified {
             best = Some(solve);
             break;
@@ -120,10 +120,10 @@ impl Rounds<'_> {
     }
 
     /// Maximises and polishes in turns, until a certificate holds or nothing more is promised.
-    fn round(&mut self, program: &mut SheetProgram<'_>, start: Posed) -> (Posed, Solve) {
+    fn round(&mut self, program: &mut SheetProgram<'_>, start: Posed, first_radius: f64) -> (Posed, Solve) {
         let mut x = start;
         let mut known: Vec<Multiplier> = Vec::new();
-        let (mut pause_at, mut first_radius) = (0.1, 0.1);
+        let (mut pause_at, mut first_radius) = (0.1, first_radius);
         let mut last = None;
         for round in 0..ROUNDS {
             let options = SqpOptions { pause_at, first_radius, ..SqpOptions::default() };

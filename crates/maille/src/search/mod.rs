@@ -1,6 +1,6 @@
 //! The exact method: answers by local maximisation from many starts, certified and compared with proven bounds.
 //!
-//! `starts` are states to begin with, `local` is one maximisation, `multistart` the search from many starts and in larger cells, and the other files say what is
+//! `starts` are states to begin with, `stop` says when they are enough, `local` is one maximisation, `multistart` the search from many starts and in larger cells, and the other files say what is
 //! maximised and from where: `stretch` (with `stretch_lattices`, and `unlinked` where no chain of links binds), `strain`, `extreme`
 //! (wire and clearance). `overlap` frees a start that overlaps. Every tolerance is in `options`.
 
@@ -11,6 +11,7 @@ mod multistart;
 mod options;
 mod overlap;
 mod starts;
+mod stop;
 #[doc(hidden)]
 pub mod strain;
 #[doc(hidden)]

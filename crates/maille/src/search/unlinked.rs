@@ -7,7 +7,7 @@
 use super::{
     multistart::{Entered, Target},
     options::{UNLINKED_STAGE, UNLINKED_STAGES},
-    starts::Start,
+    starts::{Start, explored_with_own_wire},
     stretch::{ExactMethod, Stretch},
 };
 use crate::{
@@ -40,7 +40,9 @@ impl ExactMethod<'_> {
     ) -> (Answer, Vec<Option<Start>>) {
         let model = &self.models[0];
         let none = vec![None; self.models.len()];
-        let starts: Vec<Start> = neighbour.into_iter().chain(self.fresh(0..self.options.starts)).collect();
+        let stop = self.stop();
+        let drawn = (0..stop.least as usize).map(|k| explored_with_own_wire(model, self.options.seed, k));
+        let starts: Vec<Start> = neighbour.into_iter().chain(drawn).collect();
         let (mut runs, mut iterations) = (0, 0);
         for start in starts.clone() {
             let (apart, more) = pull_apart(model, stretch, start, cancel);
@@ -56,7 +58,7 @@ impl ExactMethod<'_> {
             }
         }
         let search = self.search(stretch, f64::INFINITY, cancel);
-        let mut found = search.run(model, starts);
+        let mut found = search.run(model, starts, stop);
         if cancel.load(Ordering::Relaxed) {
             return (self.without_state(Status::Interrupted), none);
         }

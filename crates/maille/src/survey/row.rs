@@ -89,6 +89,7 @@ impl Asked<'_> {
             by_cell: (!by_cell.is_empty()).then(|| by_cell.join("; ")),
             image_of_deg,
             grows_with_cell,
+            better_chance: limit.and(answer.better_chance),
         }
     }
 
