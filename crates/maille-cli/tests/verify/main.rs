@@ -272,6 +272,7 @@ const LIMIT: [&str; 28] = [
     "zero_modes",
     "links_ok",
     "n_distinct",
+    "better_chance",
     "own_image_force",
     "l1_uncertified",
     "l2_min",

@@ -122,6 +122,7 @@ export interface LimitRow {
   by_cell: string | null;
   image_of_deg: number | null;
   grows_with_cell: boolean | null;
+  better_chance: number | null;
 }
 
 export interface Listed {
