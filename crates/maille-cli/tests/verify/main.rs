@@ -254,7 +254,7 @@ fn a_run_that_was_killed_between_two_files_is_open_not_false() {
 }
 
 /// What a row without a limit leaves empty.
-const LIMIT: [&str; 28] = [
+const LIMIT: [&str; 29] = [
     "l1",
     "lambda1",
     "lambda2",
