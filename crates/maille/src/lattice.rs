@@ -4,7 +4,7 @@ use crate::error::InvalidInput;
 use maille_geometry::Vec3;
 use nalgebra::{Matrix2, Vector2};
 use serde::{Deserialize, Serialize};
-use std::{fmt, str::FromStr};
+use std::{f64::consts::TAU, fmt, str::FromStr};
 
 /// Shift of an image: the number of lattice vectors a1 and a2 from the main cell.
 pub type Shift = [i32; 2];
@@ -117,6 +117,33 @@ impl fmt::Display for Cell {
 impl From<Cell> for String {
     fn from(cell: Cell) -> Self {
         cell.to_string()
+    }
+}
+
+impl Cell {
+    /// Phases from a cell of one copy to the next along a1 and a2 of the waves that fit into this cell, other than a motion of all
+    /// copies alike; one of q and −q, which are the same real motions. q = 2π A⁻¹ k with the rows A of the cell.
+    pub fn wave_phases_rad(&self) -> Vec<[f64; 2]> {
+        let [[a, b], [c, d]] = self.rows.map(|row| row.map(i64::from));
+        let det = a * d - b * c;
+        let n = det.abs();
+        let mut found: Vec<[i64; 2]> = Vec::new();
+        for (k, l) in (0..n).flat_map(|k| (0..n).map(move |l| (k, l))) {
+            let q = [d * k - b * l, a * l - c * k].map(|x| (x * det.signum()).rem_euclid(n));
+            let opposite = q.map(|x| (-x).rem_euclid(n));
+            if q != [0, 0] && !found.contains(&q) && !found.contains(&opposite) {
+                found.push(q);
+            }
+        }
+        found.into_iter().map(|q| q.map(|x| TAU * x as f64 / n as f64)).collect()
+    }
+
+    /// Whether a wave with these phases fits into this cell.
+    pub fn holds_wave(&self, phases_rad: [f64; 2]) -> bool {
+        self.rows.iter().all(|[k, l]| {
+            let turns = (phases_rad[0] * f64::from(*k) + phases_rad[1] * f64::from(*l)) / TAU;
+            (turns - turns.round()).abs() < 1e-9
+        })
     }
 }
 
@@ -300,6 +327,17 @@ mod tests {
             let cosets = cell.cosets();
             assert_eq!(cosets.len(), n, "{text}: {cosets:?}");
             assert_eq!(cosets[0], [0, 0]);
+        }
+    }
+
+    #[test]
+    fn waves_of_a_cell() {
+        for (text, n) in [("1x1", 0), ("2x1", 1), ("2x2", 3), ("3x1", 1), ("3x3", 4), ("1,1;-1,1", 1), ("4x1", 2)] {
+            let cell: Cell = text.parse().unwrap();
+            let waves = cell.wave_phases_rad();
+            assert_eq!(waves.len(), n, "{text}: {waves:?}");
+            assert!(waves.iter().all(|q| cell.holds_wave(*q)), "{text}: {waves:?}");
+            assert!(!cell.holds_wave([1.0, 0.3]) && !cell.holds_wave([TAU / 5.0, TAU / 7.0]));
         }
     }
 

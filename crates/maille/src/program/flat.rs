@@ -9,11 +9,11 @@ use super::{
     Posed, SheetProgram,
     key::{pair_key, pair_of_key},
     metric::Factored,
-    pair::height_angles_rad,
+    pair::{PairMap, height_angles_rad},
 };
 use crate::{
     solver::constraints::{Multiplier, Row},
-    topology::{self, near_pairs::NearPair},
+    topology::{self, RingPair, near_pairs::NearPair},
 };
 use maille_geometry::Vec3;
 use std::collections::BTreeSet;
@@ -121,6 +121,16 @@ impl SheetProgram<'_> {
         rows.extend(found.into_iter().filter(|row| row.gap < CLOSED));
     }
 
+    /// The pairs that are flat.
+    pub fn flat_pairs(&self) -> &BTreeSet<u64> {
+        &self.flat
+    }
+
+    /// The same program with these pairs flat.
+    pub fn with_flat_pairs(self, flat: BTreeSet<u64>) -> Self {
+        SheetProgram { flat, ..self }
+    }
+
     /// Takes back that pairs were released: for a solve from elsewhere.
     pub(crate) fn forget_released_pairs(&mut self) {
         self.released.clear();
@@ -128,11 +138,15 @@ impl SheetProgram<'_> {
 
     /// A flat pair with offset e of its axes: the true gap at B's direction u is (e·u)²/2s above the height. Of all ways
     /// to spread the pair's force Σ μ = N and moment Σ μ u = T over the circle, the one that uses this least leaves a
-    /// curvature −(T·e)²/(N s).
-    pub(super) fn curvature_of_flat_pairs(&self, x: &Posed, multipliers: &[Multiplier]) -> Vec<Vec<f64>> {
+    /// curvature −(T·e)²/(N s). As vectors v of terms −v vᵀ over `n` unknowns; `maps` gives those that move a pair.
+    pub(super) fn curvature_of_flat_pairs(
+        &self,
+        x: &Posed,
+        multipliers: &[Multiplier],
+        n: usize,
+        maps: &dyn Fn(&RingPair) -> Vec<PairMap>,
+    ) -> Vec<Vec<f64>> {
         let (model, state) = (self.model, &x.state);
-        let n = self.first_parameter + self.pull.parameters.len();
-        let factored = self.pull.factored(&x.p);
         let mut out = Vec::new();
         for &key in &self.flat {
             let pair = pair_of_key(key);
@@ -147,19 +161,20 @@ impl SheetProgram<'_> {
                 continue;
             }
             let weight = (force * self.required(x, model.contact_distance(pair.ring_a, pair.ring_b))).sqrt();
-            let map = self.pair_map(&pair, &self.all_turns(state), factored.as_ref());
             let reference = |ring: usize| state.poses[model.rings[ring].element].position;
             // From the element's reference point: to B's centre on B, and on A.
             let own = b.center - reference(pair.ring_b) - state.translation(pair.shift);
             let seen = b.center - reference(pair.ring_a);
-            let mut term = vec![0.0; n];
-            for (&column, motion) in map.columns.iter().zip(&map.motions) {
-                let part = |k: usize| Vec3::new(motion[3 * k], motion[3 * k + 1], motion[3 * k + 2]);
-                // The axes come apart by what B's centre moves in A's frame.
-                let apart = part(0) + part(2).cross(&own) - part(1).cross(&seen);
-                term[column] = apart.dot(&moment) / weight;
+            for map in maps(&pair) {
+                let mut term = vec![0.0; n];
+                for (&column, motion) in map.columns.iter().zip(&map.motions) {
+                    let part = |k: usize| Vec3::new(motion[3 * k], motion[3 * k + 1], motion[3 * k + 2]);
+                    // The axes come apart by what B's centre moves in A's frame.
+                    let apart = part(0) + part(2).cross(&own) - part(1).cross(&seen);
+                    term[column] = apart.dot(&moment) / weight;
+                }
+                out.push(term);
             }
-            out.push(term);
         }
         out
     }

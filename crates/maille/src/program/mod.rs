@@ -12,6 +12,7 @@ pub mod gap_kernel;
 mod key;
 pub mod metric;
 mod pair;
+pub mod waves;
 
 use self::{
     key::{bound_key, pair_key, pair_of_key},
@@ -280,7 +281,8 @@ impl Program for SheetProgram<'_> {
         let turns = self.all_turns(&x.state);
         let factored = self.pull.factored(&x.p);
         for near in within {
-            self.pair_rows(x, near, band, (&turns, factored.as_ref()), derivatives, &mut rows);
+            let map = self.pair_map(&near.pair, &turns, factored.as_ref());
+            self.pair_rows(x, near, band, &map, derivatives, &mut rows);
         }
         rows
     }
@@ -333,6 +335,9 @@ impl Program for SheetProgram<'_> {
     }
 
     fn hidden_curvature(&self, x: &Posed, multipliers: &[Multiplier]) -> Vec<Vec<f64>> {
-        self.curvature_of_flat_pairs(x, multipliers)
+        let (turns, factored) = (self.all_turns(&x.state), self.pull.factored(&x.p));
+        let n = self.first_parameter + self.pull.parameters.len();
+        let map = |pair: &RingPair| vec![self.pair_map(pair, &turns, factored.as_ref())];
+        self.curvature_of_flat_pairs(x, multipliers, n, &map)
     }
 }

@@ -4,6 +4,7 @@ use super::{
     Posed, SheetProgram,
     key::{bound_key, pair_key},
     metric::Factored,
+    waves::WaveUnknowns,
 };
 use crate::{
     program::gap_kernel::{Grad, Hess, PairFrame, RootMotion},
@@ -27,9 +28,16 @@ pub(super) struct PairMap {
     pub motions: Vec<Grad>,
     /// Second derivatives of the relative position with two of these columns, where the lattice moves on a curve.
     bends: Vec<(usize, usize, Vec3)>,
+    /// Parameters among the columns: parameter and place.
+    parameters: Vec<(usize, usize)>,
 }
 
 impl PairMap {
+    fn new() -> Self {
+        let room = || Vec::with_capacity(14);
+        PairMap { columns: room(), motions: Vec::with_capacity(14), bends: Vec::new(), parameters: Vec::new() }
+    }
+
     fn add(&mut self, column: usize, block: usize, v: &Vec3, sign: f64) {
         let at = self.columns.iter().position(|&c| c == column).unwrap_or_else(|| {
             self.columns.push(column);
@@ -66,7 +74,7 @@ impl SheetProgram<'_> {
     /// The unknowns that move the pair, with their motions.
     pub(super) fn pair_map(&self, pair: &RingPair, turns: &[Vec<Vec3>], factored: Option<&Factored>) -> PairMap {
         let (i, j) = (self.model.rings[pair.ring_a].element, self.model.rings[pair.ring_b].element);
-        let mut map = PairMap { columns: Vec::with_capacity(14), motions: Vec::with_capacity(14), bends: Vec::new() };
+        let mut map = PairMap::new();
         let axes = [Vec3::x(), Vec3::y(), Vec3::z()];
         if i != j {
             for (element, sign) in [(i, -1.0), (j, 1.0)] {
@@ -82,16 +90,38 @@ impl SheetProgram<'_> {
         let [from, to] = [i, j].map(|e| self.model.elements[e].anchor);
         let shift: [f64; 2] = std::array::from_fn(|k| f64::from(pair.shift[k]) + (to[k] - from[k]));
         let image = |[a1, a2]: [Vec3; 2]| a1 * shift[0] + a2 * shift[1];
-        let mut free = Vec::new();
         for (m, parameter) in self.pull.parameters.iter().enumerate() {
             let rate = image(factored.map_or(parameter.rate, |f| self.pull.base.map(|a| f.rate(m, &a))));
             if rate != Vec3::zeros() || parameter.keeps(1.0) != 0.0 {
                 map.add(self.first_parameter + m, 0, &rate, 1.0);
-                free.push((m, map.columns.len() - 1));
+                map.parameters.push((m, map.columns.len() - 1));
             }
         }
-        for (f, &(m, r)) in factored.iter().flat_map(|f| free.iter().map(move |at| (f, at))) {
-            map.bends.extend(free.iter().map(|&(n, c)| (r, c, image(self.pull.base.map(|a| f.bend(m, n, &a))))));
+        for (f, &(m, r)) in factored.iter().flat_map(|f| map.parameters.iter().map(move |at| (f, at))) {
+            let bend = |&(n, c): &(usize, usize)| (r, c, image(self.pull.base.map(|a| f.bend(m, n, &a))));
+            map.bends.extend(map.parameters.iter().map(bend));
+        }
+        map
+    }
+
+    /// The unknowns of a wave that move the pair, see [`super::waves`]: the real or the imaginary part of the motion, with the
+    /// phase of the second ring's cell.
+    pub(super) fn wave_map(&self, pair: &RingPair, turns: &[Vec<Vec3>], phase_rad: f64, imaginary: bool) -> PairMap {
+        let layout = WaveUnknowns::new(turns);
+        let mut map = PairMap::new();
+        for (ring, sign, block, phase_rad) in [(pair.ring_a, -1.0, 1, 0.0), (pair.ring_b, 1.0, 2, phase_rad)] {
+            let element = self.model.rings[ring].element;
+            let (sin, cos) = f64::sin_cos(phase_rad);
+            let weights = if imaginary { [sin, cos] } else { [cos, -sin] };
+            for (part, weight) in weights.into_iter().enumerate().filter(|(_, weight)| *weight != 0.0) {
+                let first = layout.first(element, part);
+                for (k, axis) in [Vec3::x(), Vec3::y(), Vec3::z()].iter().enumerate() {
+                    map.add(first + k, 0, axis, sign * weight);
+                }
+                for (k, axis) in turns[element].iter().enumerate() {
+                    map.add(first + 3 + k, block, axis, weight);
+                }
+            }
         }
         map
     }
@@ -118,9 +148,8 @@ impl SheetProgram<'_> {
     /// Gradient of a gap in the unknowns of `map`, from that of the distance.
     fn gap_gradient(&self, map: &PairMap, near: &NearPair, distance: &Grad) -> Vec<f64> {
         let mut out = map.gradient(distance);
-        let parameters = out.iter_mut().zip(&map.columns).filter(|(_, column)| **column >= self.first_parameter);
-        for (entry, column) in parameters {
-            *entry -= self.pull.parameters[column - self.first_parameter].keeps(near.touching);
+        for &(m, at) in &map.parameters {
+            out[at] -= self.pull.parameters[m].keeps(near.touching);
         }
         out
     }
@@ -148,19 +177,18 @@ impl SheetProgram<'_> {
         angles_rad.iter().map(gap).collect()
     }
 
-    /// Adds the rows of a pair up to `band`, with first derivatives, and second ones where they are asked for.
+    /// Adds the rows of a pair up to `band` in the unknowns of `map`, with first derivatives, and second ones where they are asked for.
     pub(super) fn pair_rows(
         &self,
         x: &Posed,
         near: &NearPair,
         band: f64,
-        (turns, factored): (&[Vec<Vec3>], Option<&Factored>),
+        map: &PairMap,
         derivatives: Derivatives<'_>,
         rows: &mut Vec<Row>,
     ) {
         let key = pair_key(&near.pair);
         let frame = self.frame(x, near);
-        let map = self.pair_map(&near.pair, turns, factored);
         let required = self.required(x, near.touching);
         let loaded = |angle: f64, minimum: bool| match derivatives {
             Derivatives::Second(loads) => loads.at(key, angle, minimum) != 0.0,
@@ -170,7 +198,7 @@ impl SheetProgram<'_> {
             rows.push(Row {
                 minimum,
                 columns: map.columns.clone(),
-                gradient: self.gap_gradient(&map, near, grad),
+                gradient: self.gap_gradient(map, near, grad),
                 hessian: hess.map_or_else(Vec::new, |h| map.hessian(grad, h)),
                 ..Row::value(key, angle, distance - required)
             });

@@ -8,21 +8,24 @@ use super::{
     local::{LocalSolution, local_maximize},
     options::{
         ATTAINED, BOUND_RETRIES, BOUND_RETRY_GAP, BOUND_RETRY_SIZE, CELL_PERTURBATION, LARGER_CELL_RESTARTS,
-        OWN_IMAGE_FORCE, RESTARTS, SAME_VALUE,
+        OWN_IMAGE_FORCE, RESTARTS, SAME_VALUE, WAVE_SIZE,
     },
-    starts::{Start, perturbed, perturbed_starts, rng, tiled},
+    starts::{Start, moved, perturbed, perturbed_starts, rng, tiled},
 };
 use crate::{
     answer::{Answer, CellTrend},
     lattice::Cell,
     model::Model,
-    program::{Contact, LatticeFamily, SheetProgram},
+    program::{Contact, LatticeFamily, SheetProgram, waves::WaveMode},
     record::Status,
     state::State,
     topology::smallest_gap,
 };
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::{
+    cmp::Ordering,
+    sync::atomic::{self, AtomicBool},
+};
 
 /// A start that was brought to what is held.
 pub(super) struct Entered {
@@ -164,14 +167,19 @@ impl<T: Target> Multistart<'_, T> {
         let smallest = starts[0].clone().or_else(|| rule.fallback.clone());
         let presses = |best: &LocalSolution| own_image_force(&models[0], &best.contacts) > OWN_IMAGE_FORCE;
         let asks = rule.every || result.best.as_ref().map_or(rule.where_none, presses);
+        let waves = result.best.as_ref().map_or(Vec::new(), |best| self.unstable_waves(models, best));
         let (mut result, mut cell) = (result, 0);
         for larger in 1..models.len() {
             // The last cell is for values that have grown.
             let idle = !rule.every && larger + 1 == models.len() && larger > 1 && cell == 0 && result.best.is_some();
-            if !asks || idle || result.attains(self.upper_bound) || self.cancelled() {
+            if result.attains(self.upper_bound) || self.cancelled() {
                 break;
             }
             let model = &models[larger];
+            let waved = smallest.iter().flat_map(|from| self.along_waves(model, from, &waves)).collect::<Vec<_>>();
+            if (!asks || idle) && waved.is_empty() {
+                continue;
+            }
             let repeated = smallest.iter().map(|from| {
                 let mut stream = rng(self.seed.wrapping_add(larger as u64));
                 let state = perturbed(model, &tiled(model, &from.state), CELL_PERTURBATION, &mut stream);
@@ -180,7 +188,7 @@ impl<T: Target> Multistart<'_, T> {
             let neighbour = rule.neighbours.get(larger).into_iter().flatten().cloned();
             // Then starts of its own: the smaller cell's answer can hide what they find.
             let own = perturbed_starts(model, self.seed, 0..rule.own_starts);
-            let found = self.run(model, repeated.chain(neighbour).chain(own).collect());
+            let found = self.run(model, repeated.chain(neighbour).chain(own).chain(waved).collect());
             by_cell.push(found.by_cell(model.cell));
             starts[larger] = found.best.as_ref().map(|best| self.target.start(best));
             if found.improves_on(&result) {
@@ -191,8 +199,35 @@ impl<T: Target> Multistart<'_, T> {
         CellSearch { result, cell, by_cell, starts }
     }
 
+    /// The waves along which a solution of the first cell can go on in one of the larger cells: those of negative curvature.
+    fn unstable_waves(&self, models: &[Model], best: &LocalSolution) -> Vec<WaveMode> {
+        let model = &models[0];
+        if !best.certified || best.value() >= self.upper_bound - ATTAINED || model.cell != Cell::PRIMITIVE {
+            return Vec::new();
+        }
+        let family = self.target.family(model);
+        let program = SheetProgram::new(model, &family).with_flat_pairs(best.flat.clone());
+        let x = program.posed(best.state.clone(), best.p.clone());
+        let mut phases: Vec<[f64; 2]> = models[1..].iter().flat_map(|model| model.cell.wave_phases_rad()).collect();
+        phases.sort_by(|a, b| a.partial_cmp(b).unwrap_or(Ordering::Equal));
+        phases.dedup_by(|a, b| (0..2).all(|k| (a[k] - b[k]).abs() < 1e-9));
+        let mode = |q| program.least_wave(&x, &best.certificate.multipliers, q);
+        phases.into_iter().filter_map(mode).filter(|mode| mode.curvature < 0.0).collect()
+    }
+
+    /// The state of the first cell repeated over a larger one and moved along each of `waves` that fits into it, both ways.
+    fn along_waves(&self, model: &Model, from: &Start, waves: &[WaveMode]) -> Vec<Start> {
+        let copies = tiled(model, &from.state);
+        let along = |wave: &WaveMode, size: f64| {
+            let state = moved(model, &copies, wave.motion(&model.cell.cosets(), size));
+            Start { state, ..from.clone() }
+        };
+        let waves = waves.iter().filter(|wave| model.cell.holds_wave(wave.phases_rad));
+        waves.flat_map(|wave| [WAVE_SIZE, -WAVE_SIZE].map(|size| along(wave, size))).collect()
+    }
+
     fn cancelled(&self) -> bool {
-        self.cancel.load(Ordering::Relaxed)
+        self.cancel.load(atomic::Ordering::Relaxed)
     }
 }
 

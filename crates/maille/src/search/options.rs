@@ -73,6 +73,8 @@ pub(super) const CELL_STARTS: usize = 3;
 pub(super) const FREE_SLACK: f64 = 1e-6;
 /// Solves for an end of such a range, each from where the last one paused.
 pub(super) const RANGE_ROUNDS: usize = 3;
+/// Largest component of the motion along an unstable wave with which a larger cell begins, in R and radians.
+pub(super) const WAVE_SIZE: f64 = 0.05;
 /// With l2 free: distance of the held l2 whose limits are starts.
 pub(super) const LATERAL_STEP: f64 = 0.125;
 /// As many of the largest of them are starts.
@@ -120,6 +122,7 @@ pub struct ExactParameters {
     cell_starts: usize,
     free_slack: f64,
     range_rounds: usize,
+    wave_size: f64,
     lateral_step: f64,
     lateral_starts: usize,
     lateral_rounds: usize,
@@ -156,6 +159,7 @@ impl ExactOptions {
             cell_starts: CELL_STARTS,
             free_slack: FREE_SLACK,
             range_rounds: RANGE_ROUNDS,
+            wave_size: WAVE_SIZE,
             lateral_step: LATERAL_STEP,
             lateral_starts: LATERAL_STARTS,
             lateral_rounds: LATERAL_ROUNDS,

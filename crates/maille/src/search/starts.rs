@@ -44,7 +44,11 @@ pub(super) fn perturbed_starts(model: &Model, seed: u64, numbers: Range<usize>) 
 pub(super) fn perturbed(model: &Model, state: &State, size: f64, rng: &mut ChaCha8Rng) -> State {
     let mut vector = || Vec3::from_fn(|_, _| size * rng.random_range(-1.0..1.0));
     let elements = state.poses.iter().map(|_| (vector(), vector())).collect();
-    let motion = Motion { elements, lattice: [Vec3::zeros(); 2], carried: false };
+    moved(model, state, Motion { elements, lattice: [Vec3::zeros(); 2], carried: false })
+}
+
+/// `state` after a motion of its elements; after less of it where circles could meet.
+pub(super) fn moved(model: &Model, state: &State, motion: Motion) -> State {
     let fraction = StepBound::new(model, state).largest_fraction(model, &motion, f64::INFINITY);
     let moved = state
         .poses

@@ -12,7 +12,7 @@ mod kkt_system;
 pub mod newton;
 pub mod polish;
 pub mod qp;
-mod reduced_hessian;
+pub mod reduced_hessian;
 pub mod shifted;
 pub mod sparse;
 pub mod sqp;
