@@ -121,21 +121,10 @@ impl From<Cell> for String {
 }
 
 impl Cell {
-    /// Phases from a cell of one copy to the next along a1 and a2 of the waves that fit into this cell, other than a motion of all
-    /// copies alike; one of q and −q, which are the same real motions. q = 2π A⁻¹ k with the rows A of the cell.
-    pub fn wave_phases_rad(&self) -> Vec<[f64; 2]> {
-        let [[a, b], [c, d]] = self.rows.map(|row| row.map(i64::from));
-        let det = a * d - b * c;
-        let n = det.abs();
-        let mut found: Vec<[i64; 2]> = Vec::new();
-        for (k, l) in (0..n).flat_map(|k| (0..n).map(move |l| (k, l))) {
-            let q = [d * k - b * l, a * l - c * k].map(|x| (x * det.signum()).rem_euclid(n));
-            let opposite = q.map(|x| (-x).rem_euclid(n));
-            if q != [0, 0] && !found.contains(&q) && !found.contains(&opposite) {
-                found.push(q);
-            }
-        }
-        found.into_iter().map(|q| q.map(|x| TAU * x as f64 / n as f64)).collect()
+    /// The cells of `n` copies, one for each lattice: (a, 0; b, d) with a d = n and 0 ≤ b < a, those without b first.
+    pub(crate) fn of_copies(n: i32) -> impl Iterator<Item = Cell> {
+        let factors = (1..=n).filter(move |a| n % a == 0);
+        factors.flat_map(move |a| (0..a).map(move |b| Cell { rows: [[a, 0], [b, n / a]] }))
     }
 
     /// Whether a wave with these phases fits into this cell.
@@ -331,13 +320,24 @@ mod tests {
     }
 
     #[test]
-    fn waves_of_a_cell() {
-        for (text, n) in [("1x1", 0), ("2x1", 1), ("2x2", 3), ("3x1", 1), ("3x3", 4), ("1,1;-1,1", 1), ("4x1", 2)] {
-            let cell: Cell = text.parse().unwrap();
-            let waves = cell.wave_phases_rad();
-            assert_eq!(waves.len(), n, "{text}: {waves:?}");
-            assert!(waves.iter().all(|q| cell.holds_wave(*q)), "{text}: {waves:?}");
-            assert!(!cell.holds_wave([1.0, 0.3]) && !cell.holds_wave([TAU / 5.0, TAU / 7.0]));
+    fn waves_that_fit() {
+        let cell = |text: &str| text.parse::<Cell>().unwrap();
+        for (text, turns, fits) in [
+            ("2x1", [0.5, 0.0], true),
+            ("2x1", [0.0, 0.5], false),
+            ("3x3", [1.0 / 3.0, -1.0 / 3.0], true),
+            ("2x2", [1.0 / 3.0, 0.0], false),
+            ("1,1;-1,1", [0.5, 0.5], true),
+            ("1,1;-1,1", [0.5, 0.0], false),
+        ] {
+            assert_eq!(cell(text).holds_wave(turns.map(|t| TAU * t)), fits, "{text} {turns:?}");
+        }
+        // The number of sublattices is the sum of the divisors.
+        for (n, count) in [(1, 1), (2, 3), (3, 4), (4, 7), (5, 6), (6, 12)] {
+            let cells: Vec<Cell> = Cell::of_copies(n).collect();
+            assert!(cells.len() == count && cells.iter().all(|cell| cell.copies() == n as usize));
+            let twice = |k: usize| cells[..k].iter().any(|other| other.same_lattice(&cells[k]));
+            assert!(!(0..count).any(twice));
         }
     }
 

@@ -9,7 +9,7 @@
 
 pub mod flat;
 pub mod gap_kernel;
-mod key;
+pub mod key;
 pub mod metric;
 mod pair;
 pub mod waves;
@@ -337,7 +337,13 @@ impl Program for SheetProgram<'_> {
     fn hidden_curvature(&self, x: &Posed, multipliers: &[Multiplier]) -> Vec<Vec<f64>> {
         let (turns, factored) = (self.all_turns(&x.state), self.pull.factored(&x.p));
         let n = self.first_parameter + self.pull.parameters.len();
-        let map = |pair: &RingPair| vec![self.pair_map(pair, &turns, factored.as_ref())];
-        self.curvature_of_flat_pairs(x, multipliers, n, &map)
+        let term = |&key: &u64| {
+            let v = self.flat_curvature(x, multipliers, key)?;
+            let map = self.pair_map(&pair_of_key(key), &turns, factored.as_ref());
+            let mut term = vec![0.0; n];
+            map.columns.iter().zip(map.gradient(&v)).for_each(|(&column, entry)| term[column] = entry);
+            Some(term)
+        };
+        self.flat.iter().filter_map(term).collect()
     }
 }

@@ -4,7 +4,6 @@ use super::{
     Posed, SheetProgram,
     key::{bound_key, pair_key},
     metric::Factored,
-    waves::WaveUnknowns,
 };
 use crate::{
     program::gap_kernel::{Grad, Hess, PairFrame, RootMotion},
@@ -38,6 +37,12 @@ impl PairMap {
         PairMap { columns: room(), motions: Vec::with_capacity(14), bends: Vec::new(), parameters: Vec::new() }
     }
 
+    /// The motions of the kernel themselves as unknowns.
+    pub fn local() -> Self {
+        let motions = (0..9).map(|k| Grad::from_fn(|i, _| f64::from(u8::from(i == k))));
+        PairMap { columns: (0..9).collect(), motions: motions.collect(), ..PairMap::new() }
+    }
+
     fn add(&mut self, column: usize, block: usize, v: &Vec3, sign: f64) {
         let at = self.columns.iter().position(|&c| c == column).unwrap_or_else(|| {
             self.columns.push(column);
@@ -49,7 +54,7 @@ impl PairMap {
         }
     }
 
-    fn gradient(&self, grad: &Grad) -> Vec<f64> {
+    pub fn gradient(&self, grad: &Grad) -> Vec<f64> {
         self.motions.iter().map(|motion| motion.dot(grad)).collect()
     }
 
@@ -100,28 +105,6 @@ impl SheetProgram<'_> {
         for (f, &(m, r)) in factored.iter().flat_map(|f| map.parameters.iter().map(move |at| (f, at))) {
             let bend = |&(n, c): &(usize, usize)| (r, c, image(self.pull.base.map(|a| f.bend(m, n, &a))));
             map.bends.extend(map.parameters.iter().map(bend));
-        }
-        map
-    }
-
-    /// The unknowns of a wave that move the pair, see [`super::waves`]: the real or the imaginary part of the motion, with the
-    /// phase of the second ring's cell.
-    pub(super) fn wave_map(&self, pair: &RingPair, turns: &[Vec<Vec3>], phase_rad: f64, imaginary: bool) -> PairMap {
-        let layout = WaveUnknowns::new(turns);
-        let mut map = PairMap::new();
-        for (ring, sign, block, phase_rad) in [(pair.ring_a, -1.0, 1, 0.0), (pair.ring_b, 1.0, 2, phase_rad)] {
-            let element = self.model.rings[ring].element;
-            let (sin, cos) = f64::sin_cos(phase_rad);
-            let weights = if imaginary { [sin, cos] } else { [cos, -sin] };
-            for (part, weight) in weights.into_iter().enumerate().filter(|(_, weight)| *weight != 0.0) {
-                let first = layout.first(element, part);
-                for (k, axis) in [Vec3::x(), Vec3::y(), Vec3::z()].iter().enumerate() {
-                    map.add(first + k, 0, axis, sign * weight);
-                }
-                for (k, axis) in turns[element].iter().enumerate() {
-                    map.add(first + 3 + k, block, axis, weight);
-                }
-            }
         }
         map
     }

@@ -8,24 +8,22 @@ use super::{
     local::{LocalSolution, local_maximize},
     options::{
         ATTAINED, BOUND_RETRIES, BOUND_RETRY_GAP, BOUND_RETRY_SIZE, CELL_PERTURBATION, LARGER_CELL_RESTARTS,
-        OWN_IMAGE_FORCE, RESTARTS, SAME_VALUE, WAVE_SIZE,
+        OWN_IMAGE_FORCE, RESTARTS, SAME_VALUE,
     },
-    starts::{Start, moved, perturbed, perturbed_starts, rng, tiled},
+    starts::{Start, perturbed, perturbed_starts, rng, tiled},
+    waves::FoundWaves,
 };
 use crate::{
-    answer::{Answer, CellTrend},
+    answer::{Answer, CellTrend, WaveCurvature},
     lattice::Cell,
     model::Model,
-    program::{Contact, LatticeFamily, SheetProgram, waves::WaveMode},
+    program::{Contact, LatticeFamily, SheetProgram},
     record::Status,
     state::State,
     topology::smallest_gap,
 };
 use rayon::prelude::*;
-use std::{
-    cmp::Ordering,
-    sync::atomic::{self, AtomicBool},
-};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A start that was brought to what is held.
 pub(super) struct Entered {
@@ -74,12 +72,23 @@ pub(super) struct SearchResult {
 pub(super) struct CellSearch {
     /// The best of all cells, with the counts of all.
     pub result: SearchResult,
-    /// Its cell.
-    pub cell: usize,
+    /// Index of its cell; of `further` the number of all others.
+    cell: usize,
+    /// A cell that was not listed, into which a wave fits.
+    further: Option<Model>,
+    /// The least curvature on waves at it.
+    pub wave: Option<WaveCurvature>,
     /// What each cell found.
     pub by_cell: Vec<CellTrend>,
     /// The best of each cell as a start.
     pub starts: Vec<Option<Start>>,
+}
+
+impl CellSearch {
+    /// The model of its cell, where `models` were searched.
+    pub fn model<'m>(&'m self, models: &'m [Model]) -> &'m Model {
+        models.get(self.cell).or(self.further.as_ref()).unwrap_or(&models[0])
+    }
 }
 
 /// Which larger cells are searched, and from where.
@@ -167,16 +176,17 @@ impl<T: Target> Multistart<'_, T> {
         let smallest = starts[0].clone().or_else(|| rule.fallback.clone());
         let presses = |best: &LocalSolution| own_image_force(&models[0], &best.contacts) > OWN_IMAGE_FORCE;
         let asks = rule.every || result.best.as_ref().map_or(rule.where_none, presses);
-        let waves = result.best.as_ref().map_or(Vec::new(), |best| self.unstable_waves(models, best));
+        let waves = result.best.as_ref().map_or_else(FoundWaves::default, |best| self.waves(&models[0], best));
+        // With one cell to be solved, a wave that fits into no other is not followed.
+        let further = waves.further_cell(models).filter(|_| models.len() > 1).map(|cell| models[0].in_cell(cell));
         let (mut result, mut cell) = (result, 0);
-        for larger in 1..models.len() {
+        for (larger, model) in models.iter().chain(&further).enumerate().skip(1) {
             // The last cell is for values that have grown.
             let idle = !rule.every && larger + 1 == models.len() && larger > 1 && cell == 0 && result.best.is_some();
             if result.attains(self.upper_bound) || self.cancelled() {
                 break;
             }
-            let model = &models[larger];
-            let waved = smallest.iter().flat_map(|from| self.along_waves(model, from, &waves)).collect::<Vec<_>>();
+            let waved: Vec<Start> = smallest.iter().flat_map(|from| waves.starts(model, from)).collect();
             if (!asks || idle) && waved.is_empty() {
                 continue;
             }
@@ -190,44 +200,22 @@ impl<T: Target> Multistart<'_, T> {
             let own = perturbed_starts(model, self.seed, 0..rule.own_starts);
             let found = self.run(model, repeated.chain(neighbour).chain(own).chain(waved).collect());
             by_cell.push(found.by_cell(model.cell));
-            starts[larger] = found.best.as_ref().map(|best| self.target.start(best));
+            if let Some(start) = starts.get_mut(larger) {
+                *start = found.best.as_ref().map(|best| self.target.start(best));
+            }
             if found.improves_on(&result) {
                 cell = larger;
             }
             result.merge(found);
         }
-        CellSearch { result, cell, by_cell, starts }
-    }
-
-    /// The waves along which a solution of the first cell can go on in one of the larger cells: those of negative curvature.
-    fn unstable_waves(&self, models: &[Model], best: &LocalSolution) -> Vec<WaveMode> {
-        let model = &models[0];
-        if !best.certified || best.value() >= self.upper_bound - ATTAINED || model.cell != Cell::PRIMITIVE {
-            return Vec::new();
-        }
-        let family = self.target.family(model);
-        let program = SheetProgram::new(model, &family).with_flat_pairs(best.flat.clone());
-        let x = program.posed(best.state.clone(), best.p.clone());
-        let mut phases: Vec<[f64; 2]> = models[1..].iter().flat_map(|model| model.cell.wave_phases_rad()).collect();
-        phases.sort_by(|a, b| a.partial_cmp(b).unwrap_or(Ordering::Equal));
-        phases.dedup_by(|a, b| (0..2).all(|k| (a[k] - b[k]).abs() < 1e-9));
-        let mode = |q| program.least_wave(&x, &best.certificate.multipliers, q);
-        phases.into_iter().filter_map(mode).filter(|mode| mode.curvature < 0.0).collect()
-    }
-
-    /// The state of the first cell repeated over a larger one and moved along each of `waves` that fits into it, both ways.
-    fn along_waves(&self, model: &Model, from: &Start, waves: &[WaveMode]) -> Vec<Start> {
-        let copies = tiled(model, &from.state);
-        let along = |wave: &WaveMode, size: f64| {
-            let state = moved(model, &copies, wave.motion(&model.cell.cosets(), size));
-            Start { state, ..from.clone() }
-        };
-        let waves = waves.iter().filter(|wave| model.cell.holds_wave(wave.phases_rad));
-        waves.flat_map(|wave| [WAVE_SIZE, -WAVE_SIZE].map(|size| along(wave, size))).collect()
+        let of_larger = |best| self.waves(models.get(cell).or(further.as_ref()).unwrap_or(&models[0]), best);
+        let waves = if cell == 0 { Some(waves) } else { result.best.as_ref().map(of_larger) };
+        let wave = waves.and_then(|waves| waves.curvature());
+        CellSearch { result, cell, further, wave, by_cell, starts }
     }
 
     fn cancelled(&self) -> bool {
-        self.cancel.load(atomic::Ordering::Relaxed)
+        self.cancel.load(Ordering::Relaxed)
     }
 }
 

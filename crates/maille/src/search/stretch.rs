@@ -221,16 +221,17 @@ impl<'a> ExactMethod<'a> {
             );
             return ended(Status::L2Unreachable, Some(note));
         }
+        let (model, wave) = (found.model(self.models).clone(), found.wave);
         let kept = if least || found.by_cell.len() > 1 { found.by_cell } else { Vec::new() };
         // What was maximised is −l1 where the least is sought.
         let value = |t: CellTrend| CellTrend { value: t.value.map(|value| stretch.sign * value), ..t };
-        let answer = proved(self.judge(found.cell, stretch, upper_bound, found.result, cancel));
+        let answer = proved(self.judge(&model, stretch, upper_bound, found.result, cancel));
         // Ranges of what is free are solved for after the search: without them the answer is not whole.
         if cancel.load(Ordering::Relaxed) {
             return ended(Status::Interrupted, None);
         }
         let by_cell = kept.into_iter().map(value).collect();
-        (Answer { by_cell, ..answer }, found.starts)
+        (Answer { by_cell, wave, ..answer }, found.starts)
     }
 
     /// The search of the first cell for a largest l1: from the neighbour's state, then from perturbed states of the design and of
@@ -340,7 +341,7 @@ impl<'a> ExactMethod<'a> {
     /// Status and figures of the best solution.
     pub(super) fn judge(
         &self,
-        cell: usize,
+        model: &Model,
         stretch: &Stretch,
         upper_bound: f64,
         mut found: SearchResult,
@@ -351,7 +352,6 @@ impl<'a> ExactMethod<'a> {
             let note = Some(format!("no start reached {what} without overlap; nothing is proved"));
             return found.counted(Answer { note, ..self.without_state(Status::L2NotReached) });
         };
-        let model = &self.models[cell];
         let Stretch { l2, across, direction, sign } = *stretch;
         let lattices = stretch.lattices(model);
         let gradient = lattices.gradient(&best.p, l2);

@@ -63,7 +63,7 @@ impl ExactMethod<'_> {
         (found.runs, found.iterations) = (found.runs + runs, found.iterations + iterations);
         let mut reached = none.clone();
         reached[0] = found.best.as_ref().map(|best| stretch.start(best));
-        let answer = self.judge(0, stretch, f64::INFINITY, found, cancel);
+        let answer = self.judge(&self.models[0], stretch, f64::INFINITY, found, cancel);
         if cancel.load(Ordering::Relaxed) {
             return (self.without_state(Status::Interrupted), none);
         }

@@ -9,7 +9,6 @@ use super::{
     qp::{self, QuadraticProgram, SparseRows},
     reduced_hessian::curvature,
     sqp::Program,
-    symmetric::Symmetric,
 };
 
 /// What was found at a polished point.
@@ -41,6 +40,8 @@ const ALMOST: f64 = 0.03;
 
 /// A contact carries where its force for a unit pull is above this: what a record lists, and what counts for the curvature.
 pub(crate) const CARRIED: f64 = 1e-9;
+/// What the motions whose curvature counts must keep: contacts that carry more.
+pub(crate) const LOADED: f64 = 1e-8;
 /// Share of the largest multiplier above which one found with a sign counts.
 const CARRIES: f64 = 1e-8;
 
@@ -171,17 +172,12 @@ pub(crate) fn measure_curvature<P: Program>(program: &P, x: &P::Point, certifica
     if !certificate.min_curvature.is_some_and(f64::is_nan) {
         return;
     }
+    let n = program.objective().len();
     let loads = Loads::new(&certificate.multipliers);
     let rows = program.rows(x, BAND, Derivatives::Second(&loads));
-    let hidden = program.hidden_curvature(x, &certificate.multipliers);
-    let (hessian, loaded) = loaded_hessian(program.objective().len(), &rows, &loads, &hidden);
-    (certificate.min_curvature, certificate.zero_modes) = curvature(&hessian, &loaded);
-}
-
-/// The Lagrangian's Hessian over `n` unknowns with the terms −v vᵀ of `hidden`, and the rows that are loaded.
-pub fn loaded_hessian<'r>(n: usize, rows: &'r [Row], loads: &Loads, hidden: &[Vec<f64>]) -> (Symmetric, Vec<&'r Row>) {
     let (chosen, multipliers): (Vec<&Row>, Vec<f64>) =
-        matched(rows, loads).into_iter().filter(|(_, mu)| *mu > CARRIED).map(|(k, mu)| (&rows[k], mu)).unzip();
+        matched(&rows, &loads).into_iter().filter(|(_, mu)| *mu > CARRIED).map(|(k, mu)| (&rows[k], mu)).unzip();
+    let hidden = program.hidden_curvature(x, &certificate.multipliers);
     let moves = |v: &Vec<f64>| (0..n).filter(|&i| v[i] != 0.0).collect();
     let places: Vec<Vec<usize>> = hidden.iter().map(moves).collect();
     let more: Vec<&[usize]> = places.iter().map(|at| &at[..]).collect();
@@ -189,6 +185,7 @@ pub fn loaded_hessian<'r>(n: usize, rows: &'r [Row], loads: &Loads, hidden: &[Ve
     for (v, at) in hidden.iter().zip(&places) {
         hessian.add(at, |p, q| -v[at[p]] * v[at[q]]);
     }
-    let loaded = chosen.into_iter().zip(&multipliers).filter(|(_, mu)| **mu > 1e-8).map(|(r, _)| r).collect();
-    (hessian, loaded)
+    let loaded: Vec<&Row> =
+        chosen.into_iter().zip(&multipliers).filter(|(_, mu)| **mu > LOADED).map(|(r, _)| r).collect();
+    (certificate.min_curvature, certificate.zero_modes) = curvature(&hessian, &loaded);
 }

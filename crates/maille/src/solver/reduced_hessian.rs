@@ -5,11 +5,7 @@
 //! keep the rows see H alone, others are stiff. By the minimax principle no eigenvalue of M lies above the one of H on the null
 //! space that it stands for; it lies lower by |dμ|²/ρ, where dμ is what the multipliers change along the unit motion.
 
-use super::{
-    constraints::Row,
-    eigen::{Eigen, symmetric_eigen},
-    symmetric::Symmetric,
-};
+use super::{constraints::Row, eigen::symmetric_eigen, symmetric::Symmetric};
 use faer::{
     Mat, Par, Side, Spec,
     dyn_stack::{MemBuffer, MemStack},
@@ -26,7 +22,7 @@ use faer::{
 };
 
 /// Curvature below which a direction counts as a zero mode, relative to the largest curvature.
-const ZERO_MODE: f64 = 1e-7;
+pub(crate) const ZERO_MODE: f64 = 1e-7;
 /// ρ, relative to the largest curvature: rounding of ρ AᵀA stays a hundredth of what counts as zero.
 const STIFF: f64 = 1e7;
 /// The least curvature is found to this share of it.
@@ -42,60 +38,30 @@ pub(super) fn curvature(h: &Symmetric, loaded: &[&Row]) -> (Option<f64>, usize) 
     found.unwrap_or((Some(f64::NAN), 0))
 }
 
-/// The least curvature that is not zero, with its motion, a unit vector; `None` where all motions that keep the rows are zero
-/// modes, or they could not be found.
-pub fn least_mode(h: &Symmetric, loaded: &[&Row]) -> Option<(f64, Vec<f64>)> {
-    let Kept { met, basis, eigen, .. } = Kept::new(h, loaded)?;
-    let k = eigen.values.iter().position(|v| !eigen.is_zero(*v))?;
-    let motion = &basis * eigen.vectors.col(k);
-    let mut out = vec![0.0; h.n()];
-    met.iter().enumerate().for_each(|(i, &column)| out[column] = motion[i]);
-    Some((eigen.values[k], out))
-}
-
 fn by_eigenvalues(h: &Symmetric, loaded: &[&Row]) -> Option<(Option<f64>, usize)> {
-    let Kept { idle, eigen, .. } = Kept::new(h, loaded)?;
-    let zero_modes = idle + eigen.values.iter().filter(|v| eigen.is_zero(**v)).count();
-    Some((eigen.values.iter().copied().find(|v| !eigen.is_zero(*v)), zero_modes))
-}
-
-/// The motions that keep the rows.
-struct Kept {
-    /// Unknowns that are met by H or a row.
-    met: Vec<usize>,
-    /// The others, which are zero modes.
-    idle: usize,
-    /// An orthonormal basis over the unknowns that are met.
-    basis: Mat<f64>,
-    /// Of H on it.
-    eigen: Eigen,
-}
-
-impl Kept {
-    fn new(h: &Symmetric, loaded: &[&Row]) -> Option<Self> {
-        let n = h.n();
-        let mut gram = Symmetric::new(n, loaded.iter().map(|row| &row.columns[..]));
-        for row in loaded {
-            gram.add(&row.columns, |p, q| row.gradient[p] * row.gradient[q]);
-        }
-        let is_met: Vec<bool> = h.met().iter().zip(gram.met()).map(|(a, b)| *a || b).collect();
-        let met: Vec<usize> = (0..n).filter(|&j| is_met[j]).collect();
-        let idle = n - met.len();
-        let eigen = symmetric_eigen(&gram.block(&met)).ok()?;
-        let largest = eigen.values.last().copied().unwrap_or(0.0).max(1e-300);
-        let free: Vec<usize> = (0..met.len()).filter(|&k| eigen.values[k] < 1e-12 * largest).collect();
-        let basis = Mat::from_fn(met.len(), free.len(), |i, k| eigen.vectors[(i, free[k])]);
-        let reduced = basis.transpose() * h.block(&met) * &basis;
-        let symmetric = Mat::from_fn(free.len(), free.len(), |i, j| 0.5 * (reduced[(i, j)] + reduced[(j, i)]));
-        Some(Kept { met, idle, basis, eigen: symmetric_eigen(&symmetric).ok()? })
+    let n = h.n();
+    let mut gram = Symmetric::new(n, loaded.iter().map(|row| &row.columns[..]));
+    for row in loaded {
+        gram.add(&row.columns, |p, q| row.gradient[p] * row.gradient[q]);
     }
-}
-
-impl Eigen {
-    fn is_zero(&self, value: f64) -> bool {
-        let scale = self.values.iter().fold(0.0f64, |a, v| a.max(v.abs())).max(1e-300);
-        value.abs() <= ZERO_MODE * scale.max(1.0)
+    // Unknowns that neither meets are zero modes.
+    let is_met: Vec<bool> = h.met().iter().zip(gram.met()).map(|(a, b)| *a || b).collect();
+    let met: Vec<usize> = (0..n).filter(|&j| is_met[j]).collect();
+    let idle = n - met.len();
+    let eigen = symmetric_eigen(&gram.block(&met)).ok()?;
+    let largest = eigen.values.last().copied().unwrap_or(0.0).max(1e-300);
+    let free: Vec<usize> = (0..met.len()).filter(|&k| eigen.values[k] < 1e-12 * largest).collect();
+    let basis = Mat::from_fn(met.len(), free.len(), |i, k| eigen.vectors[(i, free[k])]);
+    if free.is_empty() {
+        return Some((None, idle));
     }
+    let reduced = basis.transpose() * h.block(&met) * &basis;
+    let symmetric = Mat::from_fn(free.len(), free.len(), |i, j| 0.5 * (reduced[(i, j)] + reduced[(j, i)]));
+    let eigen = symmetric_eigen(&symmetric).ok()?;
+    let scale = eigen.values.iter().fold(0.0f64, |a, v| a.max(v.abs())).max(1e-300);
+    let is_zero = |v: &f64| v.abs() <= ZERO_MODE * scale.max(1.0);
+    let zero_modes = idle + eigen.values.iter().filter(|v| is_zero(v)).count();
+    Some((eigen.values.iter().copied().find(|v| !is_zero(v)), zero_modes))
 }
 
 fn by_counting(h: &Symmetric, loaded: &[&Row]) -> Option<(Option<f64>, usize)> {

@@ -4,7 +4,7 @@ use crate::{
     answer::{Answer, CellTrend, FreeRanges},
     bound::{BindingChain, DualForce, TieKind},
     lattice::{Cell, Direction},
-    model::Model,
+    model::{Model, of_cell},
     program::Contact,
     state::State,
     symmetry::{Image, Operation, between},
@@ -24,7 +24,7 @@ pub(crate) fn image<'a>(
     solved_deg: f64,
     direction_deg: f64,
 ) -> (Cow<'a, Model>, Answer) {
-    let from = models.iter().find(|model| model.cell == answer.cell).unwrap_or(&models[0]);
+    let from = &*of_cell(models, answer.cell);
     let known = |cell: Cell| models.iter().find(|model| model.cell.same_lattice(&cell));
     let possible = || between(operations, solved_deg, direction_deg).filter_map(|o| Some((o, o.cell(from.cell)?)));
     let (operation, model) = possible()
