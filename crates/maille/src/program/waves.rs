@@ -198,14 +198,18 @@ impl Waves {
 }
 
 impl WaveMode {
-    /// The wave as motions of the copies of `cosets`, the elements of each one after the other; the largest component is `size`.
-    pub(crate) fn motion(&self, cosets: &[Shift], size: f64) -> Motion {
+    /// The wave as a motion of a larger cell. `copies` are those of the design's cell in its order, each with its number in the solved cell
+    /// and the image of that cell; the largest component is `size`.
+    pub(crate) fn motion(&self, copies: &[(usize, Shift)], size: f64) -> Motion {
         let components = self.elements.iter().flatten().flat_map(|(shift, turn)| [shift.amax(), turn.amax()]);
         let scale = size / components.fold(f64::MIN_POSITIVE, f64::max);
-        let elements = cosets.iter().flat_map(|s| {
-            let (sin, cos) = phase_rad(self.phases_rad, *s).sin_cos();
+        let own = 1 + copies.iter().map(|(copy, _)| *copy).max().unwrap_or(0);
+        let each = self.elements.len() / own;
+        let elements = copies.iter().flat_map(|&(copy, image)| {
+            let (sin, cos) = phase_rad(self.phases_rad, image).sin_cos();
             let part = move |re: Vec3, im: Vec3| (re * cos - im * sin) * scale;
-            self.elements.iter().map(move |[re, im]| (part(re.0, im.0), part(re.1, im.1)))
+            let elements = &self.elements[copy * each..(copy + 1) * each];
+            elements.iter().map(move |[re, im]| (part(re.0, im.0), part(re.1, im.1)))
         });
         Motion { elements: elements.collect(), lattice: [Vec3::zeros(); 2], carried: false }
     }

@@ -11,7 +11,6 @@ use super::{
         OWN_IMAGE_FORCE, RESTARTS, SAME_VALUE,
     },
     starts::{Start, perturbed, perturbed_starts, rng, tiled},
-    waves::FoundWaves,
 };
 use crate::{
     answer::{Answer, CellTrend, WaveCurvature},
@@ -72,10 +71,10 @@ pub(super) struct SearchResult {
 pub(super) struct CellSearch {
     /// The best of all cells, with the counts of all.
     pub result: SearchResult,
-    /// Index of its cell; of `further` the number of all others.
-    cell: usize,
-    /// A cell that was not listed, into which a wave fits.
-    further: Option<Model>,
+    /// Index of its cell among those that are listed.
+    pub cell: usize,
+    /// Its cell, where that is none of these.
+    pub further: Option<Model>,
     /// The least curvature on waves at it.
     pub wave: Option<WaveCurvature>,
     /// What each cell found.
@@ -87,7 +86,7 @@ pub(super) struct CellSearch {
 impl CellSearch {
     /// The model of its cell, where `models` were searched.
     pub fn model<'m>(&'m self, models: &'m [Model]) -> &'m Model {
-        models.get(self.cell).or(self.further.as_ref()).unwrap_or(&models[0])
+        self.further.as_ref().unwrap_or(&models[self.cell])
     }
 }
 
@@ -176,52 +175,43 @@ impl<T: Target> Multistart<'_, T> {
         let smallest = starts[0].clone().or_else(|| rule.fallback.clone());
         let presses = |best: &LocalSolution| own_image_force(&models[0], &best.contacts) > OWN_IMAGE_FORCE;
         let asks = rule.every || result.best.as_ref().map_or(rule.where_none, presses);
-        let waves = result.best.as_ref().map_or_else(FoundWaves::default, |best| self.waves(&models[0], best));
-        // With one cell to be solved, a wave that fits into no other is not followed.
-        let further = waves.further_cell(models).filter(|_| models.len() > 1).map(|cell| models[0].in_cell(cell));
         let (mut result, mut cell) = (result, 0);
-        for (larger, model) in models.iter().chain(&further).enumerate().skip(1) {
+        for (larger, model) in models.iter().enumerate().skip(1) {
             // The last cell is for values that have grown.
             let idle = !rule.every && larger + 1 == models.len() && larger > 1 && cell == 0 && result.best.is_some();
-            if result.attains(self.upper_bound) || self.cancelled() {
+            if !asks || idle || result.attains(self.upper_bound) || self.cancelled() {
                 break;
-            }
-            let waved: Vec<Start> = smallest.iter().flat_map(|from| waves.starts(model, from)).collect();
-            if (!asks || idle) && waved.is_empty() {
-                continue;
             }
             let repeated = smallest.iter().map(|from| {
                 let mut stream = rng(self.seed.wrapping_add(larger as u64));
-                let state = perturbed(model, &tiled(model, &from.state), CELL_PERTURBATION, &mut stream);
+                let state =
+                    perturbed(model, &tiled(model, models[0].cell, &from.state), CELL_PERTURBATION, &mut stream);
                 Start { state, ..from.clone() }
             });
             let neighbour = rule.neighbours.get(larger).into_iter().flatten().cloned();
             // Then starts of its own: the smaller cell's answer can hide what they find.
             let own = perturbed_starts(model, self.seed, 0..rule.own_starts);
-            let found = self.run(model, repeated.chain(neighbour).chain(own).chain(waved).collect());
+            let found = self.run(model, repeated.chain(neighbour).chain(own).collect());
             by_cell.push(found.by_cell(model.cell));
-            if let Some(start) = starts.get_mut(larger) {
-                *start = found.best.as_ref().map(|best| self.target.start(best));
-            }
+            starts[larger] = found.best.as_ref().map(|best| self.target.start(best));
             if found.improves_on(&result) {
                 cell = larger;
             }
             result.merge(found);
         }
-        let of_larger = |best| self.waves(models.get(cell).or(further.as_ref()).unwrap_or(&models[0]), best);
-        let waves = if cell == 0 { Some(waves) } else { result.best.as_ref().map(of_larger) };
-        let wave = waves.and_then(|waves| waves.curvature());
-        CellSearch { result, cell, further, wave, by_cell, starts }
+        let mut found = CellSearch { result, cell, further: None, wave: None, by_cell, starts };
+        self.follow_waves(models, &mut found);
+        found
     }
 
-    fn cancelled(&self) -> bool {
+    pub(super) fn cancelled(&self) -> bool {
         self.cancel.load(Ordering::Relaxed)
     }
 }
 
 impl SearchResult {
     /// What it found, as that of one cell.
-    fn by_cell(&self, cell: Cell) -> CellTrend {
+    pub(super) fn by_cell(&self, cell: Cell) -> CellTrend {
         let value = self.best.as_ref().filter(|best| best.certified).map(LocalSolution::value);
         CellTrend { cell, value, n_starts: self.runs, n_distinct: self.distinct.len() as u64 }
     }

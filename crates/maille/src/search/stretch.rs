@@ -18,6 +18,7 @@ use super::{
     overlap::{Overlapping, beyond_repair},
     starts::{Start, perturbed_starts},
     stretch_lattices::StretchLattices,
+    waves::OwnCell,
 };
 use crate::{
     answer::{Answer, CellTrend},
@@ -51,6 +52,8 @@ pub struct ExactMethod<'a> {
     operations: Vec<Operation>,
     /// Where no search can begin.
     overlapping: Option<Overlapping>,
+    /// The design's own cell, where the first one is larger: its answer is a start.
+    own: Option<Model>,
 }
 
 /// The stretch whose limit is sought.
@@ -121,7 +124,8 @@ impl<'a> ExactMethod<'a> {
         let link = LinkBound::new(&models[0].primitive(), &chain);
         let overlapping = beyond_repair(&models[0], options.seed, cancel);
         let operations = operations(&models[0]);
-        ExactMethod { models, options, chain, link, image: OnceLock::new(), operations, overlapping }
+        let own = (models[0].cell.copies() > 1).then(|| models[0].primitive());
+        ExactMethod { models, options, chain, link, image: OnceLock::new(), operations, overlapping, own }
     }
 
     /// The limits along one direction, in the order of `l2`. Solved outwards from l2 = 0, each from its neighbour's states.
@@ -140,7 +144,7 @@ impl<'a> ExactMethod<'a> {
         let stretch = |l2: f64| Stretch { direction, l2, across, sign: if compression { -1.0 } else { 1.0 } };
         let mut order: Vec<usize> = (0..l2.len()).collect();
         order.sort_by(|&a, &b| l2[a].abs().total_cmp(&l2[b].abs()).then(l2[a].total_cmp(&l2[b])));
-        let mut sides: [Neighbours; 2] = [vec![None; self.models.len()], vec![None; self.models.len()]];
+        let mut sides: [Neighbours; 2] = [self.no_neighbours(), self.no_neighbours()];
         if !compression && !l2.contains(&0.0) {
             let (_, at_zero) = self.limit(&stretch(0.0), &sides[0], cancel);
             sides = [at_zero.clone(), at_zero];
@@ -160,7 +164,7 @@ impl<'a> ExactMethod<'a> {
     fn limit(&self, stretch: &Stretch, neighbours: &Neighbours, cancel: &AtomicBool) -> (Answer, Neighbours) {
         let least = stretch.sign < 0.0;
         let Stretch { direction, l2, across, .. } = *stretch;
-        let none = || vec![None; self.models.len()];
+        let none = || self.no_neighbours();
         let bound = best_bound_across(&self.chain, Some(&self.link), direction, l2, across);
         let unreachable = matches!(bound, Bound::L2Unreachable { .. });
         // The bounds are of the largest l1; of the least one they tell only that no state has this l2.
@@ -183,12 +187,15 @@ impl<'a> ExactMethod<'a> {
             _ => f64::INFINITY,
         };
         let search = self.search(stretch, upper_bound, cancel);
-        let first = if least {
-            let starts = neighbour.iter().cloned().chain(self.fresh(0..self.options.starts)).collect();
+        let own = self.own_cell(&search, neighbours.last().cloned().flatten());
+        let mut first = if least {
+            let fresh = self.fresh(0..self.options.starts);
+            let starts = own.starts.into_iter().chain(neighbour.iter().cloned()).chain(fresh).collect();
             search.run(&self.models[0], starts)
         } else {
-            self.first_cell(&search, neighbour.clone())
+            self.first_cell(&search, own.starts, neighbour.clone())
         };
+        (first.runs, first.iterations) = (first.runs + own.runs, first.iterations + own.iterations);
         let near =
             (first.best.is_none() && !least && !across.any()).then(|| self.too_near(stretch, upper_bound)).flatten();
         let first = match (&first.best, &near, least) {
@@ -231,15 +238,28 @@ impl<'a> ExactMethod<'a> {
             return ended(Status::Interrupted, None);
         }
         let by_cell = kept.into_iter().map(value).collect();
-        (Answer { by_cell, wave, ..answer }, found.starts)
+        (Answer { by_cell, wave, ..answer }, found.starts.into_iter().chain([own.best]).collect())
+    }
+
+    /// Of each cell, and of the design's own where the first is larger.
+    fn no_neighbours(&self) -> Neighbours {
+        vec![None; self.models.len() + 1]
+    }
+
+    /// What the design's own cell gives to a larger first one.
+    fn own_cell(&self, search: &Multistart<'_, Stretch>, neighbour: Option<Start>) -> OwnCell {
+        let Some(own) = &self.own else { return OwnCell::default() };
+        let fresh = self.options.starts.saturating_sub(neighbour.iter().count());
+        let starts = neighbour.into_iter().chain(perturbed_starts(own, self.options.seed, 0..fresh));
+        search.own_cell(own, starts.collect(), &self.models[0])
     }
 
     /// The search of the first cell for a largest l1: from the neighbour's state, then from perturbed states of the design and of
     /// its images.
-    fn first_cell(&self, search: &Multistart<'_, Stretch>, neighbour: Option<Start>) -> SearchResult {
+    fn first_cell(&self, search: &Multistart<'_, Stretch>, own: Vec<Start>, neighbour: Option<Start>) -> SearchResult {
         let stretch = search.target;
-        let mut starts: Vec<Start> = neighbour.into_iter().collect();
-        let fresh = self.options.starts.saturating_sub(starts.len());
+        let fresh = self.options.starts.saturating_sub(neighbour.iter().count());
+        let mut starts: Vec<Start> = own.into_iter().chain(neighbour).collect();
         let (wide, runs, iterations) = self.lateral_starts(search);
         starts.extend(wide);
         starts.extend(self.fresh(0..fresh));

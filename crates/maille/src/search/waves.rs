@@ -9,7 +9,7 @@
 
 use super::{
     local::LocalSolution,
-    multistart::{Multistart, Target},
+    multistart::{CellSearch, Multistart, SearchResult, Target},
     options::{ATTAINED, WAVE_SIZE},
     starts::{Start, moved, tiled},
 };
@@ -28,16 +28,19 @@ use std::f64::consts::TAU;
 pub(super) const MOST_COPIES: usize = 6;
 /// Elements in such a cell, and in the one that is solved.
 pub(super) const MOST_ELEMENTS: usize = 40;
+/// Elements in a cell to which a wave leads: its solves are costly.
+pub(super) const FOLLOWED_ELEMENTS: usize = 20;
 /// Steps with which the worst wave vector is moved, in 2π.
 const STEPS: [f64; 4] = [1.0 / 12.0, 1.0 / 24.0, 1.0 / 48.0, 1.0 / 96.0];
 
 /// What was found of the waves at a solution.
-#[derive(Default)]
 pub(super) struct FoundWaves {
+    /// The cell that was solved.
+    of: Cell,
     /// That of least curvature.
-    pub least: Option<WaveMode>,
+    least: Option<WaveMode>,
     /// Those of negative curvature that fit into a cell of a few copies, worst first.
-    pub unstable: Vec<WaveMode>,
+    unstable: Vec<WaveMode>,
 }
 
 /// The wave vectors of order `n`: multiples of 2π/n, n copies of the cell along them. One of q and −q, which are the same real motions.
@@ -62,16 +65,20 @@ fn most_orders(model: &Model) -> i32 {
 }
 
 impl FoundWaves {
-    /// Of up to `orders` copies.
-    fn of(waves: &Waves, orders: i32) -> Self {
+    fn none(of: Cell) -> Self {
+        FoundWaves { of, least: None, unstable: Vec::new() }
+    }
+
+    /// Of up to `orders` copies of the cell.
+    fn among(waves: &Waves, of: Cell, orders: i32) -> Self {
         let tried = (2..=orders).flat_map(of_order).filter_map(|q| waves.least(q));
         let mut tried: Vec<WaveMode> = tried.collect();
         // Of equals the first: a stable sort.
         tried.sort_by(|a, b| a.curvature.total_cmp(&b.curvature));
-        let Some(first) = tried.first().cloned() else { return FoundWaves::default() };
+        let Some(first) = tried.first().cloned() else { return FoundWaves::none(of) };
         let least = if first.curvature < 0.0 { worsened(waves, first) } else { first };
         tried.retain(|mode| mode.curvature < 0.0);
-        FoundWaves { least: Some(least), unstable: tried }
+        FoundWaves { of, least: Some(least), unstable: tried }
     }
 
     /// What a record says of it.
@@ -100,40 +107,87 @@ impl<T: Target> Multistart<'_, T> {
     pub(super) fn waves(&self, model: &Model, best: &LocalSolution) -> FoundWaves {
         let orders = most_orders(model);
         if !best.certified || (best.value() - self.upper_bound).abs() <= ATTAINED || orders < 2 {
-            return FoundWaves::default();
+            return FoundWaves::none(model.cell);
         }
         let family = self.target.family(model);
         let program = SheetProgram::new(model, &family).with_flat_pairs(best.flat.clone());
         let x = program.posed(best.state.clone(), best.p.clone());
-        FoundWaves::of(&program.waves(&x, &best.certificate.multipliers), orders)
+        FoundWaves::among(&program.waves(&x, &best.certificate.multipliers), model.cell, orders)
+    }
+}
+
+impl<T: Target> Multistart<'_, T> {
+    /// Measures the waves at the best solution of some cells and, if more than one may be solved, goes on along the worst of them in the
+    /// smallest cell that holds it, as long as that gives more.
+    pub(super) fn follow_waves(&self, models: &[Model], found: &mut CellSearch) {
+        loop {
+            let (model, Some(best)) = (found.model(models), &found.result.best) else { return };
+            let (waves, from) = (self.waves(model, best), self.target.start(best));
+            let next = waves.next_cell(model.elements.len()).filter(|_| models.len() > 1 && !self.cancelled());
+            found.wave = waves.curvature();
+            let Some((cell, wave)) = next else { return };
+            let larger = models[0].in_cell(cell);
+            let here = self.run(&larger, waves.starts(&larger, wave, &from));
+            found.by_cell.push(here.by_cell(cell));
+            let improves = here.improves_on(&found.result);
+            found.result.merge(here);
+            if !improves {
+                return;
+            }
+            found.further = Some(larger);
+        }
+    }
+}
+
+/// What the design's own cell gives to a larger one that is solved alone.
+#[derive(Default)]
+pub(super) struct OwnCell {
+    /// Its best state, for the next question.
+    pub best: Option<Start>,
+    /// Starts of the larger cell: that state repeated, and moved along the worst wave that fits.
+    pub starts: Vec<Start>,
+    /// Local maximisations that it took.
+    pub runs: u64,
+    /// Quadratic programs.
+    pub iterations: u64,
+}
+
+impl<T: Target> Multistart<'_, T> {
+    /// Solves the design's own cell `own` for starts of the larger cell `model`. So the larger cell begins with all that the own
+    /// cell has reached.
+    pub(super) fn own_cell(&self, own: &Model, starts: Vec<Start>, model: &Model) -> OwnCell {
+        let SearchResult { best, runs, iterations, .. } = self.run(own, starts);
+        let Some(best) = best else { return OwnCell { runs, iterations, ..OwnCell::default() } };
+        let (from, waves) = (self.target.start(&best), self.waves(own, &best));
+        let repeated = Start { state: tiled(model, own.cell, &from.state), ..from.clone() };
+        let fitting = waves.unstable.iter().filter(|wave| model.cell.holds_wave(wave.phases_rad));
+        let along = fitting.take(1).flat_map(|wave| waves.starts(model, wave, &from));
+        OwnCell { starts: std::iter::once(repeated).chain(along).collect(), best: Some(from), runs, iterations }
     }
 }
 
 impl FoundWaves {
-    /// The cell of the fewest copies that holds the worst wave, if none of `cells` holds it.
-    pub fn further_cell(&self, cells: &[Model]) -> Option<Cell> {
-        let worst = self.unstable.first()?;
-        if cells.iter().any(|model| model.cell.holds_wave(worst.phases_rad)) {
-            return None;
-        }
-        let elements = cells[0].elements.len();
-        (2..=MOST_COPIES.min(MOST_ELEMENTS / elements) as i32)
-            .flat_map(Cell::of_copies)
-            .find(|cell| cell.holds_wave(worst.phases_rad))
+    /// The smallest cell that holds the worst wave for which there is one, with that wave.
+    fn next_cell(&self, elements: usize) -> Option<(Cell, &WaveMode)> {
+        let fits =
+            |n: &i32| *n as usize * self.of.copies() <= MOST_COPIES && *n as usize * elements <= FOLLOWED_ELEMENTS;
+        self.unstable.iter().find_map(|wave| {
+            let mut cells = (2..).take_while(fits).flat_map(Cell::of_copies);
+            let cell = cells.find(|cell| cell.holds_wave(wave.phases_rad))?;
+            Some((self.of.repeated(&cell)?, wave))
+        })
     }
 
-    /// The state of the first cell repeated over a larger one and moved along each unstable wave that fits into it, both ways.
-    pub fn starts(&self, model: &Model, from: &Start) -> Vec<Start> {
-        let fitting: Vec<&WaveMode> =
-            self.unstable.iter().filter(|wave| model.cell.holds_wave(wave.phases_rad)).collect();
-        if fitting.is_empty() {
-            return Vec::new();
-        }
-        let copies = tiled(model, &from.state);
-        let along = |wave: &WaveMode, size: f64| {
-            let state = moved(model, &copies, wave.motion(&model.cell.cosets(), size));
+    /// The state of the solved cell repeated over the cell of `model` and moved along a wave; both ways, where the one is not a
+    /// translation of the other.
+    fn starts(&self, model: &Model, wave: &WaveMode, from: &Start) -> Vec<Start> {
+        let copies: Vec<_> = model.cell.cosets().into_iter().map(|coset| self.of.copy_at(coset)).collect();
+        let repeated = tiled(model, self.of, &from.state);
+        let along = |size: f64| {
+            let state = moved(model, &repeated, wave.motion(&copies, size));
             Start { state, ..from.clone() }
         };
-        fitting.into_iter().flat_map(|wave| [WAVE_SIZE, -WAVE_SIZE].map(|size| along(wave, size))).collect()
+        let order = model.cell.copies() / self.of.copies();
+        if order % 2 == 0 { vec![along(WAVE_SIZE)] } else { vec![along(WAVE_SIZE), along(-WAVE_SIZE)] }
     }
 }
