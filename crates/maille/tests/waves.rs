@@ -3,7 +3,7 @@
 
 use faer::{Mat, Side};
 use maille::{
-    Answer, Question, Sheet,
+    Answer, CellChoice, Question, Sheet,
     design::Design,
     lattice::{Cell, Direction},
     model::Model,
@@ -139,7 +139,8 @@ fn repeated(
     let mut out: Vec<Multiplier> = Vec::new();
     let mut flat: std::collections::BTreeMap<u64, Vec<(f64, f64)>> = Default::default();
     for (from, contact) in (0..at.len()).flat_map(|from| answer.contacts.iter().map(move |c| (from, c))) {
-        let pair = pair_in(large, rings, from, &contact.pair);
+        let own = large.cell == answer.cell;
+        let pair = if own { contact.pair } else { pair_in(large, rings, from, &contact.pair) };
         let to_copy = answer.state.translation(at[from]);
         let back = RingPair { ring_a: pair.ring_b, ring_b: pair.ring_a, shift: pair.shift.map(|s| -s) };
         let away = x.state.translation(back.shift);
@@ -290,4 +291,58 @@ fn curvatures_of_waves_are_those_of_larger_cells() {
     }
     println!("{compared} limits, {negative} unstable waves");
     assert!(compared >= 30 && negative >= 10, "{compared} limits, {negative} unstable waves");
+}
+
+fn builtin(name: &str) -> Design {
+    maille_io::read_design(name, maille_io::builtin(name).expect("a built-in design")).expect("a valid design")
+}
+
+fn limit(design: &Design, cells: CellChoice, direction_deg: f64, l2: f64) -> Answer {
+    let sheet = Sheet::in_cells(design, cells).expect("a design that compiles");
+    sheet.answer(&Question::stretch_along(direction_deg).with_lateral(l2)).expect("a right question")
+}
+
+/// Along 45° and 135° the limits are images of each other: the wave is one of the image's own state. In another basis of the lattice
+/// it is the same wave.
+#[test]
+fn waves_of_images_and_in_other_bases_are_the_same() {
+    let design = builtin("european-6-in-1");
+    let mut found = Vec::new();
+    for (direction_deg, cell) in [(45.0, "1x1"), (135.0, "1x1"), (45.0, "1,1;0,1"), (135.0, "1,0;-1,1")] {
+        let cell: Cell = cell.parse().expect("a cell");
+        let answer = limit(&design, cell.into(), direction_deg, -0.25);
+        let wave = answer.wave.expect("a wave");
+        let model = Model::compile(&design, cell).expect("a design that compiles");
+        let family = pull(&model, direction_deg, -0.25);
+        let program = SheetProgram::new(&model, &family);
+        let x = program.posed(answer.state.clone(), vec![answer.value.expect("a limit")]);
+        let forces = repeated(&program, &model, &x, &answer, model.rings.len()).expect("no flat pairs");
+        let again = program.waves(&x, &forces).least(wave.q.map(|q| TAU * q)).expect("a wave").curvature;
+        assert!((again - wave.least).abs() < 1e-6 * wave.least.abs(), "{direction_deg}° {cell}: {again} {wave:?}");
+        found.push(wave.least);
+    }
+    assert!(found.iter().all(|least| *least < -1.0 && (least - found[0]).abs() < 1e-6 * found[0].abs()), "{found:?}");
+}
+
+/// No element presses on its own image here; by default 0.088782239 was found.
+#[test]
+fn an_unstable_wave_leads_to_a_larger_cell() {
+    let answer = limit(&builtin("european-6-in-1"), CellChoice::Auto, 135.0, -0.25);
+    assert_eq!((answer.status, answer.cell), (Status::Local, "2x1".parse().expect("a cell")));
+    assert!(answer.value.expect("a limit") > 0.12649);
+    assert!((answer.by_cell[0].value.expect("a limit") - 0.088782239).abs() < 1e-8, "{:?}", answer.by_cell);
+}
+
+#[test]
+fn a_named_cell_reaches_what_the_own_cell_does() {
+    for design in designs().into_iter().filter(|design| design.elements.len() < 4) {
+        for direction_deg in [0.0, 40.0] {
+            let [own, larger] = ["1x1", "2x1"].map(|cell| {
+                let cell: Cell = cell.parse().expect("a cell");
+                limit(&design, cell.into(), direction_deg, -0.1).limit()
+            });
+            let what = format!("{} at {direction_deg}°: {own:?}, {larger:?}", design.name);
+            assert!(own.is_none_or(|own| larger.is_some_and(|larger| larger > own - 1e-9)), "{what}");
+        }
+    }
 }

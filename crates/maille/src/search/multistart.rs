@@ -92,7 +92,7 @@ impl CellSearch {
 
 /// Which larger cells are searched, and from where.
 pub(super) struct LargerCells<'a> {
-    /// All of them, each from as many starts of its own; otherwise only while the solution presses an element on its own image.
+    /// All of them, each from as many starts of its own; otherwise only while the solution presses an element on its own image. Waves are followed into others in either case.
     pub every: bool,
     /// Starts of a larger cell of its own.
     pub own_starts: usize,

@@ -75,6 +75,12 @@ pub(super) const FREE_SLACK: f64 = 1e-6;
 pub(super) const RANGE_ROUNDS: usize = 3;
 /// Largest component of the motion along an unstable wave with which a larger cell begins, in R and radians.
 pub(super) const WAVE_SIZE: f64 = 0.05;
+/// Copies of the design's cell in the cells whose waves are tried, and in those to which one leads.
+pub(super) const WAVE_COPIES: usize = 6;
+/// Elements of a cell whose waves are tried.
+pub(super) const WAVE_ELEMENTS: usize = 40;
+/// Elements in a cell to which a wave leads: its solves are costly.
+pub(super) const FOLLOWED_ELEMENTS: usize = 20;
 /// With l2 free: distance of the held l2 whose limits are starts.
 pub(super) const LATERAL_STEP: f64 = 0.125;
 /// As many of the largest of them are starts.
@@ -123,6 +129,9 @@ pub struct ExactParameters {
     free_slack: f64,
     range_rounds: usize,
     wave_size: f64,
+    wave_copies: usize,
+    wave_elements: usize,
+    followed_elements: usize,
     lateral_step: f64,
     lateral_starts: usize,
     lateral_rounds: usize,
@@ -160,6 +169,9 @@ impl ExactOptions {
             free_slack: FREE_SLACK,
             range_rounds: RANGE_ROUNDS,
             wave_size: WAVE_SIZE,
+            wave_copies: WAVE_COPIES,
+            wave_elements: WAVE_ELEMENTS,
+            followed_elements: FOLLOWED_ELEMENTS,
             lateral_step: LATERAL_STEP,
             lateral_starts: LATERAL_STARTS,
             lateral_rounds: LATERAL_ROUNDS,

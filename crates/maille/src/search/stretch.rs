@@ -131,7 +131,7 @@ impl<'a> ExactMethod<'a> {
     /// The limits along one direction, in the order of `l2`. Solved outwards from l2 = 0, each from its neighbour's states.
     ///
     /// Where an element presses on its own image, or a lateral compression is not reached, and of every least l1, larger cells
-    /// are solved, too, from the smaller cell's state; the best limit counts, and the answer says which cell gave it.
+    /// are solved, too, from the smaller cell's state, and unstable waves are followed; the best limit counts, and the answer says which cell gave it.
     /// `finished` gets each limit with its index in `l2`; after `cancel` the rest comes back as interrupted.
     pub fn limits(
         &self,

@@ -1,7 +1,7 @@
 //! Whether a limit of one cell is one of every larger cell, to second order: the least curvature on waves, see
 //! [`crate::program::waves`].
 //!
-//! Wave vectors are tried that fit into a cell of up to [`MOST_COPIES`] copies, and the worst of them is moved while that makes it
+//! Wave vectors are tried that fit into a cell of up to [`WAVE_COPIES`] copies, and the worst of them is moved while that makes it
 //! worse. Between them nothing is proved: the motions that keep the contacts change with q by leaps.
 //!
 //! Where the curvature is positive, one set of forces is enough to show that the state is a strict maximum along that wave, zero modes
@@ -10,7 +10,7 @@
 use super::{
     local::LocalSolution,
     multistart::{CellSearch, Multistart, SearchResult, Target},
-    options::{ATTAINED, WAVE_SIZE},
+    options::{ATTAINED, FOLLOWED_ELEMENTS, WAVE_COPIES, WAVE_ELEMENTS, WAVE_SIZE},
     starts::{Start, moved, tiled},
 };
 use crate::{
@@ -24,12 +24,8 @@ use crate::{
 };
 use std::f64::consts::TAU;
 
-/// Copies of the design's cell in the cells whose waves are tried.
-pub(super) const MOST_COPIES: usize = 6;
-/// Elements in such a cell, and in the one that is solved.
-pub(super) const MOST_ELEMENTS: usize = 40;
-/// Elements in a cell to which a wave leads: its solves are costly.
-pub(super) const FOLLOWED_ELEMENTS: usize = 20;
+/// Waves along which a search goes on from one state, until one gives more.
+const FOLLOWED_WAVES: usize = 3;
 /// Steps with which the worst wave vector is moved, in 2π.
 const STEPS: [f64; 4] = [1.0 / 12.0, 1.0 / 24.0, 1.0 / 48.0, 1.0 / 96.0];
 
@@ -58,10 +54,10 @@ fn of_order(n: i32) -> impl Iterator<Item = [f64; 2]> {
 /// How many copies of this model the waves are tried of; fewer than two: none.
 fn most_orders(model: &Model) -> i32 {
     let elements = model.elements.len();
-    if elements > MOST_ELEMENTS || !model.periodic {
+    if elements > WAVE_ELEMENTS || !model.periodic {
         return 0;
     }
-    (MOST_COPIES / model.cell.copies()).min(MOST_ELEMENTS / elements).clamp(2, MOST_COPIES) as i32
+    (WAVE_COPIES / model.cell.copies()).min(WAVE_ELEMENTS / elements).clamp(2, WAVE_COPIES) as i32
 }
 
 impl FoundWaves {
@@ -117,24 +113,32 @@ impl<T: Target> Multistart<'_, T> {
 }
 
 impl<T: Target> Multistart<'_, T> {
-    /// Measures the waves at the best solution of some cells and, if more than one may be solved, goes on along the worst of them in the
-    /// smallest cell that holds it, as long as that gives more.
+    /// Measures the waves at the best solution of some cells and, if more than one may be solved, goes on along the worst of them, each in
+    /// the smallest cell that holds it, until one gives more; then from there.
     pub(super) fn follow_waves(&self, models: &[Model], found: &mut CellSearch) {
+        let most = if models.len() > 1 { FOLLOWED_WAVES } else { 0 };
         loop {
             let (model, Some(best)) = (found.model(models), &found.result.best) else { return };
             let (waves, from) = (self.waves(model, best), self.target.start(best));
-            let next = waves.next_cell(model.elements.len()).filter(|_| models.len() > 1 && !self.cancelled());
+            let cells = waves.next_cells(model.elements.len());
             found.wave = waves.curvature();
-            let Some((cell, wave)) = next else { return };
-            let larger = models[0].in_cell(cell);
-            let here = self.run(&larger, waves.starts(&larger, wave, &from));
-            found.by_cell.push(here.by_cell(cell));
-            let improves = here.improves_on(&found.result);
-            found.result.merge(here);
-            if !improves {
+            let mut improved = false;
+            for (cell, wave) in cells.into_iter().take(most) {
+                if improved || self.cancelled() {
+                    break;
+                }
+                let larger = models[0].in_cell(cell);
+                let here = self.run(&larger, waves.starts(&larger, wave, &from));
+                found.by_cell.push(here.by_cell(cell));
+                improved = here.improves_on(&found.result);
+                found.result.merge(here);
+                if improved {
+                    found.further = Some(larger);
+                }
+            }
+            if !improved {
                 return;
             }
-            found.further = Some(larger);
         }
     }
 }
@@ -167,15 +171,17 @@ impl<T: Target> Multistart<'_, T> {
 }
 
 impl FoundWaves {
-    /// The smallest cell that holds the worst wave for which there is one, with that wave.
-    fn next_cell(&self, elements: usize) -> Option<(Cell, &WaveMode)> {
+    /// The smallest cells into which the unstable waves fit, that of the worst first, each with the worst of its waves.
+    fn next_cells(&self, elements: usize) -> Vec<(Cell, &WaveMode)> {
         let fits =
-            |n: &i32| *n as usize * self.of.copies() <= MOST_COPIES && *n as usize * elements <= FOLLOWED_ELEMENTS;
-        self.unstable.iter().find_map(|wave| {
+            |n: &i32| *n as usize * self.of.copies() <= WAVE_COPIES && *n as usize * elements <= FOLLOWED_ELEMENTS;
+        let mut out: Vec<(Cell, &WaveMode)> = Vec::new();
+        for wave in &self.unstable {
             let mut cells = (2..).take_while(fits).flat_map(Cell::of_copies);
-            let cell = cells.find(|cell| cell.holds_wave(wave.phases_rad))?;
-            Some((self.of.repeated(&cell)?, wave))
-        })
+            let cell = cells.find(|cell| cell.holds_wave(wave.phases_rad)).and_then(|cell| self.of.repeated(&cell));
+            out.extend(cell.filter(|cell| !out.iter().any(|(other, _)| other == cell)).map(|cell| (cell, wave)));
+        }
+        out
     }
 
     /// The state of the solved cell repeated over the cell of `model` and moved along a wave; both ways, where the one is not a
