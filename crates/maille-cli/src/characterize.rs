@@ -74,7 +74,7 @@ pub struct Args {
     #[arg(long, value_enum, default_value_t = MethodArg::Exact)]
     method: MethodArg,
     /// Cell: 1x1, 2x1, 2x2, …, an integer matrix as "1,0;-1,2", or auto: 1x1, and larger cells where an element
-    /// presses on its own image (exact method)
+    /// presses on its own image or a wave through the sheet is unstable (exact method)
     #[arg(long, default_value = "auto", value_parser = read::<CellChoice>)]
     cell: CellChoice,
     /// What polar.svg and polar.png show

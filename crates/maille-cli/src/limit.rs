@@ -58,8 +58,8 @@ pub struct Args {
     /// Minor radius of every ring that gives none, in the file's unit
     #[arg(long, value_parser = positive)]
     minor_radius: Option<f64>,
-    /// Cell: 1x1, 2x1, …, an integer matrix as "1,0;-1,2", or auto: larger cells where an element presses on its own image, and all
-    /// up to 3x3 with --minimize
+    /// Cell: 1x1, 2x1, …, an integer matrix as "1,0;-1,2", or auto: larger cells where an element presses on its own image or a wave
+    /// through the sheet is unstable, and all up to 3x3 with --minimize
     #[arg(long, default_value = "auto", value_parser = read::<CellChoice>)]
     cell: CellChoice,
     #[command(flatten)]

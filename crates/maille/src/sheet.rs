@@ -5,7 +5,7 @@ use crate::{
     design::Design,
     error::InvalidInput,
     lattice::Cell,
-    model::Model,
+    model::{Model, of_cell},
     program::{Contact, metric::factor},
     question::{Goal, Question, Sense},
     record::Status,
@@ -57,10 +57,7 @@ impl Sheet {
 
     /// The model in whose cell a state of an answer is.
     pub fn model_of(&self, answer: &Answer) -> Cow<'_, Model> {
-        self.models
-            .iter()
-            .find(|model| model.cell == answer.cell)
-            .map_or_else(|| Cow::Owned(self.models[0].in_cell(answer.cell)), Cow::Borrowed)
+        of_cell(&self.models, answer.cell)
     }
 
     /// The answer to a question, by the exact method, on the current thread pool; it does not depend on the number of threads.
@@ -100,10 +97,6 @@ impl Sheet {
         let method = StrainMethod::new(&self.models, options);
         let Some(stretch) = question.as_stretch() else { return Ok(method.solve(&query, &[], cancel)) };
         let answer = self.answer_until(&stretch, cancel)?;
-        // A state of a cell that is the image of another one has no model here.
-        if !self.models.iter().any(|model| model.cell == answer.cell) {
-            return Ok(method.solve(&query, &[], cancel));
-        }
         let answer = as_strain(answer);
         let answer = if answer.is_limit() { method.with_ranges(&query, answer, cancel) } else { answer };
         let interrupted = cancel.load(Ordering::Relaxed);

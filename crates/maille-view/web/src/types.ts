@@ -123,6 +123,9 @@ export interface LimitRow {
   image_of_deg: number | null;
   grows_with_cell: boolean | null;
   better_chance: number | null;
+  wave_curvature: number | null;
+  wave_q1: number | null;
+  wave_q2: number | null;
 }
 
 export interface Listed {

@@ -9,9 +9,10 @@
 
 pub mod flat;
 pub mod gap_kernel;
-mod key;
+pub mod key;
 pub mod metric;
 mod pair;
+pub mod waves;
 
 use self::{
     key::{bound_key, pair_key, pair_of_key},
@@ -287,7 +288,8 @@ impl Program for SheetProgram<'_> {
         let turns = self.all_turns(&x.state);
         let factored = self.pull.factored(&x.p);
         for near in within {
-            self.pair_rows(x, near, band, (&turns, factored.as_ref()), derivatives, &mut rows);
+            let map = self.pair_map(&near.pair, &turns, factored.as_ref());
+            self.pair_rows(x, near, band, &map, derivatives, &mut rows);
         }
         rows
     }
@@ -340,6 +342,15 @@ impl Program for SheetProgram<'_> {
     }
 
     fn hidden_curvature(&self, x: &Posed, multipliers: &[Multiplier]) -> Vec<Vec<f64>> {
-        self.curvature_of_flat_pairs(x, multipliers)
+        let (turns, factored) = (self.all_turns(&x.state), self.pull.factored(&x.p));
+        let n = self.first_parameter + self.pull.parameters.len();
+        let term = |&key: &u64| {
+            let v = self.flat_curvature(x, multipliers, key)?;
+            let map = self.pair_map(&pair_of_key(key), &turns, factored.as_ref());
+            let mut term = vec![0.0; n];
+            map.columns.iter().zip(map.gradient(&v)).for_each(|(&column, entry)| term[column] = entry);
+            Some(term)
+        };
+        self.flat.iter().filter_map(term).collect()
     }
 }

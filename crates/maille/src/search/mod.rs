@@ -2,7 +2,7 @@
 //!
 //! `starts` are states to begin with, `stop` says when they are enough, `local` is one maximisation, `multistart` the search from many starts and in larger cells, and the other files say what is
 //! maximised and from where: `stretch` (with `stretch_lattices`, and `unlinked` where no chain of links binds), `strain`, `extreme`
-//! (wire and clearance). `overlap` frees a start that overlaps. Every tolerance is in `options`.
+//! (wire and clearance). `waves` tells whether a limit can go on in a larger cell. `overlap` frees a start that overlaps. Every tolerance is in `options`.
 
 #[doc(hidden)]
 pub mod extreme;
@@ -18,6 +18,7 @@ pub mod strain;
 pub mod stretch;
 mod stretch_lattices;
 mod unlinked;
+mod waves;
 
 pub use extreme::Extreme;
 pub use options::{ExactOptions, ExactParameters};

@@ -14,7 +14,7 @@ use super::{
     stop::{StopRule, better_chance},
 };
 use crate::{
-    answer::{Answer, CellTrend},
+    answer::{Answer, CellTrend, WaveCurvature},
     lattice::Cell,
     model::Model,
     program::{Contact, LatticeFamily, SheetProgram},
@@ -85,17 +85,28 @@ pub(super) struct SearchResult {
 pub(super) struct CellSearch {
     /// The best of all cells, with the counts of all.
     pub result: SearchResult,
-    /// Its cell.
+    /// Index of its cell among those that are listed.
     pub cell: usize,
+    /// Its cell, where that is none of these.
+    pub further: Option<Model>,
+    /// The least curvature on waves at it.
+    pub wave: Option<WaveCurvature>,
     /// What each cell found.
     pub by_cell: Vec<CellTrend>,
     /// The best of each cell as a start.
     pub starts: Vec<Option<Start>>,
 }
 
+impl CellSearch {
+    /// The model of its cell, where `models` were searched.
+    pub fn model<'m>(&'m self, models: &'m [Model]) -> &'m Model {
+        self.further.as_ref().unwrap_or(&models[self.cell])
+    }
+}
+
 /// Which larger cells are searched, and from where.
 pub(super) struct LargerCells<'a> {
-    /// All of them, each from as many starts of its own; otherwise only while the solution presses an element on its own image.
+    /// All of them, each from as many starts of its own; otherwise only while the solution presses an element on its own image. Waves are followed into others in either case.
     pub every: bool,
     /// Starts of a larger cell of its own.
     pub own_starts: u64,
@@ -192,16 +203,16 @@ impl<T: Target> Multistart<'_, T> {
         let presses = |best: &LocalSolution| own_image_force(&models[0], &best.contacts) > OWN_IMAGE_FORCE;
         let asks = rule.every || result.best.as_ref().map_or(rule.where_none, presses);
         let (mut result, mut cell) = (result, 0);
-        for larger in 1..models.len() {
+        for (larger, model) in models.iter().enumerate().skip(1) {
             // The last cell is for values that have grown.
             let idle = !rule.every && larger + 1 == models.len() && larger > 1 && cell == 0 && result.best.is_some();
             if !asks || idle || result.attains(self.upper_bound) || self.cancelled() {
                 break;
             }
-            let model = &models[larger];
             let repeated = smallest.iter().map(|from| {
                 let mut stream = rng(self.seed, Use::Cell, larger as u64);
-                let state = perturbed(model, &tiled(model, &from.state), CELL_PERTURBATION, &mut stream);
+                let state =
+                    perturbed(model, &tiled(model, models[0].cell, &from.state), CELL_PERTURBATION, &mut stream);
                 Start { state, ..from.clone() }
             });
             let neighbour = rule.neighbours.get(larger).into_iter().flatten().cloned();
@@ -216,17 +227,19 @@ impl<T: Target> Multistart<'_, T> {
             }
             result.merge(found);
         }
-        CellSearch { result, cell, by_cell, starts: reached }
+        let mut found = CellSearch { result, cell, further: None, wave: None, by_cell, starts: reached };
+        self.follow_waves(models, &mut found);
+        found
     }
 
-    fn cancelled(&self) -> bool {
+    pub(super) fn cancelled(&self) -> bool {
         self.cancel.load(Ordering::Relaxed)
     }
 }
 
 impl SearchResult {
     /// What it found, as that of one cell.
-    fn by_cell(&self, cell: Cell) -> CellTrend {
+    pub(super) fn by_cell(&self, cell: Cell) -> CellTrend {
         let value = self.best.as_ref().filter(|best| best.certified).map(LocalSolution::value);
         CellTrend { cell, value, n_starts: self.runs, n_distinct: self.distinct.len() as u64 }
     }

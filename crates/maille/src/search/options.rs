@@ -64,7 +64,7 @@ const fn exploration(steps: usize, size: f64, wires: &'static [f64], first_radiu
 }
 
 /// Starts take these in turn. No one of them finds every limit, and more of one kind finds little more: which wire the sheet is
-/// first pulled with, and how long the first steps are, decides where it locks (decision 18 has the measurement).
+/// first pulled with, and how long the first steps are, decides where it locks (decision 19 has the measurement).
 pub(super) const EXPLORATIONS: [Exploration; 8] = [
     exploration(1, 0.03, &[], FIRST_RADIUS),
     exploration(20, 0.1, &[0.5, 0.8], FIRST_RADIUS),
@@ -111,6 +111,14 @@ pub(super) const CELL_STARTS: u64 = 3;
 pub(super) const FREE_SLACK: f64 = 1e-6;
 /// Solves for an end of such a range, each from where the last one paused.
 pub(super) const RANGE_ROUNDS: usize = 3;
+/// Largest component of the motion along an unstable wave with which a larger cell begins, in R and radians.
+pub(super) const WAVE_SIZE: f64 = 0.05;
+/// Copies of the design's cell in the cells whose waves are tried, and in those to which one leads.
+pub(super) const WAVE_COPIES: usize = 6;
+/// Elements of a cell whose waves are tried.
+pub(super) const WAVE_ELEMENTS: usize = 40;
+/// Elements in a cell to which a wave leads: its solves are costly.
+pub(super) const FOLLOWED_ELEMENTS: usize = 20;
 /// With l2 free: distance of the held l2 whose limits are starts.
 pub(super) const LATERAL_STEP: f64 = 0.125;
 /// As many of the largest of them are starts.
@@ -161,6 +169,10 @@ pub struct ExactParameters {
     cell_starts: u64,
     free_slack: f64,
     range_rounds: usize,
+    wave_size: f64,
+    wave_copies: usize,
+    wave_elements: usize,
+    followed_elements: usize,
     lateral_step: f64,
     lateral_starts: usize,
     lateral_rounds: usize,
@@ -200,6 +212,10 @@ impl ExactOptions {
             cell_starts: CELL_STARTS,
             free_slack: FREE_SLACK,
             range_rounds: RANGE_ROUNDS,
+            wave_size: WAVE_SIZE,
+            wave_copies: WAVE_COPIES,
+            wave_elements: WAVE_ELEMENTS,
+            followed_elements: FOLLOWED_ELEMENTS,
             lateral_step: LATERAL_STEP,
             lateral_starts: LATERAL_STARTS,
             lateral_rounds: LATERAL_ROUNDS,

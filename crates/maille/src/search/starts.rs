@@ -2,6 +2,7 @@
 
 use super::options::{EXPLORATIONS, Exploration, FIRST_RADIUS};
 use crate::{
+    lattice::Cell,
     model::Model,
     state::{Pose, State},
     topology::step_bound::{Motion, StepBound},
@@ -83,7 +84,11 @@ pub(super) fn explored_with_own_wire(model: &Model, seed: u64, k: usize) -> Star
 pub(super) fn perturbed(model: &Model, state: &State, size: f64, rng: &mut ChaCha8Rng) -> State {
     let mut vector = || Vec3::from_fn(|_, _| size * rng.random_range(-1.0..1.0));
     let elements = state.poses.iter().map(|_| (vector(), vector())).collect();
-    let motion = Motion { elements, lattice: [Vec3::zeros(); 2], carried: false };
+    moved(model, state, Motion { elements, lattice: [Vec3::zeros(); 2], carried: false })
+}
+
+/// `state` after a motion of its elements; after less of it where circles could meet.
+pub(super) fn moved(model: &Model, state: &State, motion: Motion) -> State {
     let fraction = StepBound::new(model, state).largest_fraction(model, &motion, f64::INFINITY);
     let moved = state
         .poses
@@ -93,13 +98,16 @@ pub(super) fn perturbed(model: &Model, state: &State, size: f64, rng: &mut ChaCh
     State { poses: moved.collect(), ..state.clone() }
 }
 
-/// A primitive cell's state repeated over the cell of `model`.
-pub(super) fn tiled(model: &Model, state: &State) -> State {
-    let copies = model.cell.cosets();
-    let poses = copies.iter().flat_map(|&coset| {
-        let shift = state.translation(coset);
-        state.poses.iter().map(move |pose| Pose { position: pose.position + shift, ..*pose })
+/// A state of the cell `of` repeated over the cell of `model`, which consists of copies of it.
+pub(super) fn tiled(model: &Model, of: Cell, state: &State) -> State {
+    let elements = state.poses.len() / of.copies();
+    let poses = model.cell.cosets().into_iter().flat_map(|coset| {
+        let (copy, image) = of.copy_at(coset);
+        let shift = state.translation(image);
+        let poses = &state.poses[copy * elements..(copy + 1) * elements];
+        poses.iter().map(move |pose| Pose { position: pose.position + shift, ..*pose })
     });
-    let [a1, a2] = model.cell.vectors(state.a1, state.a2);
+    let [a1, a2] = of.primitive(state.a1, state.a2);
+    let [a1, a2] = model.cell.vectors(a1, a2);
     State { poses: poses.collect(), a1, a2 }
 }

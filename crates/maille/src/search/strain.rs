@@ -17,7 +17,7 @@ use super::{
 use crate::{
     answer::{Answer, CellTrend},
     bound::{ChainBound, MetricBound, metric_bound},
-    model::Model,
+    model::{Model, of_cell},
     program::{LatticeFamily, Parameter, SheetProgram},
     question::{Effort, Sense, StrainQuery},
     record::Status,
@@ -139,6 +139,8 @@ impl<'a> StrainMethod<'a> {
         let fallback = Some(Start::written(model.start.clone()));
         let rule = LargerCells { every: least, own_starts, where_none: false, fallback, neighbours: &[] };
         let found = search.larger_cells(self.models, first, &rule);
+        let model = &found.model(self.models).clone();
+        let wave = found.wave;
         let by_cell = found.by_cell.into_iter().map(|t| CellTrend { value: t.value.map(|p| sign * p), ..t }).collect();
         let mut result = found.result;
         let best = result.best.take();
@@ -148,7 +150,6 @@ impl<'a> StrainMethod<'a> {
             return counted(none(Status::Interrupted));
         }
         let Some(best) = best else { return counted(none(Status::L2NotReached)) };
-        let model = &self.models[found.cell];
         let status = verdict(&best, upper_bound);
         // Without a bound, and where no contact pushes back: this is no limit, only where the search was stopped.
         let stopped = status == Status::Uncertified && bound.is_none() && best.contacts.is_empty();
@@ -156,7 +157,7 @@ impl<'a> StrainMethod<'a> {
         let first = exit.map(|exit| sign * exit).filter(|_| !stopped);
         let answer = counted(Answer { value, first, ..Answer::new(model, status) }).with_solution(model, best);
         let gradient = answer.state.deformation_gradient(model);
-        let answer = Answer { gradient, ..answer };
+        let answer = Answer { gradient, wave, ..answer };
         if !answer.is_limit() {
             return answer;
         }
@@ -170,7 +171,7 @@ impl<'a> StrainMethod<'a> {
     /// The answer with the ranges of the strains that are free, see [`Answer::ranges`].
     pub(crate) fn with_ranges(&self, query: &StrainQuery, answer: Answer, cancel: &AtomicBool) -> Answer {
         let Some(p) = answer.value.map(|value| self.options.sense.sign() * value) else { return answer };
-        let Some(model) = self.models.iter().find(|model| model.cell == answer.cell) else { return answer };
+        let model = &*of_cell(self.models, answer.cell);
         let strain = answer.green_strain();
         let at = strain - query.free[0] * (FREE_SLACK * (1.0 + p.abs()));
         let (mut ranges, mut iterations) = (Vec::new(), answer.iterations);

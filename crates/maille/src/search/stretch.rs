@@ -17,6 +17,7 @@ use super::{
     starts::{Start, explored},
     stop::StopRule,
     stretch_lattices::StretchLattices,
+    waves::OwnCell,
 };
 use crate::{
     answer::{Answer, CellTrend},
@@ -44,6 +45,8 @@ pub struct ExactMethod<'a> {
     image: OnceLock<ImageBound>,
     /// Where no search can begin.
     overlapping: Option<Overlapping>,
+    /// The design's own cell, where the first one is larger: its answer is a start.
+    own: Option<Model>,
 }
 
 /// The stretch whose limit is sought.
@@ -113,13 +116,14 @@ impl<'a> ExactMethod<'a> {
         // them is one too, so that the own cell has the same bound.
         let link = LinkBound::new(&models[0].primitive(), &chain);
         let overlapping = beyond_repair(&models[0], options.seed, cancel);
-        ExactMethod { models, options, chain, link, image: OnceLock::new(), overlapping }
+        let own = (models[0].cell.copies() > 1).then(|| models[0].primitive());
+        ExactMethod { models, options, chain, link, image: OnceLock::new(), overlapping, own }
     }
 
     /// The limits along one direction, in the order of `l2`. Solved outwards from l2 = 0, each from its neighbour's states.
     ///
     /// Where an element presses on its own image, or a lateral compression is not reached, and of every least l1, larger cells
-    /// are solved, too, from the smaller cell's state; the best limit counts, and the answer says which cell gave it.
+    /// are solved, too, from the smaller cell's state, and unstable waves are followed; the best limit counts, and the answer says which cell gave it.
     /// `finished` gets each limit with its index in `l2`; after `cancel` the rest comes back as interrupted.
     pub fn limits(
         &self,
@@ -132,7 +136,7 @@ impl<'a> ExactMethod<'a> {
         let stretch = |l2: f64| Stretch { direction, l2, across, sign: if compression { -1.0 } else { 1.0 } };
         let mut order: Vec<usize> = (0..l2.len()).collect();
         order.sort_by(|&a, &b| l2[a].abs().total_cmp(&l2[b].abs()).then(l2[a].total_cmp(&l2[b])));
-        let mut sides: [Neighbours; 2] = [vec![None; self.models.len()], vec![None; self.models.len()]];
+        let mut sides: [Neighbours; 2] = [self.no_neighbours(), self.no_neighbours()];
         if !compression && !l2.contains(&0.0) {
             let (_, at_zero) = self.limit(&stretch(0.0), &sides[0], cancel);
             sides = [at_zero.clone(), at_zero];
@@ -152,7 +156,7 @@ impl<'a> ExactMethod<'a> {
     fn limit(&self, stretch: &Stretch, neighbours: &Neighbours, cancel: &AtomicBool) -> (Answer, Neighbours) {
         let least = stretch.sign < 0.0;
         let Stretch { direction, l2, across, .. } = *stretch;
-        let none = || vec![None; self.models.len()];
+        let none = || self.no_neighbours();
         let bound = best_bound_across(&self.chain, Some(&self.link), direction, l2, across);
         let unreachable = matches!(bound, Bound::L2Unreachable { .. });
         // The bounds are of the largest l1; of the least one they tell only that no state has this l2.
@@ -175,11 +179,14 @@ impl<'a> ExactMethod<'a> {
             _ => f64::INFINITY,
         };
         let search = self.search(stretch, upper_bound, cancel);
-        let first = if least {
-            search.run(&self.models[0], neighbour.iter().cloned().collect(), self.stop())
+        let own = self.own_cell(&search, neighbours.last().cloned().flatten());
+        let mut first = if least {
+            let given = own.starts.into_iter().chain(neighbour.iter().cloned()).collect();
+            search.run(&self.models[0], given, self.stop())
         } else {
-            self.first_cell(&search, neighbour.clone())
+            self.first_cell(&search, own.starts, neighbour.clone())
         };
+        (first.runs, first.iterations) = (first.runs + own.runs, first.iterations + own.iterations);
         let near =
             (first.best.is_none() && !least && !across.any()).then(|| self.too_near(stretch, upper_bound)).flatten();
         let rule = LargerCells {
@@ -208,22 +215,33 @@ impl<'a> ExactMethod<'a> {
             );
             return ended(Status::L2Unreachable, Some(note));
         }
+        let (model, wave) = (found.model(self.models).clone(), found.wave);
         let kept = if least || found.by_cell.len() > 1 { found.by_cell } else { Vec::new() };
         // What was maximised is −l1 where the least is sought.
         let value = |t: CellTrend| CellTrend { value: t.value.map(|value| stretch.sign * value), ..t };
-        let answer = proved(self.judge(found.cell, stretch, upper_bound, found.result, cancel));
+        let answer = proved(self.judge(&model, stretch, upper_bound, found.result, cancel));
         // Ranges of what is free are solved for after the search: without them the answer is not whole.
         if cancel.load(Ordering::Relaxed) {
             return ended(Status::Interrupted, None);
         }
         let by_cell = kept.into_iter().map(value).collect();
-        (Answer { by_cell, ..answer }, found.starts)
+        (Answer { by_cell, wave, ..answer }, found.starts.into_iter().chain([own.best]).collect())
     }
 
-    /// The search of the first cell for a largest l1: from the neighbour's state, then from perturbed states of the design and of
-    /// its images.
-    fn first_cell(&self, search: &Multistart<'_, Stretch>, neighbour: Option<Start>) -> SearchResult {
-        let mut starts: Vec<Start> = neighbour.into_iter().collect();
+    /// Of each cell, and of the design's own where the first is larger.
+    fn no_neighbours(&self) -> Neighbours {
+        vec![None; self.models.len() + 1]
+    }
+
+    /// What the design's own cell gives to a larger first one.
+    fn own_cell(&self, search: &Multistart<'_, Stretch>, neighbour: Option<Start>) -> OwnCell {
+        let Some(own) = &self.own else { return OwnCell::default() };
+        search.own_cell(own, neighbour.into_iter().collect(), self.stop(), &self.models[0])
+    }
+
+    /// The search of the first cell for a largest l1: from the states that are given, then from drawn ones.
+    fn first_cell(&self, search: &Multistart<'_, Stretch>, own: Vec<Start>, neighbour: Option<Start>) -> SearchResult {
+        let mut starts: Vec<Start> = own.into_iter().chain(neighbour).collect();
         let (wide, runs, iterations) = self.lateral_starts(search);
         starts.extend(wide);
         let mut found = search.run(&self.models[0], starts, self.stop());
@@ -314,7 +332,7 @@ impl<'a> ExactMethod<'a> {
     /// Status and figures of the best solution.
     pub(super) fn judge(
         &self,
-        cell: usize,
+        model: &Model,
         stretch: &Stretch,
         upper_bound: f64,
         mut found: SearchResult,
@@ -325,7 +343,6 @@ impl<'a> ExactMethod<'a> {
             let note = Some(format!("no start reached {what} without overlap; nothing is proved"));
             return found.counted(Answer { note, ..self.without_state(Status::L2NotReached) });
         };
-        let model = &self.models[cell];
         let Stretch { l2, across, direction, sign } = *stretch;
         let lattices = stretch.lattices(model);
         let gradient = lattices.gradient(&best.p, l2);

@@ -65,14 +65,15 @@ impl ExactMethod<'_> {
         (found.runs, found.iterations) = (found.runs + runs, found.iterations + iterations);
         let mut reached = none.clone();
         reached[0] = found.best.as_ref().map(|best| stretch.start(best));
-        let answer = self.judge(0, stretch, f64::INFINITY, found, cancel);
+        let wave = found.best.as_ref().and_then(|best| search.waves(&self.models[0], best).curvature());
+        let answer = self.judge(&self.models[0], stretch, f64::INFINITY, found, cancel);
         if cancel.load(Ordering::Relaxed) {
             return (self.without_state(Status::Interrupted), none);
         }
         match answer.status {
             Status::Local => {
                 let note = Some("held by contacts without a chain of links: there is no bound".into());
-                (Answer { note, ..answer }, reached)
+                (Answer { note, wave, ..answer }, reached)
             }
             // No limit, only where the search was stopped.
             Status::Uncertified if answer.contacts.is_empty() => {
