@@ -76,7 +76,11 @@ pub(crate) fn finding(row: &Row, sheet: &Sheet, points: &[(Closed<'_>, f64)], to
         let unsure = found.flat || found.near_zero();
         let least = found.least();
         if let Some((known, at)) = written.filter(|(_, at)| *at == q) {
-            let apart = |least: f64| (known - least).abs() > CURVATURE * least.abs().max(known.abs());
+            // Of a pair that lies flat the figures depend on how its force is spread, and the signs are compared.
+            let apart = |least: f64| match found.flat {
+                true => known.signum() != least.signum(),
+                false => (known - least).abs() > CURVATURE * least.abs().max(known.abs()),
+            };
             if least.is_none_or(apart) && q == at {
                 let words = format!("wave_curvature is {known:?} at q = 2π {q:?}, {least:?} in the state");
                 return say(if unsure { Verdict::Open } else { Verdict::False }, least, words);

@@ -323,7 +323,9 @@ fn a_local_limit_that_was_lifted_to_global_is_found() {
     };
     let bound = |specimen: &Specimen, kind: &'static str| {
         let l1 = specimen.cell("l1");
-        specimen.forge_row(&[("status", "global"), ("bound_l1", &l1), ("bound_gap", "0.0"), ("bound_kind", kind)]);
+        let wave = ["wave_curvature", "wave_q1", "wave_q2"].map(|column| (column, ""));
+        let bound = [("status", "global"), ("bound_l1", &l1[..]), ("bound_gap", "0.0"), ("bound_kind", kind)];
+        specimen.forge_row(&[&bound[..], &wave].concat());
     };
     // The chain that the solver wrote proves the true bound and no lower one; it proves no link bound.
     let specimen = local();

@@ -16,7 +16,7 @@ use super::{
     Posed, SheetProgram,
     gap_kernel::{Grad, Hess},
     key::pair_key,
-    pair::PairMap,
+    pair::{PairMap, height_angles_rad},
 };
 use crate::{
     lattice::Shift,
@@ -84,6 +84,16 @@ fn motions(turns: &[Vec3], as_b: bool) -> Vec<Grad> {
     shifts.into_iter().chain(turns.iter().map(|axis| at(block, axis))).collect()
 }
 
+/// The force of a flat pair spread over its heights, with the same sum and moment.
+fn spread(multipliers: &[Multiplier], key: u64) -> Vec<Multiplier> {
+    let of_pair = || multipliers.iter().filter(|m| m.key == key && m.value > 0.0);
+    let sum = |f: fn(f64) -> f64| of_pair().map(|m| m.value * f(m.angle)).sum::<f64>();
+    let (total, cos, sin) = (sum(|_| 1.0), sum(f64::cos), sum(f64::sin));
+    let angles: Vec<f64> = height_angles_rad().collect();
+    let share = |angle: f64| (total + 2.0 * (cos * angle.cos() + sin * angle.sin())) / angles.len() as f64;
+    angles.iter().map(|&angle| Multiplier { key, angle, minimum: false, value: share(angle) }).collect()
+}
+
 impl SheetProgram<'_> {
     /// The waves at `x` with these multipliers, which must balance there.
     pub fn waves(&self, x: &Posed, multipliers: &[Multiplier]) -> Waves {
@@ -92,12 +102,16 @@ impl SheetProgram<'_> {
         let local = PairMap::local();
         for near in self.near(x).iter().filter(|near| loads.carries(pair_key(&near.pair))) {
             let key = pair_key(&near.pair);
+            // A flat pair's force may be written beside the heights: what counts is its sum and its moment.
+            let spread = self.flat.contains(&key).then(|| Loads::new(&spread(multipliers, key)));
+            let loads = spread.as_ref().unwrap_or(&loads);
             let mut rows = Vec::new();
-            self.pair_rows(x, near, BAND, &local, Derivatives::Second(&loads), &mut rows);
+            self.pair_rows(x, near, BAND, &local, Derivatives::Second(loads), &mut rows);
             let (mut hessian, mut gradients) = (Hess::zeros(), Vec::new());
-            for (row, mu) in rows.iter().map(|row| (row, loads.of(row))).filter(|(_, mu)| *mu > CARRIED) {
+            let carried = rows.iter().map(|row| (row, loads.of(row))).filter(|(_, mu)| mu.abs() > CARRIED);
+            for (row, mu) in carried {
                 hessian -= Hess::from_row_slice(&row.hessian) * mu;
-                if mu > LOADED {
+                if mu > LOADED || spread.is_some() {
                     gradients.push(Grad::from_column_slice(&row.gradient));
                 }
             }
