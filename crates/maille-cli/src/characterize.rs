@@ -1,6 +1,7 @@
 //! `maille characterize`: limits over directions and lateral strains, written as a record.
 
 use crate::{
+    effort::SearchArgs,
     exit::{self, refused},
     input::{Input, file_name},
     map::{self, RunArgs, Solved, unanswered},
@@ -73,7 +74,7 @@ pub struct Args {
     #[arg(long, value_enum, default_value_t = MethodArg::Exact)]
     method: MethodArg,
     /// Cell: 1x1, 2x1, 2x2, …, an integer matrix as "1,0;-1,2", or auto: 1x1, and larger cells where an element
-    /// presses on its own image (exact method)
+    /// presses on its own image or a wave through the sheet is unstable (exact method)
     #[arg(long, default_value = "auto", value_parser = read::<CellChoice>)]
     cell: CellChoice,
     /// What polar.svg and polar.png show
@@ -82,8 +83,8 @@ pub struct Args {
     #[command(flatten)]
     run: RunArgs,
     /// Seed of everything random
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
+    #[command(flatten)]
+    search: SearchArgs,
     /// Print the summary as one JSON document; docs/json.md has its keys
     #[arg(long)]
     json: bool,
@@ -93,9 +94,6 @@ pub struct Args {
     /// No progress and no summary
     #[arg(long, short, conflicts_with = "json")]
     quiet: bool,
-    /// Exact method: starts of a limit whose bound is not attained; with --compression starts of each cell
-    #[arg(long, default_value_t = ExactOptions::default().starts, value_parser = |t: &str| small(t, 1..=10_000))]
-    starts: usize,
     #[command(flatten, next_help_heading = "Energy method (lengths in units of the reference radius R)")]
     energy: EnergyArgs,
 }
@@ -194,9 +192,10 @@ enum Held {
 /// What is asked.
 fn question(args: &Args) -> Result<MapQuestion, InvalidInput> {
     let across = Across { lateral_free: args.lateral == Held::Free, shear_free: args.shear == Held::Free };
-    let Args { starts, seed, compression, .. } = *args;
+    let Args { compression, search, .. } = *args;
+    let SearchArgs { effort, seed, .. } = search;
     let method = match args.method {
-        MethodArg::Exact => Method::Exact(ExactOptions { starts, seed, across, compression }),
+        MethodArg::Exact => Method::Exact(ExactOptions { effort, starts: search.starts(), seed, across, compression }),
         MethodArg::Energy => Method::energy(args.energy.options(seed), across, compression)?,
     };
     let l2 = args.l2.clone().map(|l2| l2.0);

@@ -3,6 +3,7 @@
 
 use crate::{
     certificate,
+    effort::SearchArgs,
     exit::{self, refused, wrong},
     input::Input,
     interrupt,
@@ -27,13 +28,13 @@ use std::{path::PathBuf, process::ExitCode, time::Instant};
 /// The thickest wire with which a weave exists
 ///
 /// All minor radii are made as large as can be, over all poses and the lattice. The locked state is certified as a limit is:
-/// no small motion allows a thicker wire. That no distant state does is not proved; more --starts search further.
+/// no small motion allows a thicker wire. That no distant state does is not proved; `--effort thorough` searches further.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   maille tightest european-4-in-1
   maille tightest 1.1 --lattice fixed          with the spacing of the design
-  maille tightest 2 --starts 50 --save tight-2.toml
+  maille tightest 2 --effort thorough --save tight-2.toml
   maille render tight-2.toml --tile 6x6
 
 Exit codes: 0 certified, 5 no certified state was found, 130 interrupted.")]
@@ -69,12 +70,8 @@ struct Common {
     /// Whether the lattice may change [default: free for tightest, fixed for roomiest]
     #[arg(long, value_enum)]
     lattice: Option<Lattice>,
-    /// Starts: the design's state, then shaken ones
-    #[arg(long, default_value_t = USUAL.0, value_parser = clap::value_parser!(u32).range(1..=10_000))]
-    starts: u32,
-    /// Seed of the shaking
-    #[arg(long, default_value_t = USUAL.1)]
-    seed: u64,
+    #[command(flatten)]
+    search: SearchArgs,
     /// Write the state as a design file
     #[arg(long, value_name = "FILE")]
     save: Option<PathBuf>,
@@ -103,13 +100,10 @@ pub fn roomiest(args: &RoomiestArgs) -> Result<ExitCode> {
     run(&args.common, Extreme::LargestClearance)
 }
 
-/// Starts and seed where no option names them.
-const USUAL: (u32, u64) = (8, 1);
-
 fn run(args: &Common, what: Extreme) -> Result<ExitCode> {
     let input = Input::read(&args.design, args.minor_radius)?;
     let begun = Instant::now();
-    let answer = search(&input, what, args.lattice, (args.starts, args.seed), args.threads)?;
+    let answer = search(&input, what, args.lattice, args.search, args.threads)?;
     let found = &answer.found;
     if args.json {
         let document = answer::extreme(&input.design, answer.model(), what, answer.lattice_free, found);
@@ -128,7 +122,7 @@ fn search<'a>(
     input: &'a Input,
     what: Extreme,
     lattice: Option<Lattice>,
-    (starts, seed): (u32, u64),
+    search: SearchArgs,
     threads: Option<u16>,
 ) -> Result<Found<'a>> {
     let sheet = input.sheet(Cell::PRIMITIVE.into())?;
@@ -141,7 +135,12 @@ fn search<'a>(
         Extreme::ThickestWire => Goal::Wire { lattice_free },
         Extreme::LargestClearance => Goal::Clearance { lattice_free },
     };
-    let question = Question { starts: Some(starts as usize), seed, ..Question::new(goal, Sense::Largest) };
+    let question = Question {
+        effort: search.effort,
+        starts: search.starts(),
+        seed: search.seed,
+        ..Question::new(goal, Sense::Largest)
+    };
     let cancel = interrupt::flag()?;
     let found = pool(threads)?.install(|| sheet.answer_until(&question, &cancel)).map_err(|e| refused(&e))?;
     Ok(Found { input, sheet, what, lattice_free, found })
@@ -154,7 +153,7 @@ pub fn as_design(
     lattice: Option<Lattice>,
     threads: Option<u16>,
 ) -> Result<(Design, String)> {
-    let answer = search(input, what, lattice, USUAL, threads)?;
+    let answer = search(input, what, lattice, SearchArgs::USUAL, threads)?;
     let name = &input.design.name;
     match (answer.found.status, answer.found.value) {
         (Status::Interrupted, _) => Err(wrong(exit::INTERRUPTED, "interrupted", "nothing was written")),
@@ -209,7 +208,7 @@ impl Found<'_> {
         let unit = self.input.design.unit.as_deref().map(|unit| format!(" {unit}")).unwrap_or_default();
         say!("{}: {}", self.title(), found.status.name());
         if found.value.is_none() {
-            say!("  no start led to a state without overlap; try more --starts, or --lattice free");
+            say!("  no start led to a state without overlap; try --effort thorough, or --lattice free");
             return;
         }
         if let Some(gap) = self.what.clearance(found, self.model()) {

@@ -2,6 +2,7 @@
 
 use crate::{
     certificate,
+    effort::SearchArgs,
     exit::{self, refused, wrong},
     input::Input,
     interrupt,
@@ -57,17 +58,12 @@ pub struct Args {
     /// Minor radius of every ring that gives none, in the file's unit
     #[arg(long, value_parser = positive)]
     minor_radius: Option<f64>,
-    /// Cell: 1x1, 2x1, …, an integer matrix as "1,0;-1,2", or auto: larger cells where an element presses on its own image, and all
-    /// up to 3x3 with --minimize
+    /// Cell: 1x1, 2x1, …, an integer matrix as "1,0;-1,2", or auto: larger cells where an element presses on its own image or a wave
+    /// through the sheet is unstable, and all up to 3x3 with --minimize
     #[arg(long, default_value = "auto", value_parser = read::<CellChoice>)]
     cell: CellChoice,
-    /// Starts of a query whose bound is not attained; with --minimize of each cell [default: 8, and those of `characterize` where
-    /// the question is a pull]
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=10_000))]
-    starts: Option<u32>,
-    /// Seed of the shaking
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
+    #[command(flatten)]
+    search: SearchArgs,
     /// Print one JSON document; docs/json.md has its keys
     #[arg(long)]
     json: bool,
@@ -109,8 +105,8 @@ fn question(args: &Args) -> Result<Question> {
         fix: args.fix.iter().map(|held| (held.strain, held.value)).collect(),
         free: args.free.clone(),
     };
-    let starts = args.starts.map(|starts| starts as usize);
-    Ok(Question { starts, seed: args.seed, ..Question::new(goal, sense) })
+    let SearchArgs { effort, seed, .. } = args.search;
+    Ok(Question { effort, starts: args.search.starts(), seed, ..Question::new(goal, sense) })
 }
 
 /// Runs the command.

@@ -11,6 +11,7 @@ mod completions;
 mod designs;
 #[cfg(test)]
 mod docs;
+mod effort;
 mod exit;
 mod export;
 mod extreme;

@@ -19,6 +19,8 @@ pub struct Summary {
     statuses: BTreeMap<&'static str, usize>,
     images: usize,
     grows_with_cell: usize,
+    better_chance: Option<f64>,
+    unstable_waves: usize,
     solved: usize,
     wall_s: f64,
     interrupted: bool,
@@ -70,6 +72,8 @@ impl Summary {
             statuses: Status::ALL.iter().map(|s| (s.name(), count(*s))).filter(|(_, n)| *n > 0).collect(),
             images: rows.iter().filter(|r| r.image_of_deg.is_some()).count(),
             grows_with_cell: rows.iter().filter(|r| r.l1.is_some() && r.grows_with_cell == Some(true)).count(),
+            better_chance: rows.iter().filter_map(|r| r.better_chance).max_by(f64::total_cmp),
+            unstable_waves: rows.iter().filter(|r| r.wave_curvature.is_some_and(|least| least < 0.0)).count(),
             solved,
             wall_s: took.as_secs_f64(),
             interrupted,
@@ -90,10 +94,23 @@ impl Summary {
                 output::say!("{count} {}", status.name());
             }
         }
+        if let Some(chance) = self.better_chance {
+            let percent = 100.0 * chance;
+            output::say!(
+                "estimated chance that one more start raises a limit: up to {percent:.0} %; see better_chance"
+            );
+        }
         match self.grows_with_cell {
             0 => {}
             1 => output::say!("1 limit still grows with the cell: a larger one may go further; see by_cell"),
             count => output::say!("{count} limits still grow with the cell: a larger one may go further; see by_cell"),
+        }
+        match self.unstable_waves {
+            0 => {}
+            1 => output::say!("1 limit has an unstable wave: a larger cell may go further; see wave_curvature"),
+            count => {
+                output::say!("{count} limits have an unstable wave: a larger cell may go further; see wave_curvature");
+            }
         }
         match self.images {
             0 => {}

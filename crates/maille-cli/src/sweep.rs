@@ -37,7 +37,7 @@ Examples:
 A study:
   directions = \"0:180:15\"       # or [0, 45]; so with l2, minor_radius and spacing
   l2 = [-0.125, 0]
-  cell = \"auto\"                 # as in `maille characterize`; starts and seed, too
+  cell = \"auto\"                 # as in `maille characterize`; effort, starts and seed, too
   [[designs]]
   design = \"1.1\"                # built in, or a file beside the study
   minor_radius = \"0.04:0.12:0.02\"

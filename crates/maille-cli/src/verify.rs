@@ -35,7 +35,7 @@ Examples:
   maille verify 1.1 --json
   maille verify maille-out/2-0deg.proof   a proof that `maille prove` wrote
 
-What a row claims is derived, or false, or open. Not judged: what the search did (n_starts, n_distinct, iterations, runs, wall_s), and
+What a row claims is derived, or false, or open. Not judged: what the search did (n_starts, n_distinct, better_chance, iterations, runs, wall_s), and
 that rings never crossed on the way. docs/reliability.md has the method.
 
 Exit codes: 0 all certified rows are proved, 4 something is false or unreadable, 5 something could not be proved.")]

@@ -107,6 +107,7 @@ impl<'a> StrainAnswer<'a> {
             "links_ok": found.links_ok.filter(|_| solved),
             "n_starts": found.n_starts,
             "n_distinct": found.n_distinct,
+            "better_chance": found.better_chance,
         })
     }
 }
@@ -133,6 +134,7 @@ pub fn extreme(design: &Design, model: &Model, what: Extreme, lattice_free: bool
         "links_ok": found.links_ok.unwrap_or(false),
         "n_starts": found.n_starts,
         "n_distinct": found.n_distinct,
+        "better_chance": found.better_chance,
     })
 }
 

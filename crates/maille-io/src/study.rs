@@ -9,6 +9,7 @@ use crate::{
 use maille::{
     design::Design,
     error::InvalidInput,
+    question::Effort,
     search::ExactOptions,
     survey::{CellChoice, MapQuestion, Method},
 };
@@ -27,7 +28,9 @@ pub struct Study {
     pub l2: Vec<f64>,
     /// The cells to solve.
     pub cell: CellChoice,
-    /// Starts of a limit whose bound is not attained, where given.
+    /// How long a limit is searched whose bound is not attained.
+    pub effort: Effort,
+    /// So many starts in place of an effort.
     pub starts: Option<usize>,
     /// Seed of everything random.
     pub seed: u64,
@@ -121,6 +124,7 @@ struct RawStudy {
     directions: Option<Spanned<List>>,
     l2: Option<Spanned<List>>,
     cell: Option<Spanned<String>>,
+    effort: Option<Spanned<String>>,
     starts: Option<Spanned<i64>>,
     seed: Option<Spanned<i64>>,
     designs: Spanned<Vec<RawDesign>>,
@@ -155,7 +159,7 @@ impl List {
     }
 }
 
-const HELP: &str = "a study has directions, l2, cell, starts, seed, and [[designs]] with design, minor_radius, spacing, vary; \
+const HELP: &str = "a study has directions, l2, cell, effort, starts, seed, and [[designs]] with design, minor_radius, spacing, vary; \
                     `maille sweep --example` prints one";
 
 impl Study {
@@ -175,12 +179,12 @@ impl Study {
         })
     }
 
-    /// What is asked of each design: starts and seed of the study, the rest as usual.
+    /// What is asked of each design: effort, starts and seed of the study, the rest as usual.
     pub fn question(&self) -> MapQuestion {
         let usual = ExactOptions::default();
-        let starts = self.starts.unwrap_or(usual.starts);
+        let Study { effort, starts, seed, .. } = *self;
         MapQuestion {
-            method: Method::Exact(ExactOptions { starts, seed: self.seed, ..usual }),
+            method: Method::Exact(ExactOptions { effort, starts, seed, ..usual }),
             cells: self.cell.clone(),
             directions_deg: self.directions_deg.clone(),
             l2: self.l2.clone(),
@@ -224,11 +228,16 @@ impl Study {
             directions_deg: directions_deg.unwrap_or_else(|| (0..=180).step_by(15).map(f64::from).collect()),
             l2: raw.l2.map(|list| numbers(&list, parse_l2)).transpose()?.unwrap_or_else(|| vec![0.0]),
             cell,
+            effort: raw.effort.as_ref().map(effort).transpose()?.unwrap_or_default(),
             starts: raw.starts.map(|n| whole(&n, 1)).transpose()?.map(|n| n as usize),
             seed: raw.seed.map(|n| whole(&n, 0)).transpose()?.unwrap_or(1),
             designs,
         })
     }
+}
+
+fn effort(text: &Spanned<String>) -> Result<Effort, Wrong> {
+    text.get_ref().parse().map_err(|e: InvalidInput| wrong(text, e.problem, e.help))
 }
 
 fn numbers(list: &Spanned<List>, read: fn(&str) -> Result<Numbers, String>) -> Result<Vec<f64>, Wrong> {

@@ -77,7 +77,7 @@ fn refused(wrong: &InvalidInput) -> PyErr {
     let plain = |text: &str| text.replace('`', "");
     let field = match wrong.field.as_str() {
         "direction_deg" | "directions_deg" => "directions",
-        field @ ("method" | "l2" | "starts" | "cell") => field,
+        field @ ("method" | "l2" | "effort" | "starts" | "cell") => field,
         _ => "energy",
     };
     error::argument(field, plain(&wrong.problem), plain(&wrong.help))
@@ -85,7 +85,7 @@ fn refused(wrong: &InvalidInput) -> PyErr {
 
 /// What a map asks, as JSON. `energy` has options of the energy method, as JSON.
 #[pyfunction]
-#[pyo3(signature = (*, directions, l2, lateral_free, shear_free, compression, method, cell, starts, seed, energy))]
+#[pyo3(signature = (*, directions, l2, lateral_free, shear_free, compression, method, cell, effort, starts, seed, energy))]
 pub fn map_question(
     directions: Option<Vec<f64>>,
     l2: Option<Vec<f64>>,
@@ -94,13 +94,16 @@ pub fn map_question(
     compression: bool,
     method: &str,
     cell: &str,
-    starts: usize,
+    effort: &str,
+    starts: Option<usize>,
     seed: u64,
     energy: &str,
 ) -> PyResult<String> {
     let across = Across { lateral_free, shear_free };
     let method = match method {
-        "exact" => Ok(Method::Exact(ExactOptions { starts, seed, across, compression })),
+        "exact" => {
+            effort.parse().map(|effort| Method::Exact(ExactOptions { effort, starts, seed, across, compression }))
+        }
         "energy" => Method::energy(energy_options(energy, seed)?, across, compression),
         other => return Err(error::argument("method", format!("\"{other}\" is none"), "give exact or energy")),
     };

@@ -1,6 +1,6 @@
 //! What a row has by its status and method, and what it cannot have.
 
-use crate::record::Row;
+use crate::{record::Row, waves::COLUMNS};
 use std::collections::BTreeSet;
 
 /// Statuses of the exact method, and of the energy method.
@@ -79,6 +79,14 @@ pub(crate) fn contradiction(row: &Row, columns: &BTreeSet<String>) -> Option<Str
         if let Some(name) = unearned(of_exact).or_else(|| unearned(&OF_BOUND)) {
             return Some(format!("a row of the {method} method has {name}"));
         }
+    }
+    let wave = COLUMNS.map(|name| row.has(name));
+    if wave != [false; 3] && (wave != [true; 3] || status != "local" || method != "exact") {
+        return Some(format!(
+            "a row that is {status} has {} of {}",
+            wave.iter().filter(|has| **has).count(),
+            COLUMNS.join(", ")
+        ));
     }
     if row.l1_uncertified.is_some() && status != "uncertified" {
         return has("l1_uncertified");

@@ -65,6 +65,12 @@ impl Curvature {
         self.values.iter().copied().find(|v| v.abs() > zero)
     }
 
+    /// Whether one is about the size that counts as zero.
+    pub fn near_zero(&self) -> bool {
+        let zero = ZERO_MODE * self.scale();
+        self.values.iter().any(|v| (0.1..10.0).contains(&(v.abs() / zero)))
+    }
+
     /// How many are zero.
     pub fn zero_modes(&self) -> u64 {
         let zero = ZERO_MODE * self.scale();
@@ -73,7 +79,7 @@ impl Curvature {
 }
 
 /// Motions of a pair: translation and turn of a's element, then of b's image, then θ.
-type Local = SVector<f64, 13>;
+pub(crate) type Local = SVector<f64, 13>;
 
 /// The gradient of the distance of the point from circle a after a motion of size h along `along`.
 fn gradient(point: &Closed<'_>, along: usize, h: f64) -> Local {
@@ -138,6 +144,18 @@ fn hessian(point: &Closed<'_>) -> SMatrix<f64, 13, 13> {
     (out + out.transpose()) * 0.5
 }
 
+/// Axes of the turns of an element: a single ring has none about its own axis.
+pub(crate) fn turns(sheet: &Sheet, element: usize) -> Vec<Vec3> {
+    let rings: Vec<usize> = (0..sheet.rings.len()).filter(|&r| sheet.rings[r].element == element).collect();
+    match &rings[..] {
+        [ring] if sheet.rings[*ring].arm.norm() < 1e-12 => {
+            let (u, v) = frame(&sheet.circle(*ring, [0, 0]).normal);
+            vec![u, v]
+        }
+        _ => vec![Vec3::x(), Vec3::y(), Vec3::z()],
+    }
+}
+
 /// The unknowns that move an element, with their motions: translation and turn.
 struct Unknowns {
     of_element: Vec<Vec<(usize, [Vec3; 2])>>,
@@ -154,14 +172,7 @@ impl Unknowns {
         let mut next = 0;
         let mut of_element = Vec::new();
         for element in 0..sheet.bodies.len() {
-            let rings: Vec<usize> = (0..sheet.rings.len()).filter(|&r| sheet.rings[r].element == element).collect();
-            let turns: Vec<Vec3> = match &rings[..] {
-                [ring] if sheet.rings[*ring].arm.norm() < 1e-12 => {
-                    let (u, v) = frame(&sheet.circle(*ring, [0, 0]).normal);
-                    vec![u, v]
-                }
-                _ => axes.to_vec(),
-            };
+            let turns = turns(sheet, element);
             let shifts = axes.iter().filter(|_| element != still).map(|axis| [*axis, Vec3::zeros()]);
             let motions = shifts.chain(turns.into_iter().map(|axis| [Vec3::zeros(), axis]));
             of_element.push(motions.enumerate().map(|(k, motion)| (next + k, motion)).collect::<Vec<_>>());
@@ -207,6 +218,88 @@ struct FlatPair {
     drift_sq: SMatrix<f64, 13, 13>,
 }
 
+/// What one pair of rings adds to the curvature, in the motions of the two elements.
+pub(crate) struct Term {
+    pub pair: Pair,
+    /// −Σ μ ∇²g.
+    pub hessian: SMatrix<f64, 13, 13>,
+    /// What a motion must keep.
+    pub rows: Vec<Local>,
+}
+
+/// The terms of `points` with their forces, and whether a pair lies flat; or why they cannot be told.
+pub(crate) fn terms(sheet: &Sheet, points: &[(Closed<'_>, f64)]) -> Result<(Vec<Term>, bool), String> {
+    let mut out = Vec::new();
+    let mut flat: BTreeMap<Pair, FlatPair> = BTreeMap::new();
+    for (point, force) in points.iter().filter(|(point, _)| lies_flat(sheet, point.pair)) {
+        flat.entry(point.pair).or_default().add(sheet, point, *force);
+    }
+    // One that is held on one side alone has a least distance as any other pair.
+    flat.retain(|_, found| found.moment.norm() <= ROCKING * found.force);
+    for (point, force) in points {
+        let mut h = hessian(point);
+        let bend = h[(12, 12)];
+        let aside = h.column(12).into_owned();
+        if !flat.contains_key(&point.pair) {
+            if bend.is_nan() || bend <= FLATTEST {
+                let (a, b, shift) = point.pair;
+                return Err(format!("rings {a} and {b} at {shift:?} touch along an arc, and are not held flat"));
+            }
+            h -= aside * aside.transpose() / bend;
+        }
+        h.row_mut(12).fill(0.0);
+        h.column_mut(12).fill(0.0);
+        let rows = if *force > LOADED { vec![gradient(point, 0, 0.0)] } else { Vec::new() };
+        out.push(Term { pair: point.pair, hessian: h * -*force, rows });
+    }
+    for (pair, found) in &flat {
+        let least = found.drift * found.drift.transpose() / found.force;
+        let (u, v) = frame(&sheet.circle(pair.0, [0, 0]).normal);
+        let tilt = |axis: Vec3| {
+            let mut tilt = Local::zeros();
+            (0..3).for_each(|k| (tilt[3 + k], tilt[9 + k]) = (-axis[k], axis[k]));
+            tilt
+        };
+        let hessian = (found.drift_sq - least) / sheet.touching(pair.0, pair.1);
+        out.push(Term { pair: *pair, hessian, rows: vec![tilt(u), tilt(v)] });
+    }
+    Ok((out, !flat.is_empty()))
+}
+
+/// The sum of some terms over `n` unknowns, each with the unknowns that move its pair.
+pub(crate) struct Sum {
+    of_sum: DMatrix<f64>,
+    gram: DMatrix<f64>,
+}
+
+impl Sum {
+    pub fn new(n: usize) -> Self {
+        Sum { of_sum: DMatrix::zeros(n, n), gram: DMatrix::zeros(n, n) }
+    }
+
+    pub fn add(&mut self, term: &Term, columns: &[(usize, Local)]) {
+        for (i, x) in columns {
+            let image = term.hessian * x;
+            columns.iter().for_each(|(j, y)| self.of_sum[(*i, *j)] += y.dot(&image));
+        }
+        for gradient in &term.rows {
+            let entries: Vec<(usize, f64)> = columns.iter().map(|(k, motion)| (*k, motion.dot(gradient))).collect();
+            for (i, x) in &entries {
+                entries.iter().for_each(|(j, y)| self.gram[(*i, *j)] += x * y);
+            }
+        }
+    }
+
+    /// Its curvatures on the motions that keep the rows.
+    pub fn curvature(&self, flat: bool) -> Result<Curvature, String> {
+        let (values, idle) = kept(&self.of_sum, &self.gram);
+        if values.iter().any(|v| !v.is_finite()) {
+            return Err("the eigenvalues of the curvature are not finite".into());
+        }
+        Ok(Curvature { values, idle, flat })
+    }
+}
+
 /// The curvature at `points` with their forces, or why it cannot be told. `rates` are those of the lattice with l1 and what is free; element `still`
 /// does not move.
 pub(crate) fn curvature(
@@ -221,64 +314,10 @@ pub(crate) fn curvature(
     if n > MOST_UNKNOWNS {
         return Err(format!("{n} unknowns; the curvature is derived of up to {MOST_UNKNOWNS}"));
     }
-    let mut of_sum = DMatrix::<f64>::zeros(n, n);
-    let mut add = |columns: &[(usize, Local)], h: &SMatrix<f64, 13, 13>| {
-        for (i, x) in columns {
-            let image = h * x;
-            columns.iter().for_each(|(j, y)| of_sum[(*i, *j)] += y.dot(&image));
-        }
-    };
-    let mut gram = DMatrix::<f64>::zeros(n, n);
-    let mut row = |columns: &[(usize, Local)], gradient: &Local| {
-        let entries: Vec<(usize, f64)> = columns.iter().map(|(k, motion)| (*k, motion.dot(gradient))).collect();
-        for (i, x) in &entries {
-            entries.iter().for_each(|(j, y)| gram[(*i, *j)] += x * y);
-        }
-    };
-    let mut flat: BTreeMap<Pair, FlatPair> = BTreeMap::new();
-    for (point, force) in points.iter().filter(|(point, _)| lies_flat(sheet, point.pair)) {
-        flat.entry(point.pair).or_default().add(sheet, point, *force);
-    }
-    // One that is held on one side alone has a least distance as any other pair.
-    flat.retain(|_, found| found.moment.norm() <= ROCKING * found.force);
-    for (point, force) in points {
-        let columns = unknowns.of_pair(sheet, point.pair);
-        let mut h = hessian(point);
-        let bend = h[(12, 12)];
-        let aside = h.column(12).into_owned();
-        if !flat.contains_key(&point.pair) {
-            if bend.is_nan() || bend <= FLATTEST {
-                let (a, b, shift) = point.pair;
-                return Err(format!("rings {a} and {b} at {shift:?} touch along an arc, and are not held flat"));
-            }
-            h -= aside * aside.transpose() / bend;
-        }
-        h.row_mut(12).fill(0.0);
-        h.column_mut(12).fill(0.0);
-        add(&columns, &(h * -*force));
-        if *force > LOADED {
-            row(&columns, &gradient(point, 0, 0.0));
-        }
-    }
-    for (pair, found) in &flat {
-        let columns = unknowns.of_pair(sheet, *pair);
-        let touching = sheet.touching(pair.0, pair.1);
-        let least = found.drift * found.drift.transpose() / found.force;
-        add(&columns, &((found.drift_sq - least) / touching));
-        let (u, v) = frame(&sheet.circle(pair.0, [0, 0]).normal);
-        for axis in [u, v] {
-            let mut tilt = Local::zeros();
-            for k in 0..3 {
-                (tilt[3 + k], tilt[9 + k]) = (-axis[k], axis[k]);
-            }
-            row(&columns, &tilt);
-        }
-    }
-    let (values, idle) = kept(&of_sum, &gram);
-    if values.iter().any(|v| !v.is_finite()) {
-        return Err("the eigenvalues of the curvature are not finite".into());
-    }
-    Ok(Curvature { values, idle, flat: !flat.is_empty() })
+    let (terms, flat) = terms(sheet, points)?;
+    let mut sum = Sum::new(n);
+    terms.iter().for_each(|term| sum.add(term, &unknowns.of_pair(sheet, term.pair)));
+    sum.curvature(flat)
 }
 
 /// Eigenvalues of `of_sum`, ascending, on the motions that keep the rows with this Gram matrix, and the number of unknowns that

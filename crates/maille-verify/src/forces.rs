@@ -7,17 +7,25 @@ use crate::{
     report::{Check, Finding, Verdict},
     sheet::{Sheet, Vec3},
     start::Start,
-    strain,
+    strain, waves,
 };
 use nalgebra::Vector2;
+use std::collections::BTreeSet;
 
 /// A curvature below this share of the largest, with a minus, is no rounding.
 const SADDLE: f64 = 1e-6;
 /// `min_curvature` is the one that is found within this share of it.
-const CURVATURE: f64 = 1e-3;
+pub(crate) const CURVATURE: f64 = 1e-3;
 
-/// The forces of the state, and the curvature with them; `unit` is that of the state's lengths.
-pub(crate) fn forces(row: &Row, state: &State, here: &Sheet, start: &Start, unit: f64) -> Vec<Finding> {
+/// The forces of the state, and the curvature with them; `unit` is that of the state's lengths, `columns` are those of the table.
+pub(crate) fn forces(
+    row: &Row,
+    state: &State,
+    here: &Sheet,
+    start: &Start,
+    unit: f64,
+    columns: &BTreeSet<String>,
+) -> Vec<Finding> {
     let (d, side) = strain::axes(row.direction_deg);
     let rate = |to: &Vector2<f64>, of: &Vector2<f64>| {
         start.sheet.lattice.map(|a| {
@@ -48,7 +56,8 @@ pub(crate) fn forces(row: &Row, state: &State, here: &Sheet, start: &Start, unit
         true => first,
         false => (1..here.bodies.len()).map(judged).find(proved).unwrap_or(first),
     };
-    vec![balance, curvature]
+    let told = columns.contains(waves::COLUMNS[0]);
+    [balance, curvature].into_iter().chain(waves::finding(row, here, &points, told)).collect()
 }
 
 fn balance_finding(row: &Row, found: &Balance) -> Finding {
@@ -105,8 +114,7 @@ fn curvature_finding(row: &Row, found: &Curvature, is_free: bool) -> Finding {
                 row.min_curvature, row.zero_modes
             );
             // An eigenvalue about the size that counts as zero is none in one computation and one in another.
-            let near = |v: &f64| (0.1..10.0).contains(&(v.abs() / (ZERO_MODE * scale)));
-            let verdict = if found.values.iter().any(near) { Verdict::Open } else { Verdict::False };
+            let verdict = if found.near_zero() { Verdict::Open } else { Verdict::False };
             return say(verdict, least, words);
         }
     }

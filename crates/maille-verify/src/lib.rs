@@ -24,6 +24,7 @@ mod start;
 mod strain;
 mod tie;
 mod verifier;
+mod waves;
 
 pub use balance::{COMPLEMENTARITY, RESIDUAL};
 pub use gaps::OVERLAP;

@@ -138,6 +138,12 @@ pub(crate) struct Row {
     pub a2_y: Option<f64>,
     #[serde(default)]
     pub end: Option<String>,
+    #[serde(default)]
+    pub wave_curvature: Option<f64>,
+    #[serde(default)]
+    pub wave_q1: Option<f64>,
+    #[serde(default)]
+    pub wave_q2: Option<f64>,
     /// Columns that are not empty.
     #[serde(skip)]
     pub present: BTreeSet<String>,

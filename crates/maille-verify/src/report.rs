@@ -20,13 +20,15 @@ pub enum Check {
     Balance,
     /// No small motion raises l1, to second order.
     Curvature,
+    /// The least curvature on waves through the sheet is the one of the row.
+    Waves,
     /// The row is not above its bound, and attains it where it says so.
     Bound,
 }
 
 impl Check {
     /// All of them, in the order in which they are told.
-    pub const ALL: [Check; 8] = [
+    pub const ALL: [Check; 9] = [
         Check::Files,
         Check::Status,
         Check::Deformation,
@@ -34,6 +36,7 @@ impl Check {
         Check::Links,
         Check::Balance,
         Check::Curvature,
+        Check::Waves,
         Check::Bound,
     ];
 
@@ -47,6 +50,7 @@ impl Check {
             Check::Links => "links",
             Check::Balance => "balance",
             Check::Curvature => "curvature",
+            Check::Waves => "waves",
             Check::Bound => "bound",
         }
     }

@@ -129,7 +129,7 @@ impl Verifier {
         });
         out.extend(gaps_and_links(row, &here, start, unit));
         if row.certified() {
-            out.extend(forces(row, state, &here, start, unit));
+            out.extend(forces(row, state, &here, start, unit, &self.columns));
             out.extend(self.bound(row, state));
         }
         if row.comes_apart() {

@@ -40,7 +40,7 @@ fn medians() {
     let mut joint = Vec::new();
     for (name, cell) in [("1.1", "1x1"), ("2-oblong", "1x1"), ("3.1", "1x1"), ("1.1", "2x2"), ("1.1", "3x3")] {
         let models = [model(name, cell)];
-        let starts = if cell == "1x1" { ExactOptions::default().starts } else { 1 };
+        let starts = if cell == "1x1" { Some(4) } else { Some(1) };
         let method =
             ExactMethod::new(&models, ExactOptions { starts, ..ExactOptions::default() }, &AtomicBool::new(false));
         let mut times = Vec::new();
@@ -70,8 +70,11 @@ fn scaling() {
     let mut points = Vec::new();
     for cell in ["2x2", "3x3", "4x4", "6x6", "10x10"] {
         let models = [model("1.1", cell)];
-        let method =
-            ExactMethod::new(&models, ExactOptions { starts: 1, ..ExactOptions::default() }, &AtomicBool::new(false));
+        let method = ExactMethod::new(
+            &models,
+            ExactOptions { starts: Some(1), ..ExactOptions::default() },
+            &AtomicBool::new(false),
+        );
         let mut found: Vec<(f64, u64)> = Vec::new();
         let mut global = 0;
         for direction in [0.0, 15.0, 30.0, 75.0, 100.0, 140.0] {
@@ -135,8 +138,11 @@ fn one_limit(bencher: Bencher<'_, '_>, what: &str) {
     let (name, cell) = what.split_once(' ').expect("a design and a cell");
     let models = [model(name, cell)];
     bencher.counter(ItemsCount::new(1usize)).bench_local(|| {
-        let method =
-            ExactMethod::new(&models, ExactOptions { starts: 1, ..ExactOptions::default() }, &AtomicBool::new(false));
+        let method = ExactMethod::new(
+            &models,
+            ExactOptions { starts: Some(1), ..ExactOptions::default() },
+            &AtomicBool::new(false),
+        );
         method.limits(Direction::of_degrees(15.0), &[0.0], &AtomicBool::new(false), &mut |_, limit| {
             drop(divan::black_box(limit))
         });

@@ -1,7 +1,7 @@
 //! The validation map of the exact method: the starts of chapter 6 of every thesis design × 25 directions × five l2 at both radii, 3,250
 //! limits.
 //!
-//!     cargo run --release -p maille --example exact_map -- [--designs 1.1,2] [--radii 0.1,0.05] [--cells "1x1 2x1 1x2 2x2 3x3"] [--verbose] [OUT.csv]
+//!     cargo run --release -p maille --example exact_map -- [--designs 1.1,2] [--radii 0.1,0.05] [--cells "1x1 2x1 1x2 2x2 3x3"] [--effort normal] [--verbose] [OUT.csv]
 //!
 //! Prints counts by design and status, and writes them to OUT.csv.
 
@@ -48,8 +48,8 @@ fn main() {
             let design = read_design(start.name, start.toml).expect("valid").with_minor_radius(radius);
             let models: Vec<Model> = cells.iter().map(|c| Model::compile(&design, *c).expect("compiles")).collect();
             let rows = Mutex::new(Vec::<Finished>::new());
-            let starts = option("starts", "4").parse().expect("a number");
-            let method = Method::Exact(ExactOptions { starts, ..ExactOptions::default() });
+            let effort = option("effort", "normal").parse().expect("an effort");
+            let method = Method::Exact(ExactOptions { effort, ..ExactOptions::default() });
             let map = MapQuestion::new(method, CellChoice::Auto, Some(directions.clone()), Some(L2.to_vec()));
             let question = map.expect("a map that can be asked");
             let started = Instant::now();

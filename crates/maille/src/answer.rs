@@ -46,6 +46,8 @@ pub struct Answer {
     pub contacts: Vec<Contact>,
     /// Largest force between an element and its own image in the solved cell (exact method).
     pub own_image_force: Option<f64>,
+    /// The least curvature on waves through the sheet, where it was sought (exact method).
+    pub wave: Option<WaveCurvature>,
     /// Ranges of l2 and of the shear at a stretch that leaves them free.
     pub free: Option<FreeRanges>,
     /// Least and largest value found of each strain that was left free, with the value given way by a millionth; cut off where
@@ -57,6 +59,8 @@ pub struct Answer {
     pub n_starts: Option<u64>,
     /// Distinct certified values among them, more than 1e-7 from each other (exact method).
     pub n_distinct: Option<u64>,
+    /// Estimated chance that another start finds more, where the bound is not attained (exact method).
+    pub better_chance: Option<f64>,
     /// Minimisations, or local maximisations.
     pub runs: u64,
     /// Newton iterations, or quadratic programs, of all runs.
@@ -67,6 +71,16 @@ pub struct Answer {
     pub note: Option<String>,
     /// The steps of all runs (energy method, where they were asked for).
     pub steps: Vec<StepRecord>,
+}
+
+/// The least curvature found of the Lagrangian on motions that repeat over the sheet as a wave and keep the loaded contacts. Where
+/// it is negative, a larger cell may go further.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WaveCurvature {
+    /// The curvature, for a unit motion.
+    pub least: f64,
+    /// Its wave vector: phases from one solved cell to the next along its two lattice vectors, in units of 2π.
+    pub q: [f64; 2],
 }
 
 /// What the search of one cell found.
@@ -119,11 +133,13 @@ impl Answer {
             certificate: None,
             contacts: Vec::new(),
             own_image_force: None,
+            wave: None,
             free: None,
             ranges: Vec::new(),
             by_cell: Vec::new(),
             n_starts: None,
             n_distinct: None,
+            better_chance: None,
             runs: 0,
             iterations: 0,
             residual: None,

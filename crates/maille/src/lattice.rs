@@ -4,7 +4,7 @@ use crate::error::InvalidInput;
 use maille_geometry::Vec3;
 use nalgebra::{Matrix2, Vector2};
 use serde::{Deserialize, Serialize};
-use std::{fmt, str::FromStr};
+use std::{f64::consts::TAU, fmt, str::FromStr};
 
 /// Shift of an image: the number of lattice vectors a1 and a2 from the main cell.
 pub type Shift = [i32; 2];
@@ -117,6 +117,40 @@ impl fmt::Display for Cell {
 impl From<Cell> for String {
     fn from(cell: Cell) -> Self {
         cell.to_string()
+    }
+}
+
+impl Cell {
+    /// The cells of `n` copies, one for each lattice: (a, 0; b, d) with a d = n and 0 ≤ b < a, those without b first.
+    pub(crate) fn of_copies(n: i32) -> impl Iterator<Item = Cell> {
+        let factors = (1..=n).filter(move |a| n % a == 0);
+        factors.flat_map(move |a| (0..a).map(move |b| Cell { rows: [[a, 0], [b, n / a]] }))
+    }
+
+    /// The cell whose lattice vectors have the rows of `by` in those of this one; `None` where it would have too many copies.
+    pub(crate) fn repeated(&self, by: &Cell) -> Option<Cell> {
+        let row = |[m, n]: [i32; 2]| [0, 1].map(|k| m * self.rows[0][k] + n * self.rows[1][k]);
+        Cell::new(by.rows.map(row)).ok()
+    }
+
+    /// Which of this cell's copies `place` is, in the order of [`cosets`](Self::cosets), and in which image of the cell.
+    pub(crate) fn copy_at(&self, place: Shift) -> (usize, Shift) {
+        let ([[m11, m12], [m21, m22]], det) = (self.rows.map(|row| row.map(i64::from)), self.det());
+        let image = |coset: Shift| {
+            let [p, q] = [0, 1].map(|k| i64::from(place[k]) - i64::from(coset[k]));
+            let [s, t] = [p * m22 - q * m21, q * m11 - p * m12];
+            (s % det == 0 && t % det == 0).then(|| [(s / det) as i32, (t / det) as i32])
+        };
+        let found = self.cosets().into_iter().enumerate().find_map(|(k, coset)| Some((k, image(coset)?)));
+        found.unwrap_or_else(|| unreachable!("each place is one of the copies"))
+    }
+
+    /// Whether a wave with these phases fits into this cell.
+    pub fn holds_wave(&self, phases_rad: [f64; 2]) -> bool {
+        self.rows.iter().all(|[k, l]| {
+            let turns = (phases_rad[0] * f64::from(*k) + phases_rad[1] * f64::from(*l)) / TAU;
+            (turns - turns.round()).abs() < 1e-9
+        })
     }
 }
 
@@ -300,6 +334,44 @@ mod tests {
             let cosets = cell.cosets();
             assert_eq!(cosets.len(), n, "{text}: {cosets:?}");
             assert_eq!(cosets[0], [0, 0]);
+        }
+    }
+
+    #[test]
+    fn cells_of_cells() {
+        let cell = |text: &str| text.parse::<Cell>().unwrap();
+        assert_eq!(cell("2x1").repeated(&cell("2x1")), Some(cell("4x1")));
+        assert_eq!(cell("1,1;-1,1").repeated(&cell("1,1;-1,1")), Some(cell("0,2;-2,0")));
+        for text in ["1x1", "2x1", "1,1;-1,1", "3,0;1,2"] {
+            let cell = cell(text);
+            let cosets = cell.cosets();
+            for (p, q) in (-3..4).flat_map(|p| (-3..4).map(move |q| (p, q))) {
+                let (copy, [s, t]) = cell.copy_at([p, q]);
+                let back = [0, 1].map(|k| cosets[copy][k] + s * cell.rows[0][k] + t * cell.rows[1][k]);
+                assert_eq!(back, [p, q], "{text}");
+            }
+        }
+    }
+
+    #[test]
+    fn waves_that_fit() {
+        let cell = |text: &str| text.parse::<Cell>().unwrap();
+        for (text, turns, fits) in [
+            ("2x1", [0.5, 0.0], true),
+            ("2x1", [0.0, 0.5], false),
+            ("3x3", [1.0 / 3.0, -1.0 / 3.0], true),
+            ("2x2", [1.0 / 3.0, 0.0], false),
+            ("1,1;-1,1", [0.5, 0.5], true),
+            ("1,1;-1,1", [0.5, 0.0], false),
+        ] {
+            assert_eq!(cell(text).holds_wave(turns.map(|t| TAU * t)), fits, "{text} {turns:?}");
+        }
+        // The number of sublattices is the sum of the divisors.
+        for (n, count) in [(1, 1), (2, 3), (3, 4), (4, 7), (5, 6), (6, 12)] {
+            let cells: Vec<Cell> = Cell::of_copies(n).collect();
+            assert!(cells.len() == count && cells.iter().all(|cell| cell.copies() == n as usize));
+            let twice = |k: usize| cells[..k].iter().any(|other| other.same_lattice(&cells[k]));
+            assert!(!(0..count).any(twice));
         }
     }
 

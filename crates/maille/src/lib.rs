@@ -74,7 +74,7 @@ pub use error::InvalidInput;
 pub use lattice::{Across, Cell, Direction};
 pub use model::Model;
 pub use program::Contact;
-pub use question::{Goal, Question, Sense, Strain};
+pub use question::{Effort, Goal, Question, Sense, Strain};
 pub use record::Status;
 pub use sheet::Sheet;
 pub use solver::certificate::Certificate;

@@ -7,6 +7,7 @@ use crate::{
 };
 use nalgebra::Matrix2;
 use serde::{Deserialize, Serialize};
+use std::{fmt, str::FromStr};
 
 /// One question: something of a sheet as large or as small as it can be.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -17,12 +18,78 @@ pub struct Question {
     /// Its largest or its least value.
     #[serde(default)]
     pub sense: Sense,
-    /// Starts of the search; `None`: as many as the goal takes by itself, see [`Question::starts`].
+    /// How long the search goes on.
+    #[serde(default)]
+    pub effort: Effort,
+    /// So many starts in place of an effort.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub starts: Option<usize>,
-    /// Seed of the perturbations.
+    /// Seed of the starts that are drawn.
     #[serde(default = "usual_seed")]
     pub seed: u64,
+}
+
+/// How long a search goes on where no proven bound is attained.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub enum Effort {
+    /// 4 to 8 starts.
+    Low,
+    /// 8 to 40 starts, until the chance that another one finds more is estimated at 5 % or less.
+    #[default]
+    Normal,
+    /// 32 to 400 starts, until that chance is estimated at 0.5 % or less.
+    Thorough,
+    /// As many starts as this time in seconds allows, for each cell of each question. What is found depends on the machine.
+    Seconds(f64),
+}
+
+impl fmt::Display for Effort {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Effort::Low => f.write_str("low"),
+            Effort::Normal => f.write_str("normal"),
+            Effort::Thorough => f.write_str("thorough"),
+            Effort::Seconds(seconds) => write!(f, "{seconds}s"),
+        }
+    }
+}
+
+impl FromStr for Effort {
+    type Err = InvalidInput;
+
+    fn from_str(text: &str) -> Result<Self, InvalidInput> {
+        let seconds = || text.strip_suffix('s').and_then(|number| number.trim().parse::<f64>().ok());
+        match text {
+            "low" => Ok(Effort::Low),
+            "normal" => Ok(Effort::Normal),
+            "thorough" => Ok(Effort::Thorough),
+            _ => match seconds() {
+                Some(seconds) if (1e-3..=1e6).contains(&seconds) => Ok(Effort::Seconds(seconds)),
+                Some(_) => {
+                    Err(InvalidInput::new("effort", format!("{text} is out of range"), "give 0.001s to 1000000s"))
+                }
+                None => {
+                    let right = "give low, normal, thorough, or a time in seconds, as 30s";
+                    Err(InvalidInput::new("effort", format!("`{text}` is no effort"), right))
+                }
+            },
+        }
+    }
+}
+
+impl TryFrom<String> for Effort {
+    type Error = InvalidInput;
+
+    fn try_from(text: String) -> Result<Self, InvalidInput> {
+        text.parse()
+    }
+}
+
+impl From<Effort> for String {
+    fn from(effort: Effort) -> Self {
+        effort.to_string()
+    }
 }
 
 /// What is sought.
@@ -100,7 +167,7 @@ fn usual_seed() -> u64 {
 impl Question {
     /// A question with the usual search.
     pub fn new(goal: Goal, sense: Sense) -> Self {
-        Question { goal, sense, starts: None, seed: usual_seed() }
+        Question { goal, sense, effort: Effort::Normal, starts: None, seed: usual_seed() }
     }
 
     /// How far the sheet stretches along a direction, in degrees, with its width held and no shear.
@@ -138,16 +205,6 @@ impl Question {
     /// The same with the least value in place of the largest.
     pub fn least(self) -> Self {
         Question { sense: Sense::Least, ..self }
-    }
-
-    /// The number of starts: the one that was asked for, or 4 for a stretch, 2 for a ray, 8 for all else. A
-    /// strain that a stretch answers is searched as that.
-    pub fn starts(&self) -> usize {
-        self.starts.unwrap_or(match self.goal {
-            Goal::Stretch { .. } => 4,
-            Goal::Ray { .. } => 2,
-            Goal::Strain { .. } | Goal::Wire { .. } | Goal::Clearance { .. } => 8,
-        })
     }
 
     /// Whether it can be asked.
@@ -320,5 +377,20 @@ impl StrainQuery {
         }
         let rest = free.iter().map(|strain| strain.unit(direction));
         Ok(StrainQuery { held, free: std::iter::once(goal.unit(direction) * sign).chain(rest).collect() })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn efforts_read_back() {
+        for text in ["low", "normal", "thorough", "30s", "0.5s"] {
+            assert_eq!(text.parse::<Effort>().unwrap().to_string(), text);
+        }
+        for text in ["", "high", "30", "0s", "-1s", "NaNs", "infs", "1e9s"] {
+            assert!(text.parse::<Effort>().is_err(), "{text}");
+        }
     }
 }

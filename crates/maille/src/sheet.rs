@@ -5,7 +5,7 @@ use crate::{
     design::Design,
     error::InvalidInput,
     lattice::Cell,
-    model::Model,
+    model::{Model, of_cell},
     program::{Contact, metric::factor},
     question::{Goal, Question, Sense},
     record::Status,
@@ -57,10 +57,7 @@ impl Sheet {
 
     /// The model in whose cell a state of an answer is.
     pub fn model_of(&self, answer: &Answer) -> Cow<'_, Model> {
-        self.models
-            .iter()
-            .find(|model| model.cell == answer.cell)
-            .map_or_else(|| Cow::Owned(self.models[0].in_cell(answer.cell)), Cow::Borrowed)
+        of_cell(&self.models, answer.cell)
     }
 
     /// The answer to a question, by the exact method, on the current thread pool; it does not depend on the number of threads.
@@ -77,13 +74,13 @@ impl Sheet {
     /// What [`Question::check`] refuses.
     pub fn answer_until(&self, question: &Question, cancel: &AtomicBool) -> Result<Answer, InvalidInput> {
         question.check()?;
-        let (starts, seed, sense) = (question.starts(), question.seed, question.sense);
+        let Question { effort, starts, seed, sense, .. } = *question;
         let extreme = |what: Extreme, lattice_free: bool| {
-            extreme(&self.models[0], what, &ExtremeOptions { lattice_free, starts, seed }, cancel)
+            extreme(&self.models[0], what, &ExtremeOptions { lattice_free, effort, starts, seed }, cancel)
         };
         Ok(match question.goal {
             Goal::Stretch { direction_deg, l2, across } => {
-                let options = ExactOptions { starts, seed, across, compression: sense == Sense::Least };
+                let options = ExactOptions { effort, starts, seed, across, compression: sense == Sense::Least };
                 one(&self.models, &options, direction_deg, l2, cancel).1
             }
             Goal::Wire { lattice_free } => extreme(Extreme::ThickestWire, lattice_free),
@@ -94,15 +91,12 @@ impl Sheet {
 
     /// One strain: where a stretch asks the same, found as that, so that one question has one answer.
     fn strain(&self, question: &Question, cancel: &AtomicBool) -> Result<Answer, InvalidInput> {
+        let Question { effort, starts, seed, sense, .. } = *question;
         let Some(query) = question.strain_query()? else { unreachable!("a strain or a ray is asked for") };
-        let options = StrainOptions { starts: question.starts(), seed: question.seed, sense: question.sense };
+        let options = StrainOptions { effort, starts, seed, sense };
         let method = StrainMethod::new(&self.models, options);
         let Some(stretch) = question.as_stretch() else { return Ok(method.solve(&query, &[], cancel)) };
         let answer = self.answer_until(&stretch, cancel)?;
-        // A state of a cell that is the image of another one has no model here.
-        if !self.models.iter().any(|model| model.cell == answer.cell) {
-            return Ok(method.solve(&query, &[], cancel));
-        }
         let answer = as_strain(answer);
         let answer = if answer.is_limit() { method.with_ranges(&query, answer, cancel) } else { answer };
         let interrupted = cancel.load(Ordering::Relaxed);

@@ -73,7 +73,8 @@ fn every_design_is_certified_along_three_directions() {
         "5.2",
     ] {
         let l2: &[f64] = if name.starts_with('5') { &[0.0] } else { &[-0.125, 0.0] };
-        for found in map(&[model(name, 0.1)], &[0.0, 40.0], l2, &ExactOptions { starts: 1, ..ExactOptions::default() })
+        for found in
+            map(&[model(name, 0.1)], &[0.0, 40.0], l2, &ExactOptions { starts: Some(1), ..ExactOptions::default() })
         {
             assert_certificate(&found.row);
             check_state(&design(name, 0.1), &found.state, 500, 1e-4);

@@ -67,7 +67,7 @@ fn a_bisection_finds_no_thicker_wire() {
         let thickest = certified(&found) * design.minor_radius.unwrap();
         let room = |r: f64, starts: usize| {
             let design = Design { allow_initial_overlap: true, ..design.with_minor_radius(r) };
-            let options = ExtremeOptions { starts, ..ExtremeOptions::default() };
+            let options = ExtremeOptions { starts: Some(starts), ..ExtremeOptions::default() };
             solve(&design, Extreme::LargestClearance, &options).1.value.unwrap()
         };
         let step = 1e-6 * design.reference_radius;
@@ -83,7 +83,7 @@ fn a_state_is_a_design() {
     for name in ["european-4-in-1", "1.3-small"] {
         let design = design(name);
         let (model, found) =
-            solve(&design, Extreme::LargestClearance, &ExtremeOptions { starts: 2, ..ExtremeOptions::default() });
+            solve(&design, Extreme::LargestClearance, &ExtremeOptions { starts: Some(2), ..ExtremeOptions::default() });
         let posed = found.state.design(&design, &model);
         let again = Model::compile(&posed, Cell::PRIMITIVE).unwrap();
         let gap = |model: &Model, state: &maille::state::State| topology::smallest_gap(model, state).unwrap().0;

@@ -4,7 +4,7 @@ mod common;
 
 use common::map;
 use maille::{
-    Across, CellChoice, Goal, Question, Sense, Sheet, Status, Strain,
+    Across, CellChoice, Effort, Goal, Question, Sense, Sheet, Status, Strain,
     lattice::Cell,
     relaxation::limit::EnergyOptions,
     search::ExactOptions,
@@ -56,7 +56,7 @@ fn what_a_map_cannot_ask_is_refused_with_its_field() {
     let exact = Method::Exact(ExactOptions::default());
     let free = Across { lateral_free: true, shear_free: false };
     let width_free = Method::Exact(ExactOptions { across: free, ..ExactOptions::default() });
-    let without_starts = Method::Exact(ExactOptions { starts: 0, ..ExactOptions::default() });
+    let without_starts = Method::Exact(ExactOptions { starts: Some(0), ..ExactOptions::default() });
     let energy = |change: fn(&mut EnergyOptions)| {
         let mut options = EnergyOptions::default();
         change(&mut options);
@@ -109,7 +109,10 @@ fn a_question_is_what_was_written() {
     let held = question.with_lateral(0.1);
     let Goal::Stretch { l2, across, .. } = held.goal else { panic!("a stretch") };
     assert_eq!((l2, across), (0.1, Across::HELD));
-    assert_eq!([Question::stretch_along(0.0).starts(), Question::thickest_wire().starts()], [4, 8]);
+    assert_eq!(
+        [Question::stretch_along(0.0), Question::thickest_wire()].map(|q| (q.effort, q.starts)),
+        [(Effort::Normal, None); 2]
+    );
 }
 
 /// By a map, by a question, and by the question on a strain that asks the same: one limit.

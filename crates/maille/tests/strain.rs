@@ -169,13 +169,13 @@ fn the_least_l1_is_that_of_the_query_and_falls_with_the_cell() {
     let models = ["1x1", "2x1", "1x2"].map(|cell| Model::compile(&design, cell.parse().unwrap()).unwrap());
     let cancel = AtomicBool::new(false);
     let free = vec![-unit(0, 0), unit(1, 1), unit(0, 1)];
-    let options = StrainOptions { starts: 6, sense: Sense::Least, ..StrainOptions::default() };
+    let options = StrainOptions { starts: Some(6), sense: Sense::Least, ..StrainOptions::default() };
     let query = StrainMethod::new(&models, options).solve(&StrainQuery { held: Matrix2::zeros(), free }, &[], &cancel);
     assert_eq!((query.status, query.cell.to_string().as_str(), query.by_cell.len()), (Status::Local, "2x1", 3));
     assert!(query.by_cell.iter().all(|t| t.n_starts >= 6 && t.n_distinct >= 1));
     assert!(query.by_cell[1..].iter().all(|t| t.value.unwrap() <= query.by_cell[0].value.unwrap() + 1e-7));
     let across = Across { lateral_free: true, shear_free: true };
-    let options = ExactOptions { starts: 6, across, compression: true, ..ExactOptions::default() };
+    let options = ExactOptions { starts: Some(6), across, compression: true, ..ExactOptions::default() };
     let found = map(&models, &[0.0], &[0.0], &options).remove(0);
     let (row, l1) = (&found.row, found.row.l1.unwrap());
     let strain = l1 + 0.5 * l1 * l1;

@@ -235,7 +235,7 @@ fn images_of_limits_are_limits() {
     ];
     for (name, l2, auto) in cases {
         let design = design_as_written(name);
-        let method = Method::Exact(ExactOptions { starts: 2, ..ExactOptions::default() });
+        let method = Method::Exact(ExactOptions { starts: Some(2), ..ExactOptions::default() });
         let cell = if auto { CellChoice::Auto } else { CellChoice::from(Cell::PRIMITIVE) };
         let models: Vec<Model> = cell
             .cells(&method, design.elements.len())
@@ -302,7 +302,7 @@ fn images_of_limits_are_limits() {
 #[test]
 fn an_image_alone_is_that_of_a_map() {
     let models = [model("3.1", 0.1), in_cell(&design("3.1", 0.1), "2x1")];
-    let options = ExactOptions { starts: 2, ..ExactOptions::default() };
+    let options = ExactOptions { starts: Some(2), ..ExactOptions::default() };
     let alone = map(&models, &[105.0], &[-0.25, 0.0], &options);
     let all = map(&models, &[15.0, 45.0, 105.0], &[-0.25, 0.0], &options);
     for found in alone {
@@ -326,12 +326,12 @@ fn an_orbit_has_the_starts_of_all_its_directions() {
 #[test]
 fn compression_and_a_free_shear_are_symmetric() {
     let square = [in_cell(&design("1.1", 0.1), "2x2")];
-    let options = ExactOptions { starts: 1, compression: true, ..ExactOptions::default() };
+    let options = ExactOptions { starts: Some(1), compression: true, ..ExactOptions::default() };
     let found = map(&square, &[0.0, 90.0], &[0.0], &options);
     assert_eq!((found[0].row.l1, found[1].row.image_of_deg), (found[1].row.l1, Some(0.0)));
     assert!(found[0].row.l1.is_some_and(|l1| l1 < -0.5), "{:?}", found[0].row.l1);
     let across = maille::lattice::Across { lateral_free: true, shear_free: true };
-    let options = ExactOptions { starts: 1, across, ..ExactOptions::default() };
+    let options = ExactOptions { starts: Some(1), across, ..ExactOptions::default() };
     let found = map(&[model("1.1", 0.1)], &[0.0, 20.0, 160.0], &[0.0], &options);
     let shear = |k: usize| (found[k].row.shear_min.unwrap(), found[k].row.shear_max.unwrap());
     assert_eq!(shear(0).0, -shear(0).1);

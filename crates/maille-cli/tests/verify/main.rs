@@ -254,7 +254,7 @@ fn a_run_that_was_killed_between_two_files_is_open_not_false() {
 }
 
 /// What a row without a limit leaves empty.
-const LIMIT: [&str; 28] = [
+const LIMIT: [&str; 32] = [
     "l1",
     "lambda1",
     "lambda2",
@@ -272,6 +272,7 @@ const LIMIT: [&str; 28] = [
     "zero_modes",
     "links_ok",
     "n_distinct",
+    "better_chance",
     "own_image_force",
     "l1_uncertified",
     "l2_min",
@@ -283,6 +284,9 @@ const LIMIT: [&str; 28] = [
     "a2_x",
     "a2_y",
     "by_cell",
+    "wave_curvature",
+    "wave_q1",
+    "wave_q2",
 ];
 
 fn without_limit(status: &'static str) -> Vec<(&'static str, &'static str)> {
@@ -319,7 +323,9 @@ fn a_local_limit_that_was_lifted_to_global_is_found() {
     };
     let bound = |specimen: &Specimen, kind: &'static str| {
         let l1 = specimen.cell("l1");
-        specimen.forge_row(&[("status", "global"), ("bound_l1", &l1), ("bound_gap", "0.0"), ("bound_kind", kind)]);
+        let wave = ["wave_curvature", "wave_q1", "wave_q2"].map(|column| (column, ""));
+        let bound = [("status", "global"), ("bound_l1", &l1[..]), ("bound_gap", "0.0"), ("bound_kind", kind)];
+        specimen.forge_row(&[&bound[..], &wave].concat());
     };
     // The chain that the solver wrote proves the true bound and no lower one; it proves no link bound.
     let specimen = local();
@@ -365,6 +371,31 @@ fn a_link_bound_that_its_forces_do_not_prove_is_found() {
         state.as_object_mut().unwrap().remove("chain");
     });
     specimen.found_by(5, "bound", "nothing in the state proves the bound");
+}
+
+#[test]
+fn waves_that_were_emptied_or_invented_are_found() {
+    for (cells, check, words) in [
+        (vec![("wave_curvature", "4.2")], "waves", "wave_curvature is 4.2"),
+        (vec![("wave_curvature", "0.01")], "waves", "wave_curvature is 0.01"),
+        (vec![("wave_q1", "0.31")], "waves", "wave_curvature is -4.2"),
+        (vec![("wave_curvature", ""), ("wave_q1", ""), ("wave_q2", "")], "waves", "wave_curvature is empty"),
+        (vec![("wave_q2", "")], "status", "a row that is local has 2 of wave_curvature, wave_q1, wave_q2"),
+        // True of this wave, but another one is lower.
+        (
+            vec![
+                ("wave_curvature", "-1.3416983802665732"),
+                ("wave_q1", "0.3333333333333333"),
+                ("wave_q2", "-0.3333333333333333"),
+            ],
+            "waves",
+            "but the wave with q = 2π [0.5, 0.0] has -4.23",
+        ),
+    ] {
+        let specimen = Specimen::of("european-6-in-1 --directions 45 --l2=-0.25 --cell 1x1");
+        specimen.forge_row(&cells);
+        specimen.found_by(4, check, words);
+    }
 }
 
 #[test]

@@ -8,7 +8,7 @@ use ::csv::StringRecord;
 use maille::record::{Entry, LIMIT_COLUMNS, LimitRow};
 
 /// Lengths of earlier tables: one that ends after so many columns is read too, the others being empty.
-const EARLIER_COLUMNS: [usize; 4] = [30, 36, 40, 42];
+const EARLIER_COLUMNS: [usize; 5] = [30, 36, 40, 42, 44];
 
 /// The table as text. `design` and `cell` are always quoted: `"1.10"` is a name, not a number.
 ///

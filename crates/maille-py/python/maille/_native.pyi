@@ -61,7 +61,8 @@ def map_question(
     compression: bool,
     method: str,
     cell: str,
-    starts: int,
+    effort: str,
+    starts: int | None,
     seed: int,
     energy: str,
 ) -> str: ...

@@ -113,6 +113,7 @@ def limit(
     direction: float = 0.0,
     cell: str = "auto",
     minor_radius: float | None = None,
+    effort: str = "normal",
     starts: int | None = None,
     seed: int = 1,
 ) -> StrainLimit:
@@ -140,6 +141,7 @@ def limit(
     question = {
         "goal": {"strain": goal},
         "sense": "largest" if maximize is not None else "least",
+        "effort": effort,
         "starts": None if starts is None else _whole("starts", starts, 1),
         "seed": _whole("seed", seed, 0),
     }
@@ -161,7 +163,8 @@ def tightest(
     *,
     lattice: Literal["free", "fixed"] = "free",
     minor_radius: float | None = None,
-    starts: int = 8,
+    effort: str = "normal",
+    starts: int | None = None,
     seed: int = 1,
     threads: int | None = None,
 ) -> Extreme:
@@ -170,7 +173,7 @@ def tightest(
     >>> tightest("1.1", starts=1).status
     'local'
     """
-    return _extreme(design, True, lattice, minor_radius, starts, seed, threads)
+    return _extreme(design, True, lattice, minor_radius, effort, starts, seed, threads)
 
 
 def roomiest(
@@ -178,12 +181,13 @@ def roomiest(
     *,
     lattice: Literal["free", "fixed"] = "fixed",
     minor_radius: float | None = None,
-    starts: int = 8,
+    effort: str = "normal",
+    starts: int | None = None,
     seed: int = 1,
     threads: int | None = None,
 ) -> Extreme:
     """The state of a weave with the widest gaps, for printing in place: what `maille roomiest` does."""
-    return _extreme(design, False, lattice, minor_radius, starts, seed, threads)
+    return _extreme(design, False, lattice, minor_radius, effort, starts, seed, threads)
 
 
 def _extreme(
@@ -191,7 +195,8 @@ def _extreme(
     thickest: bool,
     lattice: str,
     minor_radius: float | None,
-    starts: int,
+    effort: str,
+    starts: int | None,
     seed: int,
     threads: int | None,
 ) -> Extreme:
@@ -199,7 +204,8 @@ def _extreme(
         raise ArgumentError("lattice", f"{lattice!r} is neither free nor fixed", 'give "free" or "fixed"')
     question = {
         "goal": {"wire" if thickest else "clearance": {"lattice_free": lattice == "free"}},
-        "starts": _whole("starts", starts, 1),
+        "effort": effort,
+        "starts": None if starts is None else _whole("starts", starts, 1),
         "seed": _whole("seed", seed, 0),
     }
     threads = None if threads is None else _whole("threads", threads, 1)

@@ -122,6 +122,10 @@ export interface LimitRow {
   by_cell: string | null;
   image_of_deg: number | null;
   grows_with_cell: boolean | null;
+  better_chance: number | null;
+  wave_curvature: number | null;
+  wave_q1: number | null;
+  wave_q2: number | null;
 }
 
 export interface Listed {

@@ -9,7 +9,7 @@ use crate::{
 };
 use maille_geometry::{Circle, Vec3};
 use nalgebra::{Matrix2, Unit, UnitVector3};
-use std::ops::Range;
+use std::{borrow::Cow, ops::Range};
 
 /// A torus of an element, in the element's frame at the starting state.
 #[derive(Clone, Debug)]
@@ -101,6 +101,12 @@ pub struct Link {
     pub pair: RingPair,
     /// Signed linking number, never 0.
     pub number: i32,
+}
+
+/// The one of `models` in this cell, or the same design compiled for it.
+pub(crate) fn of_cell(models: &[Model], cell: Cell) -> Cow<'_, Model> {
+    let known = models.iter().find(|model| model.cell == cell);
+    known.map_or_else(|| Cow::Owned(models[0].in_cell(cell)), Cow::Borrowed)
 }
 
 impl Model {

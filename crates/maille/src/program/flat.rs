@@ -7,6 +7,7 @@
 
 use super::{
     Posed, SheetProgram,
+    gap_kernel::Grad,
     key::{pair_key, pair_of_key},
     metric::Factored,
     pair::height_angles_rad,
@@ -37,7 +38,7 @@ impl SheetProgram<'_> {
     /// coaxial. Their one gap is a cone there, h − s − R |tilt|, with its tip at the limit; from now on sixteen heights
     /// of B's points over A's plane must be at least s, which implies the gap, is smooth, and is exact where the rings
     /// are parallel and coaxial. Returns whether the set of flat pairs has changed.
-    pub(crate) fn take_flat_pairs(&mut self, x: &Posed) -> bool {
+    pub fn take_flat_pairs(&mut self, x: &Posed) -> bool {
         let (model, state) = (self.model, &x.state);
         let mut flat = BTreeSet::new();
         for pair in topology::close_pairs(model, state, 0.0) {
@@ -126,41 +127,39 @@ impl SheetProgram<'_> {
         self.released.clear();
     }
 
+    /// The pairs that are flat.
+    pub fn flat_pairs(&self) -> &BTreeSet<u64> {
+        &self.flat
+    }
+
+    /// The same program with these pairs flat.
+    pub fn with_flat_pairs(self, flat: BTreeSet<u64>) -> Self {
+        SheetProgram { flat, ..self }
+    }
+
     /// A flat pair with offset e of its axes: the true gap at B's direction u is (e·u)²/2s above the height. Of all ways
     /// to spread the pair's force Σ μ = N and moment Σ μ u = T over the circle, the one that uses this least leaves a
-    /// curvature −(T·e)²/(N s).
-    pub(super) fn curvature_of_flat_pairs(&self, x: &Posed, multipliers: &[Multiplier]) -> Vec<Vec<f64>> {
+    /// curvature −(T·e)²/(N s): the square of v·y in the motion y of the kernel. `None` for a pair that carries nothing.
+    pub(super) fn flat_curvature(&self, x: &Posed, multipliers: &[Multiplier], key: u64) -> Option<Grad> {
         let (model, state) = (self.model, &x.state);
-        let n = self.first_parameter + self.pull.parameters.len();
-        let factored = self.pull.factored(&x.p);
-        let mut out = Vec::new();
-        for &key in &self.flat {
-            let pair = pair_of_key(key);
-            let b = state.circle(model, pair.ring_b, pair.shift);
-            let (u, v) = b.frame();
-            let (mut force, mut moment) = (0.0, Vec3::zeros());
-            for m in multipliers.iter().filter(|m| m.key == key && m.value > 0.0) {
-                force += m.value;
-                moment += (u * m.angle.cos() + v * m.angle.sin()) * m.value;
-            }
-            if force < 1e-9 {
-                continue;
-            }
-            let weight = (force * self.required(x, model.contact_distance(pair.ring_a, pair.ring_b))).sqrt();
-            let map = self.pair_map(&pair, &self.all_turns(state), factored.as_ref());
-            let reference = |ring: usize| state.poses[model.rings[ring].element].position;
-            // From the element's reference point: to B's centre on B, and on A.
-            let own = b.center - reference(pair.ring_b) - state.translation(pair.shift);
-            let seen = b.center - reference(pair.ring_a);
-            let mut term = vec![0.0; n];
-            for (&column, motion) in map.columns.iter().zip(&map.motions) {
-                let part = |k: usize| Vec3::new(motion[3 * k], motion[3 * k + 1], motion[3 * k + 2]);
-                // The axes come apart by what B's centre moves in A's frame.
-                let apart = part(0) + part(2).cross(&own) - part(1).cross(&seen);
-                term[column] = apart.dot(&moment) / weight;
-            }
-            out.push(term);
+        let pair = pair_of_key(key);
+        let b = state.circle(model, pair.ring_b, pair.shift);
+        let (u, v) = b.frame();
+        let (mut force, mut moment) = (0.0, Vec3::zeros());
+        for m in multipliers.iter().filter(|m| m.key == key && m.value > 0.0) {
+            force += m.value;
+            moment += (u * m.angle.cos() + v * m.angle.sin()) * m.value;
         }
-        out
+        if force < 1e-9 {
+            return None;
+        }
+        let weight = (force * self.required(x, model.contact_distance(pair.ring_a, pair.ring_b))).sqrt();
+        let reference = |ring: usize| state.poses[model.rings[ring].element].position;
+        // From the element's reference point: to B's centre on B, and on A.
+        let own = b.center - reference(pair.ring_b) - state.translation(pair.shift);
+        let seen = b.center - reference(pair.ring_a);
+        // The axes come apart by what B's centre moves in A's frame: e = x + β × own − α × seen.
+        let parts = [moment, -seen.cross(&moment), own.cross(&moment)].map(|part| part / weight);
+        Some(Grad::from_fn(|k, _| parts[k / 3][k % 3]))
     }
 }

@@ -3,13 +3,13 @@
 use crate::topology::RingPair;
 
 /// Number of a pair that stays the same from state to state.
-pub(super) fn pair_key(pair: &RingPair) -> u64 {
+pub fn pair_key(pair: &RingPair) -> u64 {
     let small = |x: i32| (x & 0xfff) as u64;
     (pair.ring_a as u64) << 44 | (pair.ring_b as u64) << 24 | small(pair.shift[0]) << 12 | small(pair.shift[1])
 }
 
 /// The pair of a key.
-pub(super) fn pair_of_key(key: u64) -> RingPair {
+pub fn pair_of_key(key: u64) -> RingPair {
     let small = |bits: u64| ((bits & 0xfff) as i32) << 20 >> 20;
     RingPair {
         ring_a: (key >> 44) as usize,
@@ -19,6 +19,6 @@ pub(super) fn pair_of_key(key: u64) -> RingPair {
 }
 
 /// Key of the row that holds parameter `m` below its bound.
-pub(super) fn bound_key(m: usize) -> u64 {
+pub fn bound_key(m: usize) -> u64 {
     u64::MAX - m as u64
 }

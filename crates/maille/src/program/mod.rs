@@ -9,9 +9,10 @@
 
 pub mod flat;
 pub mod gap_kernel;
-mod key;
+pub mod key;
 pub mod metric;
 mod pair;
+pub mod waves;
 
 use self::{
     key::{bound_key, pair_key, pair_of_key},
@@ -122,6 +123,8 @@ pub struct SheetProgram<'a> {
     columns: Vec<(Option<usize>, usize)>,
     spins_freely: Vec<bool>,
     first_parameter: usize,
+    /// Wire, as a share of the model's.
+    wire: f64,
     /// Pairs whose rows are heights, see [`flat`].
     flat: BTreeSet<u64>,
     /// Pairs that were flat, and are not to be again.
@@ -170,7 +173,12 @@ impl<'a> SheetProgram<'a> {
             .collect();
         let first_parameter = next;
         let (flat, released) = Default::default();
-        SheetProgram { model, pull, columns, spins_freely, first_parameter, flat, released }
+        SheetProgram { model, pull, columns, spins_freely, first_parameter, wire: 1.0, flat, released }
+    }
+
+    /// The same program with all minor radii this share of the model's.
+    pub(crate) fn with_wire(self, wire: f64) -> Self {
+        SheetProgram { wire, ..self }
     }
 
     /// Poses of `state` with the lattice of the parameters `p`.
@@ -195,7 +203,7 @@ impl<'a> SheetProgram<'a> {
     /// The core distance that rings which touch at `touching` must keep at `x`.
     fn required(&self, x: &Posed, touching: f64) -> f64 {
         let parameters = self.pull.parameters.iter().zip(&x.p);
-        touching + parameters.map(|(parameter, p)| p * parameter.keeps(touching)).sum::<f64>()
+        self.wire * touching + parameters.map(|(parameter, p)| p * parameter.keeps(touching)).sum::<f64>()
     }
 
     /// The near pairs of `x`.
@@ -280,7 +288,8 @@ impl Program for SheetProgram<'_> {
         let turns = self.all_turns(&x.state);
         let factored = self.pull.factored(&x.p);
         for near in within {
-            self.pair_rows(x, near, band, (&turns, factored.as_ref()), derivatives, &mut rows);
+            let map = self.pair_map(&near.pair, &turns, factored.as_ref());
+            self.pair_rows(x, near, band, &map, derivatives, &mut rows);
         }
         rows
     }
@@ -333,6 +342,15 @@ impl Program for SheetProgram<'_> {
     }
 
     fn hidden_curvature(&self, x: &Posed, multipliers: &[Multiplier]) -> Vec<Vec<f64>> {
-        self.curvature_of_flat_pairs(x, multipliers)
+        let (turns, factored) = (self.all_turns(&x.state), self.pull.factored(&x.p));
+        let n = self.first_parameter + self.pull.parameters.len();
+        let term = |&key: &u64| {
+            let v = self.flat_curvature(x, multipliers, key)?;
+            let map = self.pair_map(&pair_of_key(key), &turns, factored.as_ref());
+            let mut term = vec![0.0; n];
+            map.columns.iter().zip(map.gradient(&v)).for_each(|(&column, entry)| term[column] = entry);
+            Some(term)
+        };
+        self.flat.iter().filter_map(term).collect()
     }
 }

@@ -27,9 +27,22 @@ pub(super) struct PairMap {
     pub motions: Vec<Grad>,
     /// Second derivatives of the relative position with two of these columns, where the lattice moves on a curve.
     bends: Vec<(usize, usize, Vec3)>,
+    /// Parameters among the columns: parameter and place.
+    parameters: Vec<(usize, usize)>,
 }
 
 impl PairMap {
+    fn new() -> Self {
+        let room = || Vec::with_capacity(14);
+        PairMap { columns: room(), motions: Vec::with_capacity(14), bends: Vec::new(), parameters: Vec::new() }
+    }
+
+    /// The motions of the kernel themselves as unknowns.
+    pub fn local() -> Self {
+        let motions = (0..9).map(|k| Grad::from_fn(|i, _| f64::from(u8::from(i == k))));
+        PairMap { columns: (0..9).collect(), motions: motions.collect(), ..PairMap::new() }
+    }
+
     fn add(&mut self, column: usize, block: usize, v: &Vec3, sign: f64) {
         let at = self.columns.iter().position(|&c| c == column).unwrap_or_else(|| {
             self.columns.push(column);
@@ -41,7 +54,7 @@ impl PairMap {
         }
     }
 
-    fn gradient(&self, grad: &Grad) -> Vec<f64> {
+    pub fn gradient(&self, grad: &Grad) -> Vec<f64> {
         self.motions.iter().map(|motion| motion.dot(grad)).collect()
     }
 
@@ -66,7 +79,7 @@ impl SheetProgram<'_> {
     /// The unknowns that move the pair, with their motions.
     pub(super) fn pair_map(&self, pair: &RingPair, turns: &[Vec<Vec3>], factored: Option<&Factored>) -> PairMap {
         let (i, j) = (self.model.rings[pair.ring_a].element, self.model.rings[pair.ring_b].element);
-        let mut map = PairMap { columns: Vec::with_capacity(14), motions: Vec::with_capacity(14), bends: Vec::new() };
+        let mut map = PairMap::new();
         let axes = [Vec3::x(), Vec3::y(), Vec3::z()];
         if i != j {
             for (element, sign) in [(i, -1.0), (j, 1.0)] {
@@ -82,16 +95,16 @@ impl SheetProgram<'_> {
         let [from, to] = [i, j].map(|e| self.model.elements[e].anchor);
         let shift: [f64; 2] = std::array::from_fn(|k| f64::from(pair.shift[k]) + (to[k] - from[k]));
         let image = |[a1, a2]: [Vec3; 2]| a1 * shift[0] + a2 * shift[1];
-        let mut free = Vec::new();
         for (m, parameter) in self.pull.parameters.iter().enumerate() {
             let rate = image(factored.map_or(parameter.rate, |f| self.pull.base.map(|a| f.rate(m, &a))));
             if rate != Vec3::zeros() || parameter.keeps(1.0) != 0.0 {
                 map.add(self.first_parameter + m, 0, &rate, 1.0);
-                free.push((m, map.columns.len() - 1));
+                map.parameters.push((m, map.columns.len() - 1));
             }
         }
-        for (f, &(m, r)) in factored.iter().flat_map(|f| free.iter().map(move |at| (f, at))) {
-            map.bends.extend(free.iter().map(|&(n, c)| (r, c, image(self.pull.base.map(|a| f.bend(m, n, &a))))));
+        for (f, &(m, r)) in factored.iter().flat_map(|f| map.parameters.iter().map(move |at| (f, at))) {
+            let bend = |&(n, c): &(usize, usize)| (r, c, image(self.pull.base.map(|a| f.bend(m, n, &a))));
+            map.bends.extend(map.parameters.iter().map(bend));
         }
         map
     }
@@ -118,9 +131,8 @@ impl SheetProgram<'_> {
     /// Gradient of a gap in the unknowns of `map`, from that of the distance.
     fn gap_gradient(&self, map: &PairMap, near: &NearPair, distance: &Grad) -> Vec<f64> {
         let mut out = map.gradient(distance);
-        let parameters = out.iter_mut().zip(&map.columns).filter(|(_, column)| **column >= self.first_parameter);
-        for (entry, column) in parameters {
-            *entry -= self.pull.parameters[column - self.first_parameter].keeps(near.touching);
+        for &(m, at) in &map.parameters {
+            out[at] -= self.pull.parameters[m].keeps(near.touching);
         }
         out
     }
@@ -148,19 +160,18 @@ impl SheetProgram<'_> {
         angles_rad.iter().map(gap).collect()
     }
 
-    /// Adds the rows of a pair up to `band`, with first derivatives, and second ones where they are asked for.
+    /// Adds the rows of a pair up to `band` in the unknowns of `map`, with first derivatives, and second ones where they are asked for.
     pub(super) fn pair_rows(
         &self,
         x: &Posed,
         near: &NearPair,
         band: f64,
-        (turns, factored): (&[Vec<Vec3>], Option<&Factored>),
+        map: &PairMap,
         derivatives: Derivatives<'_>,
         rows: &mut Vec<Row>,
     ) {
         let key = pair_key(&near.pair);
         let frame = self.frame(x, near);
-        let map = self.pair_map(&near.pair, turns, factored);
         let required = self.required(x, near.touching);
         let loaded = |angle: f64, minimum: bool| match derivatives {
             Derivatives::Second(loads) => loads.at(key, angle, minimum) != 0.0,
@@ -170,7 +181,7 @@ impl SheetProgram<'_> {
             rows.push(Row {
                 minimum,
                 columns: map.columns.clone(),
-                gradient: self.gap_gradient(&map, near, grad),
+                gradient: self.gap_gradient(map, near, grad),
                 hessian: hess.map_or_else(Vec::new, |h| map.hessian(grad, h)),
                 ..Row::value(key, angle, distance - required)
             });

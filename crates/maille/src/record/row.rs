@@ -305,4 +305,8 @@ columns! {
     by_cell: Option<String>, None, "what each cell reached, with its starts and its distinct certified limits; for a compression, and where larger cells were tried";
     image_of_deg: Option<f64>, Degree, "the solved direction of which this row is the image under a symmetry of the design; empty where the row itself was solved";
     grows_with_cell: Option<bool>, None, "whether the last cell that was tried still gave more; false where larger cells gave nothing more or the limit is proved; empty where no larger cell was tried";
+    better_chance: Option<f64>, One, "estimated chance that another start of the same kinds finds a larger limit in this cell; empty where the bound is attained";
+    wave_curvature: Option<f64>, One, "least curvature found on waves through the sheet that keep the loaded contacts; negative where a larger cell may go further; empty where it was not sought or the limit is proved";
+    wave_q1: Option<f64>, One, "its wave vector: phase from one solved cell to the next along the first lattice vector, in units of 2π";
+    wave_q2: Option<f64>, One, "the same along the second";
 }

@@ -13,13 +13,15 @@ use super::{
     local::LocalSolution,
     multistart::{Entered, Multistart, Target, verdict},
     options::THIN_WIRE,
-    starts::{Start, perturbed_starts},
+    starts::{Start, explored_with_own_wire},
+    stop::StopRule,
 };
 use crate::{
     answer::Answer,
     design::Design,
     model::Model,
     program::{LatticeFamily, Parameter},
+    question::Effort,
     record::Status,
     state::State,
     topology,
@@ -41,15 +43,17 @@ pub enum Extreme {
 pub struct ExtremeOptions {
     /// Whether the lattice may change.
     pub lattice_free: bool,
-    /// Starts: the design's state, then perturbed ones.
-    pub starts: usize,
-    /// Seed of the perturbations.
+    /// How long it is searched.
+    pub effort: Effort,
+    /// So many starts in place of an effort.
+    pub starts: Option<usize>,
+    /// Seed of the starts that are drawn.
     pub seed: u64,
 }
 
 impl Default for ExtremeOptions {
     fn default() -> Self {
-        ExtremeOptions { lattice_free: true, starts: 8, seed: 1 }
+        ExtremeOptions { lattice_free: true, effort: Effort::Normal, starts: None, seed: 1 }
     }
 }
 
@@ -134,6 +138,10 @@ impl Target for Sought {
         Entered { at: Some((start.state, p)), iterations: 0 }
     }
 
+    fn explored(&self, model: &Model, seed: u64, number: usize) -> Start {
+        explored_with_own_wire(model, seed, number)
+    }
+
     fn start(&self, solution: &LocalSolution) -> Start {
         Start::written(solution.state.clone())
     }
@@ -158,9 +166,8 @@ impl Sought {
 pub fn extreme(model: &Model, what: Extreme, options: &ExtremeOptions, cancel: &AtomicBool) -> Answer {
     let target = Sought { what, lattice_free: options.lattice_free };
     let search = Multistart { target: &target, upper_bound: f64::INFINITY, seed: options.seed, cancel };
-    let straight = std::iter::once(Start::written(model.start.clone()));
-    let mut found =
-        search.run(model, straight.chain(perturbed_starts(model, options.seed, 1..options.starts)).collect());
+    let straight = vec![Start::written(model.start.clone())];
+    let mut found = search.run(model, straight, StopRule::of(options.effort, options.starts));
     let interrupted = cancel.load(Ordering::Relaxed);
     let Some(best) = found.best.take() else {
         let status = if interrupted { Status::Interrupted } else { Status::NotConverged };

@@ -21,7 +21,10 @@ use crate::{
     topology,
 };
 use rand_chacha::ChaCha8Rng;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::{
+    collections::BTreeSet,
+    sync::atomic::{AtomicBool, Ordering},
+};
 
 /// What one start led to.
 pub(super) struct LocalSolution {
@@ -34,6 +37,8 @@ pub(super) struct LocalSolution {
     pub links_ok: bool,
     /// Whether the certificate holds and the links are those of the start.
     pub certified: bool,
+    /// Pairs that touch along nearly the whole circle, see [`crate::program::flat`].
+    pub flat: BTreeSet<u64>,
 }
 
 impl LocalSolution {
@@ -43,8 +48,8 @@ impl LocalSolution {
     }
 
     fn of(solve: Solve) -> Self {
-        let Solve { x: Posed { state, p, .. }, certificate, contacts, links_ok, certified } = solve;
-        LocalSolution { state, p, certificate, contacts, links_ok, certified }
+        let Solve { x: Posed { state, p, .. }, certificate, contacts, links_ok, certified, flat } = solve;
+        LocalSolution { state, p, certificate, contacts, links_ok, certified, flat }
     }
 }
 
@@ -55,6 +60,7 @@ struct Solve {
     contacts: Vec<Contact>,
     links_ok: bool,
     certified: bool,
+    flat: BTreeSet<u64>,
 }
 
 /// From a start to a certified state, or to the best feasible one; with the quadratic programs that it took. Where no certificate
@@ -63,7 +69,7 @@ pub(super) fn local_maximize(
     model: &Model,
     program: &mut SheetProgram<'_>,
     start: Posed,
-    restarts: usize,
+    (restarts, first_radius): (usize, f64),
     rng: &mut ChaCha8Rng,
     cancel: &AtomicBool,
 ) -> (Option<LocalSolution>, u64) {
@@ -75,7 +81,7 @@ pub(super) fn local_maximize(
             program.forget_released_pairs();
             x = program.posed(perturbed(model, &x.state, size, rng), x.p.clone());
         }
-        let (end, solve) = rounds.round(program, x);
+        let (end, solve) = rounds.round(program, x, first_radius);
         if solve.certified {
             best = Some(solve);
             break;
@@ -115,15 +121,16 @@ impl Rounds<'_> {
         let links_ok = topology::links_kept(self.model, &x.state);
         if certificate.holds() && links_ok {
             let contacts = program.contacts(&x, &certificate.multipliers);
-            self.last_resort = Some(Solve { x, certificate, contacts, links_ok, certified: true });
+            let flat = program.flat_pairs().clone();
+            self.last_resort = Some(Solve { x, certificate, contacts, links_ok, certified: true, flat });
         }
     }
 
     /// Maximises and polishes in turns, until a certificate holds or nothing more is promised.
-    fn round(&mut self, program: &mut SheetProgram<'_>, start: Posed) -> (Posed, Solve) {
+    fn round(&mut self, program: &mut SheetProgram<'_>, start: Posed, first_radius: f64) -> (Posed, Solve) {
         let mut x = start;
         let mut known: Vec<Multiplier> = Vec::new();
-        let (mut pause_at, mut first_radius) = (0.1, 0.1);
+        let (mut pause_at, mut first_radius) = (0.1, first_radius);
         let mut last = None;
         for round in 0..ROUNDS {
             let options = SqpOptions { pause_at, first_radius, ..SqpOptions::default() };
@@ -140,10 +147,11 @@ impl Rounds<'_> {
             let links_ok = topology::links_kept(self.model, &polished.state);
             let certified = !shifted && certificate.holds() && links_ok;
             let contacts = program.contacts(&polished, &certificate.multipliers);
+            let flat = program.flat_pairs().clone();
             // Where heights of flat pairs lock what their gaps do not: on from there by gaps.
             let on = shifted || locked && !certified && program.release_flat_pairs(&polished, &mut carrying, COAXIAL);
             (x, known) = if on { (polished.clone(), carrying) } else { (end.point, end.multipliers) };
-            last = Some(Solve { x: polished, certificate, contacts, links_ok, certified });
+            last = Some(Solve { x: polished, certificate, contacts, links_ok, certified, flat });
             if certified {
                 break;
             }

@@ -1,8 +1,8 @@
 //! The exact method: answers by local maximisation from many starts, certified and compared with proven bounds.
 //!
-//! `starts` are states to begin with, `local` is one maximisation, `multistart` the search from many starts and in larger cells, and the other files say what is
+//! `starts` are states to begin with, `stop` says when they are enough, `local` is one maximisation, `multistart` the search from many starts and in larger cells, and the other files say what is
 //! maximised and from where: `stretch` (with `stretch_lattices`, and `unlinked` where no chain of links binds), `strain`, `extreme`
-//! (wire and clearance). `overlap` frees a start that overlaps. Every tolerance is in `options`.
+//! (wire and clearance). `waves` tells whether a limit can go on in a larger cell. `overlap` frees a start that overlaps. Every tolerance is in `options`.
 
 #[doc(hidden)]
 pub mod extreme;
@@ -11,12 +11,14 @@ mod multistart;
 mod options;
 mod overlap;
 mod starts;
+mod stop;
 #[doc(hidden)]
 pub mod strain;
 #[doc(hidden)]
 pub mod stretch;
 mod stretch_lattices;
 mod unlinked;
+mod waves;
 
 pub use extreme::Extreme;
 pub use options::{ExactOptions, ExactParameters};

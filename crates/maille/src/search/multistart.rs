@@ -7,22 +7,27 @@
 use super::{
     local::{LocalSolution, local_maximize},
     options::{
-        ATTAINED, BOUND_RETRIES, BOUND_RETRY_GAP, BOUND_RETRY_SIZE, CELL_PERTURBATION, LARGER_CELL_RESTARTS,
-        OWN_IMAGE_FORCE, RESTARTS, SAME_VALUE,
+        ATTAINED, BOUND_RETRIES, BOUND_RETRY_GAP, BOUND_RETRY_SIZE, CELL_PERTURBATION, EXPLORATIONS,
+        LARGER_CELL_RESTARTS, OWN_IMAGE_FORCE, RESTARTS, SAME_VALUE, WIRE_PAUSE,
     },
-    starts::{Start, perturbed, perturbed_starts, rng, tiled},
+    starts::{Start, Use, explored, perturbed, rng, tiled},
+    stop::{StopRule, better_chance},
 };
 use crate::{
-    answer::{Answer, CellTrend},
+    answer::{Answer, CellTrend, WaveCurvature},
     lattice::Cell,
     model::Model,
     program::{Contact, LatticeFamily, SheetProgram},
     record::Status,
+    solver::sqp::{SqpOptions, maximize},
     state::State,
     topology::smallest_gap,
 };
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::{
+    sync::atomic::{AtomicBool, Ordering},
+    time::Instant,
+};
 
 /// A start that was brought to what is held.
 pub(super) struct Entered {
@@ -39,6 +44,11 @@ pub(super) trait Target: Sync {
 
     /// Brings a start to what is held.
     fn enter(&self, model: &Model, start: Start, cancel: &AtomicBool) -> Entered;
+
+    /// A start that is drawn, see [`explored`].
+    fn explored(&self, model: &Model, seed: u64, number: usize) -> Start {
+        explored(model, seed, number)
+    }
 
     /// A solution as a start.
     fn start(&self, solution: &LocalSolution) -> Start;
@@ -59,8 +69,12 @@ pub(super) struct SearchResult {
     pub best: Option<LocalSolution>,
     /// Value of the first start.
     pub first: Option<f64>,
-    /// Distinct certified values.
-    pub distinct: Vec<f64>,
+    /// Distinct certified values, and how many starts led to each.
+    pub distinct: Vec<(f64, u64)>,
+    /// Starts.
+    pub starts: u64,
+    /// Estimated chance that another start of its cell finds more; `None` where the bound is attained.
+    pub chance: Option<f64>,
     /// Quadratic programs.
     pub iterations: u64,
     /// Local maximisations.
@@ -71,20 +85,31 @@ pub(super) struct SearchResult {
 pub(super) struct CellSearch {
     /// The best of all cells, with the counts of all.
     pub result: SearchResult,
-    /// Its cell.
+    /// Index of its cell among those that are listed.
     pub cell: usize,
+    /// Its cell, where that is none of these.
+    pub further: Option<Model>,
+    /// The least curvature on waves at it.
+    pub wave: Option<WaveCurvature>,
     /// What each cell found.
     pub by_cell: Vec<CellTrend>,
     /// The best of each cell as a start.
     pub starts: Vec<Option<Start>>,
 }
 
+impl CellSearch {
+    /// The model of its cell, where `models` were searched.
+    pub fn model<'m>(&'m self, models: &'m [Model]) -> &'m Model {
+        self.further.as_ref().unwrap_or(&models[self.cell])
+    }
+}
+
 /// Which larger cells are searched, and from where.
 pub(super) struct LargerCells<'a> {
-    /// All of them, each from as many starts of its own; otherwise only while the solution presses an element on its own image.
+    /// All of them, each from as many starts of its own; otherwise only while the solution presses an element on its own image. Waves are followed into others in either case.
     pub every: bool,
     /// Starts of a larger cell of its own.
-    pub own_starts: usize,
+    pub own_starts: u64,
     /// Whether larger cells are tried where the first one has no state.
     pub where_none: bool,
     /// The state that is repeated over a larger cell where the first one has none.
@@ -94,34 +119,37 @@ pub(super) struct LargerCells<'a> {
 }
 
 impl<T: Target> Multistart<'_, T> {
-    /// Solves `starts` in one cell and keeps the best: certified first, then by value; of equals the first.
-    pub(crate) fn run(&self, model: &Model, starts: Vec<Start>) -> SearchResult {
-        if self.upper_bound.is_finite() {
-            let mut result = SearchResult::default();
-            for start in starts {
-                if self.cancelled() {
-                    break;
-                }
-                let found = self.retried(model, start, result.runs);
-                result.take(found);
-                if result.attains(self.upper_bound) {
-                    break;
-                }
-            }
-            return result;
-        }
-        let numbered: Vec<(u64, Start)> = (0..).zip(starts).collect();
-        let solve = |(k, start): (u64, Start)| (!self.cancelled()).then(|| self.solve(model, start, k));
-        let solved: Vec<Option<SearchResult>> = numbered.into_par_iter().with_max_len(1).map(solve).collect();
+    /// Solves `given` in one cell, then starts that are drawn until `rule` says that these were enough or the upper bound is
+    /// attained, and keeps the best: certified first, then by value; of equals the first.
+    pub(crate) fn run(&self, model: &Model, given: Vec<Start>, rule: StopRule) -> SearchResult {
+        let began = Instant::now();
+        // Where a bound can end the search at any start, one at a time.
+        let batch = if self.upper_bound.is_finite() { 1 } else { EXPLORATIONS.len() };
         let mut result = SearchResult::default();
-        solved.into_iter().flatten().for_each(|found| result.take(found));
+        let (mut given, mut drawn) = (given.into_iter(), 0);
+        while !self.cancelled() && !result.attains(self.upper_bound) {
+            let mut starts: Vec<Start> = given.by_ref().take(batch).collect();
+            let left = rule.left(result.starts, result.better_chance(), began.elapsed().as_secs_f64());
+            let own = (batch.min(left as usize)).saturating_sub(starts.len());
+            starts.extend((drawn..drawn + own).map(|k| self.target.explored(model, self.seed, k)));
+            drawn += own;
+            if starts.is_empty() {
+                break;
+            }
+            let numbered: Vec<(u64, Start)> = (result.starts..).zip(starts).collect();
+            let solve = |(k, start): (u64, Start)| (!self.cancelled()).then(|| self.retried(model, start, k));
+            let solved: Vec<Option<SearchResult>> = numbered.into_par_iter().with_max_len(1).map(solve).collect();
+            solved.into_iter().flatten().for_each(|found| result.take(found));
+        }
+        result.chance = (!result.attains(self.upper_bound)).then(|| result.better_chance());
         result
     }
 
     /// One start. A certified solution just short of the upper bound is perturbed and solved again: in cells of many elements
     /// contacts that hardly carry can hold it there.
-    fn retried(&self, model: &Model, start: Start, before: u64) -> SearchResult {
-        let mut result = self.solve(model, start, before);
+    fn retried(&self, model: &Model, start: Start, number: u64) -> SearchResult {
+        let first = number * (1 + BOUND_RETRIES);
+        let mut result = self.solve(model, start, first);
         for retry in 1..=BOUND_RETRIES {
             let Some(solution) = result.best.as_ref().filter(|best| best.certified) else { break };
             let short = self.upper_bound - solution.value();
@@ -129,76 +157,89 @@ impl<T: Target> Multistart<'_, T> {
                 break;
             }
             let from = self.target.start(solution);
-            let state = perturbed(model, &from.state, BOUND_RETRY_SIZE, &mut rng(self.seed.wrapping_add(retry)));
-            let again = self.solve(model, Start { state, ..from }, before + result.runs);
+            let state = perturbed(model, &from.state, BOUND_RETRY_SIZE, &mut rng(self.seed, Use::Retry, first + retry));
+            let again = self.solve(model, Start { state, ..from }, first + retry);
             let better = again.best.filter(|new| (new.certified, new.value()) > (true, solution.value()));
             (result.iterations, result.runs) = (result.iterations + again.iterations, result.runs + again.runs);
             if let Some(better) = better {
-                result.distinct = vec![better.value()];
+                result.distinct = vec![(better.value(), 1)];
                 result.best = Some(better);
             }
         }
         result
     }
 
-    /// One local maximisation, the one after `before` others.
-    fn solve(&self, model: &Model, start: Start, before: u64) -> SearchResult {
-        let Entered { at, iterations } = self.target.enter(model, start, self.cancel);
-        let Some((state, p)) = at else { return SearchResult { iterations, runs: 1, ..SearchResult::default() } };
+    /// One local maximisation, by the start's route.
+    fn solve(&self, model: &Model, start: Start, number: u64) -> SearchResult {
+        let route = start.route;
+        let Entered { at, mut iterations } = self.target.enter(model, start, self.cancel);
+        let one = SearchResult { starts: 1, runs: 1, ..SearchResult::default() };
+        let Some((state, p)) = at else { return SearchResult { iterations, ..one } };
         let family = self.target.family(model);
         let mut program = SheetProgram::new(model, &family);
-        let x = program.posed(state, p);
+        let mut x = program.posed(state, p);
+        for &wire in route.wires {
+            let program = SheetProgram::new(model, &family).with_wire(wire);
+            let options = SqpOptions { pause_at: WIRE_PAUSE, ..SqpOptions::default() };
+            let end = maximize(&program, x, Vec::new(), &options, self.cancel);
+            iterations += end.iterations as u64;
+            x = end.point;
+        }
         let restarts = if model.cell.copies() > 1 { LARGER_CELL_RESTARTS } else { RESTARTS };
-        let mut stream = rng(self.seed ^ (before + 1));
-        let (best, more) = local_maximize(model, &mut program, x, restarts, &mut stream, self.cancel);
-        let distinct = best.iter().filter(|best| best.certified).map(LocalSolution::value).collect();
+        let mut stream = rng(self.seed, Use::Restart, number);
+        let (best, more) =
+            local_maximize(model, &mut program, x, (restarts, route.first_radius), &mut stream, self.cancel);
+        let distinct = best.iter().filter(|best| best.certified).map(|best| (best.value(), 1)).collect();
         let first = best.as_ref().map(LocalSolution::value);
-        SearchResult { best, first, distinct, iterations: iterations + more, runs: 1 }
+        SearchResult { best, first, distinct, iterations: iterations + more, ..one }
     }
 
     /// Goes on from the first of `models` to larger ones, see [`LargerCells`]. `result` is what the first cell found.
     pub(crate) fn larger_cells(&self, models: &[Model], result: SearchResult, rule: &LargerCells<'_>) -> CellSearch {
         let mut by_cell = vec![result.by_cell(models[0].cell)];
-        let mut starts: Vec<Option<Start>> = vec![None; models.len()];
-        starts[0] = result.best.as_ref().map(|best| self.target.start(best));
-        let smallest = starts[0].clone().or_else(|| rule.fallback.clone());
+        let mut reached: Vec<Option<Start>> = vec![None; models.len()];
+        reached[0] = result.best.as_ref().map(|best| self.target.start(best));
+        let smallest = reached[0].clone().or_else(|| rule.fallback.clone());
         let presses = |best: &LocalSolution| own_image_force(&models[0], &best.contacts) > OWN_IMAGE_FORCE;
         let asks = rule.every || result.best.as_ref().map_or(rule.where_none, presses);
         let (mut result, mut cell) = (result, 0);
-        for larger in 1..models.len() {
+        for (larger, model) in models.iter().enumerate().skip(1) {
             // The last cell is for values that have grown.
             let idle = !rule.every && larger + 1 == models.len() && larger > 1 && cell == 0 && result.best.is_some();
             if !asks || idle || result.attains(self.upper_bound) || self.cancelled() {
                 break;
             }
-            let model = &models[larger];
             let repeated = smallest.iter().map(|from| {
-                let mut stream = rng(self.seed.wrapping_add(larger as u64));
-                let state = perturbed(model, &tiled(model, &from.state), CELL_PERTURBATION, &mut stream);
+                let mut stream = rng(self.seed, Use::Cell, larger as u64);
+                let state =
+                    perturbed(model, &tiled(model, models[0].cell, &from.state), CELL_PERTURBATION, &mut stream);
                 Start { state, ..from.clone() }
             });
             let neighbour = rule.neighbours.get(larger).into_iter().flatten().cloned();
             // Then starts of its own: the smaller cell's answer can hide what they find.
-            let own = perturbed_starts(model, self.seed, 0..rule.own_starts);
-            let found = self.run(model, repeated.chain(neighbour).chain(own).collect());
+            let given: Vec<Start> = repeated.chain(neighbour).collect();
+            let starts = given.len() as u64 + rule.own_starts;
+            let found = self.run(model, given, StopRule::exactly(starts));
             by_cell.push(found.by_cell(model.cell));
-            starts[larger] = found.best.as_ref().map(|best| self.target.start(best));
+            reached[larger] = found.best.as_ref().map(|best| self.target.start(best));
             if found.improves_on(&result) {
                 cell = larger;
             }
             result.merge(found);
         }
-        CellSearch { result, cell, by_cell, starts }
+        let mut found = CellSearch { result, cell, further: None, wave: None, by_cell, starts: reached };
+        self.follow_waves(models, &mut found);
+        found
     }
 
-    fn cancelled(&self) -> bool {
+    pub(super) fn cancelled(&self) -> bool {
         self.cancel.load(Ordering::Relaxed)
     }
 }
 
 impl SearchResult {
     /// What it found, as that of one cell.
-    fn by_cell(&self, cell: Cell) -> CellTrend {
+    pub(super) fn by_cell(&self, cell: Cell) -> CellTrend {
         let value = self.best.as_ref().filter(|best| best.certified).map(LocalSolution::value);
         CellTrend { cell, value, n_starts: self.runs, n_distinct: self.distinct.len() as u64 }
     }
@@ -208,10 +249,17 @@ impl SearchResult {
         Answer {
             n_starts: Some(self.runs),
             n_distinct: Some(self.distinct.len() as u64),
+            better_chance: self.chance,
             runs: self.runs,
             iterations: self.iterations,
             ..answer
         }
+    }
+
+    /// The estimated chance that another start finds more.
+    pub(crate) fn better_chance(&self) -> f64 {
+        let times: Vec<u64> = self.distinct.iter().map(|(_, times)| *times).collect();
+        better_chance(self.starts, &times)
     }
 
     /// Whether it has a better solution than `other`: certified first, and more than the same.
@@ -247,15 +295,17 @@ impl SearchResult {
         let better = found.improves_on(self);
         self.count(&found);
         if better {
-            self.best = found.best;
+            (self.best, self.chance) = (found.best, found.chance);
         }
     }
 
     fn count(&mut self, found: &SearchResult) {
         (self.runs, self.iterations) = (self.runs + found.runs, self.iterations + found.iterations);
-        for &value in &found.distinct {
-            if !self.distinct.iter().any(|other| (other - value).abs() < SAME_VALUE) {
-                self.distinct.push(value);
+        self.starts += found.starts;
+        for &(value, times) in &found.distinct {
+            match self.distinct.iter_mut().find(|(other, _)| (other - value).abs() < SAME_VALUE) {
+                Some((_, known)) => *known += times,
+                None => self.distinct.push((value, times)),
             }
         }
     }

@@ -5,6 +5,7 @@
 
 use crate::{
     lattice::Across,
+    question::Effort,
     solver::certificate::{GAP_TOLERANCE, RESIDUAL_TOLERANCE},
 };
 use serde::{Deserialize, Serialize};
@@ -12,11 +13,14 @@ use serde::{Deserialize, Serialize};
 /// What a user chooses of the exact method.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ExactOptions {
-    /// Starts of a limit whose bound is not attained: the neighbouring limit's state, then perturbed design states. Images of
-    /// these under the symmetries of the design, and with the width free states of held widths, come in addition; a least l1 and
-    /// a pull that no chain binds take the neighbour's state in addition, too.
-    pub starts: usize,
-    /// Seed of the perturbations.
+    /// How long a limit is searched whose bound is not attained: from the neighbouring limit's state, with the width free from
+    /// those of held widths, then from states that are drawn.
+    #[serde(default)]
+    pub effort: Effort,
+    /// So many starts in place of an effort.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub starts: Option<usize>,
+    /// Seed of the starts that are drawn.
     pub seed: u64,
     /// Whether width and shear are held or left to the sheet.
     #[serde(default)]
@@ -28,7 +32,7 @@ pub struct ExactOptions {
 
 impl Default for ExactOptions {
     fn default() -> Self {
-        ExactOptions { starts: 4, seed: 1, across: Across::HELD, compression: false }
+        ExactOptions { effort: Effort::Normal, starts: None, seed: 1, across: Across::HELD, compression: false }
     }
 }
 
@@ -39,12 +43,42 @@ pub(super) const ATTAINED: f64 = 1e-9;
 /// A state is feasible if no gap is below minus this.
 pub(super) const FEASIBLE: f64 = 1e-9;
 
-/// Sizes of the perturbed starts, taken in turn, in R and radians.
-pub(super) const PERTURBATIONS: [f64; 6] = [0.03, 0.1, 0.3, 0.05, 0.2, 0.02];
+/// A way to explore the states of a sheet from that of the design.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(super) struct Exploration {
+    /// Random motions of all elements, one after the other.
+    pub steps: usize,
+    /// Size of each, in R and radians.
+    pub size: f64,
+    /// Wires with which the value is maximised first, as shares of the model's.
+    pub wires: &'static [f64],
+    /// First half width of the trust box, in R and radians.
+    pub first_radius: f64,
+}
+
+/// First half width of the trust box, in R and radians, where nothing else is said.
+pub(super) const FIRST_RADIUS: f64 = 0.1;
+
+const fn exploration(steps: usize, size: f64, wires: &'static [f64], first_radius: f64) -> Exploration {
+    Exploration { steps, size, wires, first_radius }
+}
+
+/// Starts take these in turn. No one of them finds every limit, and more of one kind finds little more: which wire the sheet is
+/// first pulled with, and how long the first steps are, decides where it locks (decision 19 has the measurement).
+pub(super) const EXPLORATIONS: [Exploration; 8] = [
+    exploration(1, 0.03, &[], FIRST_RADIUS),
+    exploration(20, 0.1, &[0.5, 0.8], FIRST_RADIUS),
+    exploration(20, 0.1, &[1.5, 1.2], FIRST_RADIUS),
+    exploration(1, 0.1, &[], 0.4),
+    exploration(20, 0.1, &[2.0, 1.5, 1.2], FIRST_RADIUS),
+    exploration(1, 0.3, &[], FIRST_RADIUS),
+    exploration(20, 0.1, &[0.2, 0.5, 0.8], FIRST_RADIUS),
+    exploration(20, 0.1, &[], 0.03),
+];
+/// A solve with another wire pauses when its steps are shorter than this: only where it goes matters.
+pub(super) const WIRE_PAUSE: f64 = 1e-2;
 /// Size of the perturbation of a start that goes straight from the design's state: it only breaks symmetries.
 pub(super) const STRAIGHT: f64 = 0.003;
-/// Further starts where none reached what is held.
-pub(super) const MORE_STARTS: usize = 6;
 
 /// Rounds of maximising and polishing of one local maximisation.
 pub(super) const ROUNDS: usize = 10;
@@ -66,13 +100,25 @@ pub(super) const BOUND_RETRY_SIZE: f64 = 0.003;
 pub(super) const OWN_IMAGE_FORCE: f64 = 1e-6;
 /// Perturbation of the smaller cell's state, repeated over a larger cell.
 pub(super) const CELL_PERTURBATION: f64 = 0.1;
-/// Starts of a larger cell of its own, at most: its solves are costly.
-pub(super) const CELL_STARTS: usize = 3;
+/// A larger cell takes the least number of starts divided by this,
+pub(super) const CELL_SHARE: u64 = 3;
+/// by this where a fold is sought,
+pub(super) const FOLD_SHARE: u64 = 2;
+/// and at most this of a given number.
+pub(super) const CELL_STARTS: u64 = 3;
 
 /// What the value gives way, relative to 1 + |value|, while the ranges of what is free are found.
 pub(super) const FREE_SLACK: f64 = 1e-6;
 /// Solves for an end of such a range, each from where the last one paused.
 pub(super) const RANGE_ROUNDS: usize = 3;
+/// Largest component of the motion along an unstable wave with which a larger cell begins, in R and radians.
+pub(super) const WAVE_SIZE: f64 = 0.05;
+/// Copies of the design's cell in the cells whose waves are tried, and in those to which one leads.
+pub(super) const WAVE_COPIES: usize = 6;
+/// Elements of a cell whose waves are tried.
+pub(super) const WAVE_ELEMENTS: usize = 40;
+/// Elements in a cell to which a wave leads: its solves are costly.
+pub(super) const FOLLOWED_ELEMENTS: usize = 20;
 /// With l2 free: distance of the held l2 whose limits are starts.
 pub(super) const LATERAL_STEP: f64 = 0.125;
 /// As many of the largest of them are starts.
@@ -105,9 +151,10 @@ pub struct ExactParameters {
     feasible_within: f64,
     bound_attained_within: f64,
     same_value_within: f64,
-    perturbations: [f64; 6],
+    first_radius: f64,
+    explorations: [Exploration; 8],
+    wire_pause: f64,
     straight_perturbation: f64,
-    more_starts: usize,
     rounds: usize,
     restarts: usize,
     larger_cell_restarts: usize,
@@ -117,9 +164,15 @@ pub struct ExactParameters {
     bound_retry_size: f64,
     own_image_force: f64,
     cell_perturbation: f64,
-    cell_starts: usize,
+    cell_share: u64,
+    fold_share: u64,
+    cell_starts: u64,
     free_slack: f64,
     range_rounds: usize,
+    wave_size: f64,
+    wave_copies: usize,
+    wave_elements: usize,
+    followed_elements: usize,
     lateral_step: f64,
     lateral_starts: usize,
     lateral_rounds: usize,
@@ -141,9 +194,10 @@ impl ExactOptions {
             feasible_within: FEASIBLE,
             bound_attained_within: ATTAINED,
             same_value_within: SAME_VALUE,
-            perturbations: PERTURBATIONS,
+            first_radius: FIRST_RADIUS,
+            explorations: EXPLORATIONS,
+            wire_pause: WIRE_PAUSE,
             straight_perturbation: STRAIGHT,
-            more_starts: MORE_STARTS,
             rounds: ROUNDS,
             restarts: RESTARTS,
             larger_cell_restarts: LARGER_CELL_RESTARTS,
@@ -153,9 +207,15 @@ impl ExactOptions {
             bound_retry_size: BOUND_RETRY_SIZE,
             own_image_force: OWN_IMAGE_FORCE,
             cell_perturbation: CELL_PERTURBATION,
+            cell_share: CELL_SHARE,
+            fold_share: FOLD_SHARE,
             cell_starts: CELL_STARTS,
             free_slack: FREE_SLACK,
             range_rounds: RANGE_ROUNDS,
+            wave_size: WAVE_SIZE,
+            wave_copies: WAVE_COPIES,
+            wave_elements: WAVE_ELEMENTS,
+            followed_elements: FOLLOWED_ELEMENTS,
             lateral_step: LATERAL_STEP,
             lateral_starts: LATERAL_STARTS,
             lateral_rounds: LATERAL_ROUNDS,

@@ -10,7 +10,7 @@ use super::{
     extreme::{Extreme, Sought},
     multistart::Target,
     options::{FREEING_PERTURBATIONS, SLIGHT_OVERLAP},
-    starts::{perturbed, rng},
+    starts::{Use, perturbed, rng},
 };
 use crate::{
     model::Model,
@@ -55,7 +55,7 @@ pub(super) fn beyond_repair(model: &Model, seed: u64, cancel: &AtomicBool) -> Op
         let sought = Sought { what, lattice_free: true };
         let pull = sought.family(model);
         for (k, size) in FREEING_PERTURBATIONS.into_iter().enumerate() {
-            let mut stream = rng(seed.wrapping_mul(0x9e37_79b9).wrapping_add(k as u64));
+            let mut stream = rng(seed, Use::Freeing, k as u64);
             let state = perturbed(model, &model.start, size, &mut stream);
             let p = sought.first_parameters(model, &state);
             let program = SheetProgram::new(model, &pull);

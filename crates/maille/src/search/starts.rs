@@ -1,7 +1,8 @@
 //! Starts of a search: states, and how they are perturbed and repeated over larger cells.
 
-use super::options::PERTURBATIONS;
+use super::options::{EXPLORATIONS, Exploration, FIRST_RADIUS};
 use crate::{
+    lattice::Cell,
     model::Model,
     state::{Pose, State},
     topology::step_bound::{Motion, StepBound},
@@ -9,7 +10,6 @@ use crate::{
 use maille_geometry::Vec3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use std::ops::Range;
 
 /// A state from which a search begins, with the strains of its lattice where it is stretched along a direction.
 #[derive(Clone)]
@@ -18,33 +18,77 @@ pub(super) struct Start {
     pub l1: f64,
     pub l2: f64,
     pub shear: f64,
+    /// How the search goes on from it.
+    pub route: Route,
+}
+
+/// How a search goes on from a start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Route {
+    /// Wires with which the value is maximised first, as shares of the model's: the sheet locks in other places with them.
+    pub wires: &'static [f64],
+    /// First half width of the trust box: with a wide one the first steps pass over what narrow ones run into.
+    pub first_radius: f64,
+}
+
+impl Route {
+    /// With the model's own wire at once.
+    pub(super) const DIRECT: Route = Route { wires: &[], first_radius: FIRST_RADIUS };
 }
 
 impl Start {
     /// A state with the written lattice.
     pub(crate) fn written(state: State) -> Self {
-        Start { state, l1: 0.0, l2: 0.0, shear: 0.0 }
+        Start { state, l1: 0.0, l2: 0.0, shear: 0.0, route: Route::DIRECT }
     }
 }
 
-/// The random numbers of one start, kept apart from those of all others by its seed.
-pub(super) fn rng(seed: u64) -> ChaCha8Rng {
-    ChaCha8Rng::seed_from_u64(seed)
+/// What random numbers are for: each use has streams of its own.
+#[derive(Clone, Copy)]
+pub(super) enum Use {
+    /// The start of this number.
+    Start,
+    /// A solve of this number that begins again without a certificate.
+    Restart,
+    /// A retry of this number just short of the bound.
+    Retry,
+    /// The larger cell of this number.
+    Cell,
+    /// A start of this number that overlaps.
+    Freeing,
 }
 
-/// Starts of a cell: the design's state, every element moved and turned at random, but no circle across another.
-pub(super) fn perturbed_starts(model: &Model, seed: u64, numbers: Range<usize>) -> impl Iterator<Item = Start> {
-    numbers.map(move |k| {
-        let mut stream = rng(seed.wrapping_mul(0x9e37_79b9).wrapping_add(k as u64));
-        Start::written(perturbed(model, &model.start, PERTURBATIONS[k % PERTURBATIONS.len()], &mut stream))
-    })
+/// The random numbers of one use.
+pub(super) fn rng(seed: u64, what: Use, number: u64) -> ChaCha8Rng {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    rng.set_stream((what as u64) << 32 | number);
+    rng
+}
+
+/// The start of number `k` in a cell: the design's state, every element moved and turned at random in some steps, no circle
+/// across another; see [`EXPLORATIONS`].
+pub(super) fn explored(model: &Model, seed: u64, k: usize) -> Start {
+    let Exploration { steps, size, wires, first_radius } = EXPLORATIONS[k % EXPLORATIONS.len()];
+    let mut stream = rng(seed, Use::Start, k as u64);
+    let state = (0..steps).fold(model.start.clone(), |state, _| perturbed(model, &state, size, &mut stream));
+    Start { route: Route { wires, first_radius }, ..Start::written(state) }
+}
+
+/// The same without a change of the wire on the way.
+pub(super) fn explored_with_own_wire(model: &Model, seed: u64, k: usize) -> Start {
+    let start = explored(model, seed, k);
+    Start { route: Route { wires: &[], ..start.route }, ..start }
 }
 
 /// `state` with its elements moved and turned by up to `size`, in R and radians; less where circles could meet.
 pub(super) fn perturbed(model: &Model, state: &State, size: f64, rng: &mut ChaCha8Rng) -> State {
     let mut vector = || Vec3::from_fn(|_, _| size * rng.random_range(-1.0..1.0));
     let elements = state.poses.iter().map(|_| (vector(), vector())).collect();
-    let motion = Motion { elements, lattice: [Vec3::zeros(); 2], carried: false };
+    moved(model, state, Motion { elements, lattice: [Vec3::zeros(); 2], carried: false })
+}
+
+/// `state` after a motion of its elements; after less of it where circles could meet.
+pub(super) fn moved(model: &Model, state: &State, motion: Motion) -> State {
     let fraction = StepBound::new(model, state).largest_fraction(model, &motion, f64::INFINITY);
     let moved = state
         .poses
@@ -54,13 +98,16 @@ pub(super) fn perturbed(model: &Model, state: &State, size: f64, rng: &mut ChaCh
     State { poses: moved.collect(), ..state.clone() }
 }
 
-/// A primitive cell's state repeated over the cell of `model`.
-pub(super) fn tiled(model: &Model, state: &State) -> State {
-    let copies = model.cell.cosets();
-    let poses = copies.iter().flat_map(|&coset| {
-        let shift = state.translation(coset);
-        state.poses.iter().map(move |pose| Pose { position: pose.position + shift, ..*pose })
+/// A state of the cell `of` repeated over the cell of `model`, which consists of copies of it.
+pub(super) fn tiled(model: &Model, of: Cell, state: &State) -> State {
+    let elements = state.poses.len() / of.copies();
+    let poses = model.cell.cosets().into_iter().flat_map(|coset| {
+        let (copy, image) = of.copy_at(coset);
+        let shift = state.translation(image);
+        let poses = &state.poses[copy * elements..(copy + 1) * elements];
+        poses.iter().map(move |pose| Pose { position: pose.position + shift, ..*pose })
     });
-    let [a1, a2] = model.cell.vectors(state.a1, state.a2);
+    let [a1, a2] = of.primitive(state.a1, state.a2);
+    let [a1, a2] = model.cell.vectors(a1, a2);
     State { poses: poses.collect(), a1, a2 }
 }

@@ -9,16 +9,17 @@
 use super::{
     local::LocalSolution,
     multistart::{Entered, LargerCells, Multistart, Target, verdict},
-    options::{CELL_STARTS, FREE_SLACK, STRAIGHT},
-    starts::{Start, perturbed, perturbed_starts, rng},
+    options::{FREE_SLACK, STRAIGHT},
+    starts::{Start, Use, perturbed, rng},
+    stop::StopRule,
     stretch_lattices::farthest,
 };
 use crate::{
     answer::{Answer, CellTrend},
     bound::{ChainBound, MetricBound, metric_bound},
-    model::Model,
+    model::{Model, of_cell},
     program::{LatticeFamily, Parameter, SheetProgram},
-    question::{Sense, StrainQuery},
+    question::{Effort, Sense, StrainQuery},
     record::Status,
     solver::sqp::{SqpOptions, maximize},
     state::State,
@@ -29,9 +30,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// How the search goes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StrainOptions {
-    /// Starts of a query whose bound is not attained.
-    pub starts: usize,
-    /// Seed of the perturbations.
+    /// How long a query is searched whose bound is not attained.
+    pub effort: Effort,
+    /// So many starts in place of an effort.
+    pub starts: Option<usize>,
+    /// Seed of the starts that are drawn.
     pub seed: u64,
     /// Which end is sought. A least strain is searched in all cells, as a fold can be larger than a cell that shows no sign of it,
     /// and no answer is `global`: a still larger cell can fold further.
@@ -40,7 +43,7 @@ pub struct StrainOptions {
 
 impl Default for StrainOptions {
     fn default() -> Self {
-        StrainOptions { starts: 8, seed: 1, sense: Sense::Largest }
+        StrainOptions { effort: Effort::Normal, starts: None, seed: 1, sense: Sense::Largest }
     }
 }
 
@@ -125,16 +128,19 @@ impl<'a> StrainMethod<'a> {
         let least = self.options.sense == Sense::Least;
         // A least strain is never called global: larger cells can fold further.
         let upper_bound = bound.filter(|_| !least).unwrap_or(f64::INFINITY);
-        let StrainOptions { starts, seed, .. } = self.options;
+        let StrainOptions { effort, starts, seed, .. } = self.options;
+        let stop = StopRule::of(effort, starts);
         let search = Multistart { target: query, upper_bound, seed, cancel };
-        let straight = perturbed(model, &model.start, STRAIGHT, &mut rng(seed.wrapping_mul(0x9e37_79b9)));
+        let straight = perturbed(model, &model.start, STRAIGHT, &mut rng(seed, Use::Start, u64::from(u32::MAX)));
         let first = std::iter::once(straight).chain(from.iter().cloned()).map(Start::written);
-        let first = search.run(model, first.chain(perturbed_starts(model, seed, 1..starts)).collect());
+        let first = search.run(model, first.collect(), stop);
         let exit = first.first;
-        let own_starts = if least { starts } else { starts.min(CELL_STARTS) };
+        let own_starts = stop.of_larger_cell(least);
         let fallback = Some(Start::written(model.start.clone()));
         let rule = LargerCells { every: least, own_starts, where_none: false, fallback, neighbours: &[] };
         let found = search.larger_cells(self.models, first, &rule);
+        let model = &found.model(self.models).clone();
+        let wave = found.wave;
         let by_cell = found.by_cell.into_iter().map(|t| CellTrend { value: t.value.map(|p| sign * p), ..t }).collect();
         let mut result = found.result;
         let best = result.best.take();
@@ -144,7 +150,6 @@ impl<'a> StrainMethod<'a> {
             return counted(none(Status::Interrupted));
         }
         let Some(best) = best else { return counted(none(Status::L2NotReached)) };
-        let model = &self.models[found.cell];
         let status = verdict(&best, upper_bound);
         // Without a bound, and where no contact pushes back: this is no limit, only where the search was stopped.
         let stopped = status == Status::Uncertified && bound.is_none() && best.contacts.is_empty();
@@ -152,7 +157,7 @@ impl<'a> StrainMethod<'a> {
         let first = exit.map(|exit| sign * exit).filter(|_| !stopped);
         let answer = counted(Answer { value, first, ..Answer::new(model, status) }).with_solution(model, best);
         let gradient = answer.state.deformation_gradient(model);
-        let answer = Answer { gradient, ..answer };
+        let answer = Answer { gradient, wave, ..answer };
         if !answer.is_limit() {
             return answer;
         }
@@ -166,7 +171,7 @@ impl<'a> StrainMethod<'a> {
     /// The answer with the ranges of the strains that are free, see [`Answer::ranges`].
     pub(crate) fn with_ranges(&self, query: &StrainQuery, answer: Answer, cancel: &AtomicBool) -> Answer {
         let Some(p) = answer.value.map(|value| self.options.sense.sign() * value) else { return answer };
-        let Some(model) = self.models.iter().find(|model| model.cell == answer.cell) else { return answer };
+        let model = &*of_cell(self.models, answer.cell);
         let strain = answer.green_strain();
         let at = strain - query.free[0] * (FREE_SLACK * (1.0 + p.abs()));
         let (mut ranges, mut iterations) = (Vec::new(), answer.iterations);

@@ -12,12 +12,12 @@
 use super::{
     local::LocalSolution,
     multistart::{Entered, LargerCells, Multistart, SearchResult, Target, verdict},
-    options::{
-        ATTAINED, CELL_STARTS, ExactOptions, LATERAL_ROUNDS, LATERAL_STARTS, LATERAL_STEP, MORE_STARTS, SAME_VALUE,
-    },
+    options::{ATTAINED, ExactOptions, LATERAL_ROUNDS, LATERAL_STARTS, LATERAL_STEP, SAME_VALUE},
     overlap::{Overlapping, beyond_repair},
-    starts::{Start, perturbed_starts},
+    starts::{Start, explored},
+    stop::StopRule,
     stretch_lattices::StretchLattices,
+    waves::OwnCell,
 };
 use crate::{
     answer::{Answer, CellTrend},
@@ -28,15 +28,11 @@ use crate::{
     record::Status,
     solver::sqp::{SqpOptions, maximize},
     state::State,
-    symmetry::{Image, Operation, between, operations, same_direction},
     topology::links_kept,
 };
-use std::{
-    ops::Range,
-    sync::{
-        OnceLock,
-        atomic::{AtomicBool, Ordering},
-    },
+use std::sync::{
+    OnceLock,
+    atomic::{AtomicBool, Ordering},
 };
 
 /// Finds limits of one sheet by the exact method.
@@ -47,10 +43,10 @@ pub struct ExactMethod<'a> {
     pub(super) link: LinkBound,
     /// Found where a limit is not reached.
     image: OnceLock<ImageBound>,
-    /// Symmetries of the design that keep the first cell.
-    operations: Vec<Operation>,
     /// Where no search can begin.
     overlapping: Option<Overlapping>,
+    /// The design's own cell, where the first one is larger: its answer is a start.
+    own: Option<Model>,
 }
 
 /// The stretch whose limit is sought.
@@ -90,7 +86,7 @@ impl Target for Stretch {
         let end = maximize(&program, start, Vec::new(), &options, cancel);
         let reached = end.point.p[1] >= enough - 1e-9 && end.violation <= 1e-6;
         let at = reached.then(|| {
-            let at = Start { l1: end.point.p[0], state: end.point.state, l2: self.l2, shear: at.shear };
+            let at = Start { l1: end.point.p[0], state: end.point.state, l2: self.l2, ..at };
             let p = lattices.parameters(&at);
             (at.state, p)
         });
@@ -101,7 +97,7 @@ impl Target for Stretch {
         let mut free = solution.p[1..].iter().copied();
         let l2 = if self.across.lateral_free { free.next().unwrap_or(self.l2) } else { self.l2 };
         let shear = free.next().unwrap_or(0.0);
-        Start { state: solution.state.clone(), l1: self.sign * solution.p[0], l2, shear }
+        Start { l1: self.sign * solution.p[0], l2, shear, ..Start::written(solution.state.clone()) }
     }
 }
 
@@ -120,14 +116,14 @@ impl<'a> ExactMethod<'a> {
         // them is one too, so that the own cell has the same bound.
         let link = LinkBound::new(&models[0].primitive(), &chain);
         let overlapping = beyond_repair(&models[0], options.seed, cancel);
-        let operations = operations(&models[0]);
-        ExactMethod { models, options, chain, link, image: OnceLock::new(), operations, overlapping }
+        let own = (models[0].cell.copies() > 1).then(|| models[0].primitive());
+        ExactMethod { models, options, chain, link, image: OnceLock::new(), overlapping, own }
     }
 
     /// The limits along one direction, in the order of `l2`. Solved outwards from l2 = 0, each from its neighbour's states.
     ///
     /// Where an element presses on its own image, or a lateral compression is not reached, and of every least l1, larger cells
-    /// are solved, too, from the smaller cell's state; the best limit counts, and the answer says which cell gave it.
+    /// are solved, too, from the smaller cell's state, and unstable waves are followed; the best limit counts, and the answer says which cell gave it.
     /// `finished` gets each limit with its index in `l2`; after `cancel` the rest comes back as interrupted.
     pub fn limits(
         &self,
@@ -140,7 +136,7 @@ impl<'a> ExactMethod<'a> {
         let stretch = |l2: f64| Stretch { direction, l2, across, sign: if compression { -1.0 } else { 1.0 } };
         let mut order: Vec<usize> = (0..l2.len()).collect();
         order.sort_by(|&a, &b| l2[a].abs().total_cmp(&l2[b].abs()).then(l2[a].total_cmp(&l2[b])));
-        let mut sides: [Neighbours; 2] = [vec![None; self.models.len()], vec![None; self.models.len()]];
+        let mut sides: [Neighbours; 2] = [self.no_neighbours(), self.no_neighbours()];
         if !compression && !l2.contains(&0.0) {
             let (_, at_zero) = self.limit(&stretch(0.0), &sides[0], cancel);
             sides = [at_zero.clone(), at_zero];
@@ -160,7 +156,7 @@ impl<'a> ExactMethod<'a> {
     fn limit(&self, stretch: &Stretch, neighbours: &Neighbours, cancel: &AtomicBool) -> (Answer, Neighbours) {
         let least = stretch.sign < 0.0;
         let Stretch { direction, l2, across, .. } = *stretch;
-        let none = || vec![None; self.models.len()];
+        let none = || self.no_neighbours();
         let bound = best_bound_across(&self.chain, Some(&self.link), direction, l2, across);
         let unreachable = matches!(bound, Bound::L2Unreachable { .. });
         // The bounds are of the largest l1; of the least one they tell only that no state has this l2.
@@ -183,25 +179,23 @@ impl<'a> ExactMethod<'a> {
             _ => f64::INFINITY,
         };
         let search = self.search(stretch, upper_bound, cancel);
-        let first = if least {
-            let starts = neighbour.iter().cloned().chain(self.fresh(0..self.options.starts)).collect();
-            search.run(&self.models[0], starts)
+        let own = self.own_cell(&search, neighbours.last().cloned().flatten());
+        let mut first = if least {
+            let given = own.starts.into_iter().chain(neighbour.iter().cloned()).collect();
+            search.run(&self.models[0], given, self.stop())
         } else {
-            self.first_cell(&search, neighbour.clone())
+            self.first_cell(&search, own.starts, neighbour.clone())
         };
+        (first.runs, first.iterations) = (first.runs + own.runs, first.iterations + own.iterations);
         let near =
             (first.best.is_none() && !least && !across.any()).then(|| self.too_near(stretch, upper_bound)).flatten();
-        let first = match (&first.best, &near, least) {
-            (None, None, false) => self.more(&search, first),
-            _ => first,
-        };
         let rule = LargerCells {
             every: least,
             // With the width free a solve is long, and folds are found from the smaller cell's state.
             own_starts: match (least, across.any()) {
-                (true, _) => self.options.starts,
+                (true, _) => self.stop().of_larger_cell(true),
                 (false, true) => 0,
-                (false, false) => self.options.starts.min(CELL_STARTS),
+                (false, false) => self.stop().of_larger_cell(false),
             },
             // Under lateral compression a larger cell can fold where this one cannot.
             where_none: l2 < 0.0,
@@ -221,39 +215,38 @@ impl<'a> ExactMethod<'a> {
             );
             return ended(Status::L2Unreachable, Some(note));
         }
+        let (model, wave) = (found.model(self.models).clone(), found.wave);
         let kept = if least || found.by_cell.len() > 1 { found.by_cell } else { Vec::new() };
         // What was maximised is −l1 where the least is sought.
         let value = |t: CellTrend| CellTrend { value: t.value.map(|value| stretch.sign * value), ..t };
-        let answer = proved(self.judge(found.cell, stretch, upper_bound, found.result, cancel));
+        let answer = proved(self.judge(&model, stretch, upper_bound, found.result, cancel));
         // Ranges of what is free are solved for after the search: without them the answer is not whole.
         if cancel.load(Ordering::Relaxed) {
             return ended(Status::Interrupted, None);
         }
         let by_cell = kept.into_iter().map(value).collect();
-        (Answer { by_cell, ..answer }, found.starts)
+        (Answer { by_cell, wave, ..answer }, found.starts.into_iter().chain([own.best]).collect())
     }
 
-    /// The search of the first cell for a largest l1: from the neighbour's state, then from perturbed states of the design and of
-    /// its images.
-    fn first_cell(&self, search: &Multistart<'_, Stretch>, neighbour: Option<Start>) -> SearchResult {
-        let stretch = search.target;
-        let mut starts: Vec<Start> = neighbour.into_iter().collect();
-        let fresh = self.options.starts.saturating_sub(starts.len());
+    /// Of each cell, and of the design's own where the first is larger.
+    fn no_neighbours(&self) -> Neighbours {
+        vec![None; self.models.len() + 1]
+    }
+
+    /// What the design's own cell gives to a larger first one.
+    fn own_cell(&self, search: &Multistart<'_, Stretch>, neighbour: Option<Start>) -> OwnCell {
+        let Some(own) = &self.own else { return OwnCell::default() };
+        search.own_cell(own, neighbour.into_iter().collect(), self.stop(), &self.models[0])
+    }
+
+    /// The search of the first cell for a largest l1: from the states that are given, then from drawn ones.
+    fn first_cell(&self, search: &Multistart<'_, Stretch>, own: Vec<Start>, neighbour: Option<Start>) -> SearchResult {
+        let mut starts: Vec<Start> = own.into_iter().chain(neighbour).collect();
         let (wide, runs, iterations) = self.lateral_starts(search);
         starts.extend(wide);
-        starts.extend(self.fresh(0..fresh));
-        starts.extend(self.of_images(stretch.direction, 0..fresh));
-        let mut found = search.run(&self.models[0], starts);
+        let mut found = search.run(&self.models[0], starts, self.stop());
         (found.runs, found.iterations) = (found.runs + runs, found.iterations + iterations);
         self.refine_width(search, &mut found);
-        found
-    }
-
-    /// Further starts of the first cell, where none reached what is held.
-    fn more(&self, search: &Multistart<'_, Stretch>, before: SearchResult) -> SearchResult {
-        let fresh = self.options.starts;
-        let mut found = search.run(&self.models[0], self.fresh(fresh..fresh + MORE_STARTS).collect());
-        (found.runs, found.iterations) = (found.runs + before.runs, found.iterations + before.iterations);
         found
     }
 
@@ -266,9 +259,9 @@ impl<'a> ExactMethod<'a> {
         Multistart { target, upper_bound, seed: self.options.seed, cancel }
     }
 
-    /// Perturbed states of the design in the first cell.
-    pub(super) fn fresh(&self, numbers: Range<usize>) -> impl Iterator<Item = Start> + use<'a> {
-        perturbed_starts(&self.models[0], self.options.seed, numbers)
+    /// When a search of the first cell stops.
+    pub(super) fn stop(&self) -> StopRule {
+        StopRule::of(self.options.effort, self.options.starts)
     }
 
     /// Own images that would be too near in the first cell, whatever l1 up to its bound.
@@ -294,14 +287,14 @@ impl<'a> ExactMethod<'a> {
             return (found, runs, iterations);
         }
         for step in [LATERAL_STEP, -LATERAL_STEP] {
-            let mut from: Vec<Start> = self.fresh(0..1).collect();
+            let mut from = vec![explored(&self.models[0], self.options.seed, 0)];
             for k in i32::from(step < 0.0).. {
                 let held = Stretch { l2: f64::from(k) * step, across: Across::HELD, ..*search.target };
                 if held.l2 <= -1.0 || search.cancel.load(Ordering::Relaxed) {
                     break;
                 }
                 let Bound::Finite { l1, .. } = self.chain.limit(held.direction, held.l2) else { break };
-                let here = self.search(&held, l1, search.cancel).run(&self.models[0], from);
+                let here = self.search(&held, l1, search.cancel).run(&self.models[0], from, StopRule::exactly(0));
                 (runs, iterations) = (runs + here.runs, iterations + here.iterations);
                 let Some(best) = &here.best else { break };
                 let start = held.start(best);
@@ -323,12 +316,11 @@ impl<'a> ExactMethod<'a> {
             let at = stretch.start(best);
             let across = Across { lateral_free: false, ..stretch.across };
             let held = Stretch { l2: at.l2, across, ..*stretch };
-            let starts = std::iter::once(at).chain(self.fresh(0..self.options.starts)).collect();
-            let here = self.search(&held, f64::INFINITY, search.cancel).run(model, starts);
+            let here = self.search(&held, f64::INFINITY, search.cancel).run(model, vec![at], self.stop());
             (found.runs, found.iterations) = (found.runs + here.runs, found.iterations + here.iterations);
             let better = here.best.filter(|solution| solution.value() > best.value() + SAME_VALUE);
             let Some(from) = better.map(|solution| held.start(&solution)) else { return };
-            let again = search.run(model, vec![from]);
+            let again = search.run(model, vec![from], StopRule::exactly(0));
             let improves = again.improves_on(found);
             found.merge(again);
             if !improves {
@@ -340,7 +332,7 @@ impl<'a> ExactMethod<'a> {
     /// Status and figures of the best solution.
     pub(super) fn judge(
         &self,
-        cell: usize,
+        model: &Model,
         stretch: &Stretch,
         upper_bound: f64,
         mut found: SearchResult,
@@ -351,7 +343,6 @@ impl<'a> ExactMethod<'a> {
             let note = Some(format!("no start reached {what} without overlap; nothing is proved"));
             return found.counted(Answer { note, ..self.without_state(Status::L2NotReached) });
         };
-        let model = &self.models[cell];
         let Stretch { l2, across, direction, sign } = *stretch;
         let lattices = stretch.lattices(model);
         let gradient = lattices.gradient(&best.p, l2);
@@ -374,25 +365,5 @@ impl<'a> ExactMethod<'a> {
             answer.iterations += more;
         }
         answer.with_solution(model, best)
-    }
-
-    /// Starts of the first cell that stand for those of the directions that are images of this one: the images of the same
-    /// perturbed states. So a limit is searched from as many states as if each direction of its orbit were solved by itself.
-    fn of_images(&self, direction: Direction, starts: Range<usize>) -> Vec<Start> {
-        let (model, direction_deg) = (&self.models[0], direction.degrees());
-        let mut seen = vec![direction_deg.rem_euclid(180.0)];
-        let mut out = Vec::new();
-        for operation in &self.operations {
-            let to_deg = operation.direction_deg(direction_deg);
-            if seen.iter().any(|&known| same_direction(known, to_deg)) {
-                continue;
-            }
-            seen.push(to_deg);
-            let back = between(&self.operations, to_deg, direction_deg).next();
-            if let Some(image) = back.and_then(|operation| Image::new(operation, model, model)) {
-                out.extend(self.fresh(starts.clone()).map(|start| Start::written(image.state(&start.state))));
-            }
-        }
-        out
     }
 }

@@ -7,7 +7,7 @@
 use super::{
     multistart::{Entered, Target},
     options::{UNLINKED_STAGE, UNLINKED_STAGES},
-    starts::Start,
+    starts::{Start, explored_with_own_wire},
     stretch::{ExactMethod, Stretch},
 };
 use crate::{
@@ -40,7 +40,9 @@ impl ExactMethod<'_> {
     ) -> (Answer, Vec<Option<Start>>) {
         let model = &self.models[0];
         let none = vec![None; self.models.len()];
-        let starts: Vec<Start> = neighbour.into_iter().chain(self.fresh(0..self.options.starts)).collect();
+        let stop = self.stop();
+        let drawn = (0..stop.least as usize).map(|k| explored_with_own_wire(model, self.options.seed, k));
+        let starts: Vec<Start> = neighbour.into_iter().chain(drawn).collect();
         let (mut runs, mut iterations) = (0, 0);
         for start in starts.clone() {
             let (apart, more) = pull_apart(model, stretch, start, cancel);
@@ -56,21 +58,22 @@ impl ExactMethod<'_> {
             }
         }
         let search = self.search(stretch, f64::INFINITY, cancel);
-        let mut found = search.run(model, starts);
+        let mut found = search.run(model, starts, stop);
         if cancel.load(Ordering::Relaxed) {
             return (self.without_state(Status::Interrupted), none);
         }
         (found.runs, found.iterations) = (found.runs + runs, found.iterations + iterations);
         let mut reached = none.clone();
         reached[0] = found.best.as_ref().map(|best| stretch.start(best));
-        let answer = self.judge(0, stretch, f64::INFINITY, found, cancel);
+        let wave = found.best.as_ref().and_then(|best| search.waves(&self.models[0], best).curvature());
+        let answer = self.judge(&self.models[0], stretch, f64::INFINITY, found, cancel);
         if cancel.load(Ordering::Relaxed) {
             return (self.without_state(Status::Interrupted), none);
         }
         match answer.status {
             Status::Local => {
                 let note = Some("held by contacts without a chain of links: there is no bound".into());
-                (Answer { note, ..answer }, reached)
+                (Answer { note, wave, ..answer }, reached)
             }
             // No limit, only where the search was stopped.
             Status::Uncertified if answer.contacts.is_empty() => {

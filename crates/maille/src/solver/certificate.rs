@@ -40,11 +40,13 @@ const ALMOST: f64 = 0.03;
 
 /// A contact carries where its force for a unit pull is above this: what a record lists, and what counts for the curvature.
 pub(crate) const CARRIED: f64 = 1e-9;
+/// What the motions whose curvature counts must keep: contacts that carry more.
+pub(crate) const LOADED: f64 = 1e-8;
 /// Share of the largest multiplier above which one found with a sign counts.
 const CARRIES: f64 = 1e-8;
 
 /// Rows within this gap are looked at.
-pub(super) const BAND: f64 = 1e-2;
+pub(crate) const BAND: f64 = 1e-2;
 
 impl Certificate {
     /// Whether every condition holds to its tolerance.
@@ -184,6 +186,6 @@ pub(crate) fn measure_curvature<P: Program>(program: &P, x: &P::Point, certifica
         hessian.add(at, |p, q| -v[at[p]] * v[at[q]]);
     }
     let loaded: Vec<&Row> =
-        chosen.into_iter().zip(&multipliers).filter(|(_, mu)| **mu > 1e-8).map(|(r, _)| r).collect();
+        chosen.into_iter().zip(&multipliers).filter(|(_, mu)| **mu > LOADED).map(|(r, _)| r).collect();
     (certificate.min_curvature, certificate.zero_modes) = curvature(&hessian, &loaded);
 }

@@ -84,7 +84,7 @@ impl Loads {
     }
 
     /// Multiplier of `row`: that of the nearest angle under the same key, or 0.
-    pub(crate) fn of(&self, row: &Row) -> f64 {
+    pub fn of(&self, row: &Row) -> f64 {
         self.at(row.key, row.angle, row.minimum)
     }
 

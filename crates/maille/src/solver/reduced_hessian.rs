@@ -22,7 +22,7 @@ use faer::{
 };
 
 /// Curvature below which a direction counts as a zero mode, relative to the largest curvature.
-const ZERO_MODE: f64 = 1e-7;
+pub(crate) const ZERO_MODE: f64 = 1e-7;
 /// ρ, relative to the largest curvature: rounding of ρ AᵀA stays a hundredth of what counts as zero.
 const STIFF: f64 = 1e7;
 /// The least curvature is found to this share of it.

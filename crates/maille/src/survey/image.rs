@@ -1,10 +1,10 @@
 //! The image of a limit under a symmetry of the design: a limit along another direction, which needs no solve.
 
 use crate::{
-    answer::{Answer, CellTrend, FreeRanges},
+    answer::{Answer, CellTrend, FreeRanges, WaveCurvature},
     bound::{BindingChain, DualForce, TieKind},
     lattice::{Cell, Direction},
-    model::Model,
+    model::{Model, of_cell},
     program::Contact,
     state::State,
     symmetry::{Image, Operation, between},
@@ -24,7 +24,7 @@ pub(crate) fn image<'a>(
     solved_deg: f64,
     direction_deg: f64,
 ) -> (Cow<'a, Model>, Answer) {
-    let from = models.iter().find(|model| model.cell == answer.cell).unwrap_or(&models[0]);
+    let from = &*of_cell(models, answer.cell);
     let known = |cell: Cell| models.iter().find(|model| model.cell.same_lattice(&cell));
     let possible = || between(operations, solved_deg, direction_deg).filter_map(|o| Some((o, o.cell(from.cell)?)));
     let (operation, model) = possible()
@@ -56,6 +56,7 @@ pub(crate) fn image<'a>(
         chain: answer.chain.as_ref().map(|chain| mapped_chain(&first, chain)),
         dual: answer.dual.iter().map(|tie| mapped_tie(&own, &first, tie)).collect(),
         contacts: answer.contacts.iter().map(|contact| mapped_contact(&image, contact, &state)).collect(),
+        wave: answer.wave.map(|wave| mapped_wave(&image, wave)),
         free: answer.free.map(|free| mapped_ranges(&image, free)),
         by_cell: answer.by_cell.iter().map(|t| CellTrend { cell: cell(t.cell), ..*t }).collect(),
         state,
@@ -86,6 +87,13 @@ fn mapped_tie(own: &Image<'_>, first: &Image<'_>, tie: &DualForce) -> DualForce 
     let counted = if tie.kind == TieKind::Chain { first } else { own };
     let rings = tie.rings.iter().map(|&(ring, shift)| counted.ring(ring, shift)).collect();
     DualForce { kind: tie.kind, rings, force: own.vector(&tie.force) }
+}
+
+/// A shift s of the image is that of the solved cell under an integer matrix N, and the phase q·s stays the same: q' = N⁻ᵀ q.
+fn mapped_wave(image: &Image<'_>, wave: WaveCurvature) -> WaveCurvature {
+    let [[a, c], [b, d]] = [[1, 0], [0, 1]].map(|s| image.shift(s).map(f64::from));
+    let ([q1, q2], det) = (wave.q, a * d - b * c);
+    WaveCurvature { q: [(d * q1 - c * q2) / det, (a * q2 - b * q1) / det], ..wave }
 }
 
 fn mapped_ranges(image: &Image<'_>, free: FreeRanges) -> FreeRanges {

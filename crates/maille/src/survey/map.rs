@@ -8,7 +8,7 @@ use super::{
 use crate::{
     answer::Answer,
     lattice::Direction,
-    model::Model,
+    model::{Model, of_cell},
     record::Status,
     relaxation::limit::EnergyMethod,
     search::{ExactOptions, stretch::ExactMethod},
@@ -100,10 +100,7 @@ pub fn characterize(
                                     image(&operations, models, &answer, solved_deg, task.direction_deg);
                                 asked.finished(&model, &answer, wall_s)
                             }
-                            None => {
-                                let model = models.iter().find(|model| model.cell == answer.cell).unwrap_or(&models[0]);
-                                asked.finished(model, &answer, wall_s)
-                            }
+                            None => asked.finished(&of_cell(models, answer.cell), &answer, wall_s),
                         });
                         begun = Instant::now();
                     }
@@ -141,6 +138,5 @@ pub(crate) fn one<'a>(
     if solved_deg != direction_deg {
         return image(&operations, models, &answer, solved_deg, direction_deg);
     }
-    let model = models.iter().find(|model| model.cell == answer.cell).unwrap_or(&models[0]);
-    (Cow::Borrowed(model), answer)
+    (of_cell(models, answer.cell), answer)
 }

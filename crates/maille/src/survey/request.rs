@@ -189,8 +189,8 @@ impl MapQuestion {
         let question = Question::new(Goal::Stretch { direction_deg, l2, across: self.method.across() }, sense);
         match &self.method {
             Method::Energy(_) => question,
-            Method::Exact(ExactOptions { starts, seed, .. }) => {
-                Question { starts: Some(*starts), seed: *seed, ..question }
+            Method::Exact(ExactOptions { effort, starts, seed, .. }) => {
+                Question { effort: *effort, starts: *starts, seed: *seed, ..question }
             }
         }
     }

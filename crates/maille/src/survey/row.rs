@@ -44,6 +44,7 @@ impl Asked<'_> {
         // A proven limit does not grow, whichever cell it is found in.
         let last = answer.by_cell.last().filter(|_| by_cell.len() > 1);
         let grows_with_cell = last.map(|last| last.cell == answer.cell && answer.status != Status::Global);
+        let wave = answer.wave.filter(|_| answer.status == Status::Local);
         LimitRow {
             design: model.name.clone(),
             minor_radius,
@@ -89,6 +90,10 @@ impl Asked<'_> {
             by_cell: (!by_cell.is_empty()).then(|| by_cell.join("; ")),
             image_of_deg,
             grows_with_cell,
+            better_chance: limit.and(answer.better_chance),
+            wave_curvature: wave.map(|wave| wave.least),
+            wave_q1: wave.map(|wave| wave.q[0]),
+            wave_q2: wave.map(|wave| wave.q[1]),
         }
     }
 

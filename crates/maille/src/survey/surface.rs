@@ -11,7 +11,7 @@
 use super::icosphere::{Bent, Sphere};
 use crate::{
     model::Model,
-    question::{Sense, StrainQuery},
+    question::StrainQuery,
     record::Status,
     search::strain::{StrainMethod, StrainOptions},
     state::{Pose, State},
@@ -122,7 +122,8 @@ pub struct RaySolver<'a>(StrainMethod<'a>);
 impl<'a> RaySolver<'a> {
     /// For rays of one surface.
     pub fn new(model: &'a Model, options: &BoundaryOptions) -> Self {
-        let options = StrainOptions { starts: options.starts, seed: options.seed, sense: Sense::Largest };
+        let BoundaryOptions { starts, seed, .. } = *options;
+        let options = StrainOptions { starts: Some(starts), seed, ..StrainOptions::default() };
         RaySolver(StrainMethod::new(std::slice::from_ref(model), options))
     }
 
