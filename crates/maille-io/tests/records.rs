@@ -136,7 +136,7 @@ fn a_damaged_table_is_named_by_line_column_and_value() {
         broken("lambda1,lambda2", "lambda2,lambda1"),
         "out/limits.csv:1: column 9 is \"lambda2\", expected \"lambda1\""
     );
-    assert_eq!(broken(",0.25,", ","), "out/limits.csv:2: 46 columns, expected 47");
+    assert_eq!(broken(",0.25,", ","), "out/limits.csv:2: 47 columns, expected 48");
     assert_eq!(
         message(read_limits("limits.csv", &text[..text.len() - 3])),
         "limits.csv:3: the file ends within this line"

@@ -7,7 +7,7 @@ use maille::{
     answer::Answer,
     lattice::{Across, Cell},
     model::Model,
-    question::{Goal, Question, Sense, Strain, StrainQuery},
+    question::{Effort, Goal, Question, Sense, Strain, StrainQuery},
     record::{LimitRow, Status},
     search::{
         ExactOptions,
@@ -25,7 +25,7 @@ fn model(name: &str) -> Model {
 }
 
 fn rows(model: &Model, directions: &[f64], l2: &[f64], across: Across) -> Vec<LimitRow> {
-    let options = ExactOptions { across, ..ExactOptions::default() };
+    let options = ExactOptions { effort: Effort::Low, across, ..ExactOptions::default() };
     map(std::slice::from_ref(model), directions, l2, &options).into_iter().map(|f| f.row).collect()
 }
 

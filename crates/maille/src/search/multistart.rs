@@ -228,7 +228,7 @@ impl<T: Target> Multistart<'_, T> {
             result.merge(found);
         }
         let mut found = CellSearch { result, cell, further: None, wave: None, by_cell, starts: reached };
-        self.follow_waves(models, &mut found);
+        self.follow_waves(models, rule.own_starts, &mut found);
         found
     }
 

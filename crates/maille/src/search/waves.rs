@@ -115,8 +115,9 @@ impl<T: Target> Multistart<'_, T> {
 
 impl<T: Target> Multistart<'_, T> {
     /// Measures the waves at the best solution of some cells and, if more than one may be solved, goes on along the worst of them, each in
-    /// the smallest cell that holds it, until one gives more; then from there.
-    pub(super) fn follow_waves(&self, models: &[Model], found: &mut CellSearch) {
+    /// the smallest cell that holds it, until one gives more; that cell is then searched from as many starts
+    /// of its own, and the waves of what is best there are followed.
+    pub(super) fn follow_waves(&self, models: &[Model], own_starts: u64, found: &mut CellSearch) {
         let most = if models.len() > 1 { FOLLOWED_WAVES } else { 0 };
         loop {
             let (model, Some(best)) = (found.model(models), &found.result.best) else { return };
@@ -129,7 +130,11 @@ impl<T: Target> Multistart<'_, T> {
                     break;
                 }
                 let larger = models[0].in_cell(cell);
-                let here = self.run(&larger, waves.starts(&larger, wave, &from), StopRule::exactly(0));
+                let mut here = self.run(&larger, waves.starts(&larger, wave, &from), StopRule::exactly(0));
+                if here.improves_on(&found.result) {
+                    // Where a wave leads further, other states of its cell may, too.
+                    here.merge(self.run(&larger, Vec::new(), StopRule::exactly(own_starts)));
+                }
                 found.by_cell.push(here.by_cell(cell));
                 improved = here.improves_on(&found.result);
                 found.result.merge(here);
