@@ -25,6 +25,9 @@ use crate::{
 use nalgebra::{DMatrix, DVector, SMatrix, SVector, UnitQuaternion};
 use std::collections::BTreeMap;
 
+/// `min_curvature` is the one that is found within this share of it.
+pub(crate) const CURVATURE: f64 = 1e-3;
+
 /// Step of the differences, in core distances.
 const STEP: f64 = 1e-3;
 /// Contacts that carry more are kept.
