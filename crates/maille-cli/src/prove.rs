@@ -172,7 +172,7 @@ impl Told<'_> {
     }
 
     fn status(&self) -> &'static str {
-        if self.outcome.closed() { "global" } else { "open" }
+        if self.outcome.closed() { "proved" } else { "open" }
     }
 
     fn json(&self, input: &Input, file: &std::path::Path) -> serde_json::Value {
@@ -201,7 +201,7 @@ impl Told<'_> {
             claim.direction_deg,
             claim.l2,
             match outcome.closed() {
-                true => "global in the cell 1x1",
+                true => "proved for the cell 1x1",
                 false => "left open",
             }
         );
