@@ -194,6 +194,6 @@ impl FoundWaves {
             Start { state, ..from.clone() }
         };
         let order = model.cell.copies() / self.of.copies();
-        if order % 2 == 0 { vec![along(WAVE_SIZE)] } else { vec![along(WAVE_SIZE), along(-WAVE_SIZE)] }
+        if order.is_multiple_of(2) { vec![along(WAVE_SIZE)] } else { vec![along(WAVE_SIZE), along(-WAVE_SIZE)] }
     }
 }

@@ -70,7 +70,7 @@ mod tests {
         near(&values(&[]), &[1.0, 3.0, 5.0]);
         // u₀ = i u₁: what is left is 2 + Re of the phase turned by i, on a unit vector.
         let row = vec![one, -i, one * 0.0];
-        near(&values(&[row.clone()]), &[2.0 + 0.8, 5.0]);
+        near(&values(std::slice::from_ref(&row)), &[2.0 + 0.8, 5.0]);
         near(&values(&[row.clone(), row.clone(), vec![one * 0.0, one * 0.0, one]]), &[2.8]);
         let modes = kept_modes(&h, &[row]).unwrap();
         let u = modes.vectors.col(0);
