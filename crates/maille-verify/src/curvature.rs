@@ -33,6 +33,8 @@ const LOADED: f64 = 1e-8;
 const DEPENDENT: f64 = 1e-12;
 /// Curvature below this share of the largest is none.
 pub(crate) const ZERO_MODE: f64 = 1e-7;
+/// A recorded curvature is the one that is found within this share of it.
+pub(crate) const CURVATURE: f64 = 1e-3;
 /// d_θθ below which a contact has no place of its own.
 const FLATTEST: f64 = 1e-6;
 /// Tilt, and distance of the axes and difference of the radii in radii, of a pair that lies flat.

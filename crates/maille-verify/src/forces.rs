@@ -2,7 +2,7 @@
 
 use crate::{
     balance::{Balance, COMPLEMENTARITY, Free, RESIDUAL, balance, points},
-    curvature::{Curvature, ZERO_MODE, curvature},
+    curvature::{CURVATURE, Curvature, ZERO_MODE, curvature},
     record::{Row, State},
     report::{Check, Finding, Verdict},
     sheet::{Sheet, Vec3},
@@ -14,8 +14,6 @@ use std::collections::BTreeSet;
 
 /// A curvature below this share of the largest, with a minus, is no rounding.
 const SADDLE: f64 = 1e-6;
-/// `min_curvature` is the one that is found within this share of it.
-pub(crate) const CURVATURE: f64 = 1e-3;
 
 /// The forces of the state, and the curvature with them; `unit` is that of the state's lengths, `columns` are those of the table.
 pub(crate) fn forces(

@@ -6,8 +6,7 @@
 
 use crate::{
     balance::Closed,
-    curvature::{Curvature, Local, Sum, terms, turns},
-    forces::CURVATURE,
+    curvature::{CURVATURE, Curvature, Local, Sum, terms, turns},
     record::Row,
     report::{Check, Finding, Verdict},
     sheet::{Pair, Sheet, Vec3},
