@@ -170,7 +170,7 @@ def tightest(
 ) -> Extreme:
     """The thickest wire with which a weave exists, over all poses and, if free, the lattice: what `maille tightest` does.
 
-    >>> tightest("1.1", starts=1).status
+    >>> tightest("1.1").status
     'local'
     """
     return _extreme(design, True, lattice, minor_radius, effort, starts, seed, threads)
