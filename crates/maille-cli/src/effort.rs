@@ -1,7 +1,7 @@
 //! How long a search goes on: the options that commands share.
 
 use crate::numbers::read;
-use maille::question::Effort;
+use maille::question::{Effort, Question};
 
 /// Effort, starts and seed of a search.
 #[derive(clap::Args, Clone, Copy)]
@@ -25,5 +25,10 @@ impl SearchArgs {
     /// The number of starts, where one is asked for.
     pub fn starts(&self) -> Option<usize> {
         self.starts.map(|starts| starts as usize)
+    }
+
+    /// The same question, searched so.
+    pub fn of(&self, question: Question) -> Question {
+        Question { effort: self.effort, starts: self.starts(), seed: self.seed, ..question }
     }
 }

@@ -135,12 +135,7 @@ fn search<'a>(
         Extreme::ThickestWire => Goal::Wire { lattice_free },
         Extreme::LargestClearance => Goal::Clearance { lattice_free },
     };
-    let question = Question {
-        effort: search.effort,
-        starts: search.starts(),
-        seed: search.seed,
-        ..Question::new(goal, Sense::Largest)
-    };
+    let question = search.of(Question::new(goal, Sense::Largest));
     let cancel = interrupt::flag()?;
     let found = pool(threads)?.install(|| sheet.answer_until(&question, &cancel)).map_err(|e| refused(&e))?;
     Ok(Found { input, sheet, what, lattice_free, found })

@@ -105,8 +105,7 @@ fn question(args: &Args) -> Result<Question> {
         fix: args.fix.iter().map(|held| (held.strain, held.value)).collect(),
         free: args.free.clone(),
     };
-    let SearchArgs { effort, seed, .. } = args.search;
-    Ok(Question { effort, starts: args.search.starts(), seed, ..Question::new(goal, sense) })
+    Ok(args.search.of(Question::new(goal, sense)))
 }
 
 /// Runs the command.

@@ -1,6 +1,7 @@
 //! `maille prove`: a computer proof that a cell of two rings stretches no further.
 
 use crate::{
+    effort::SearchArgs,
     exit::{self, refused, wrong},
     input::{Input, file_name},
     interrupt,
@@ -55,11 +56,10 @@ pub struct Args {
     #[arg(long, default_value_t = 1e-3, value_parser = positive, value_name = "L1")]
     within: f64,
     /// The value to prove, in place of the limit that is found and --within
-    #[arg(long, value_parser = finite, allow_hyphen_values = true, value_name = "L1", conflicts_with_all = ["within", "starts"])]
+    #[arg(long, value_parser = finite, allow_hyphen_values = true, value_name = "L1", conflicts_with_all = ["within", "effort", "starts", "seed"])]
     at_most: Option<f64>,
-    /// Starts of the search for the limit [default: 64]
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=10_000))]
-    starts: Option<u32>,
+    #[command(flatten)]
+    search: SearchArgs,
     /// Seconds after which the search for a proof ends
     #[arg(long, default_value_t = 600.0, value_parser = positive)]
     time: f64,
@@ -80,9 +80,6 @@ pub struct Args {
     quiet: bool,
 }
 
-/// Starts of the search for the limit: a limit that is too low cannot be proved.
-const STARTS: usize = 64;
-
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let input = Input::read(&args.design, args.minor_radius)?;
@@ -95,10 +92,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             "a proof is for designs of two elements of one ring each, linked along the pull, as 2 or european-4-in-1";
         wrong(exit::DESIGN, format!("nothing can be proved of {}: {problem}", input.design.name), help)
     };
-    let question = Question {
-        starts: Some(args.starts.map_or(STARTS, |starts| starts as usize)),
-        ..Question::stretch_along(args.direction).with_lateral(args.l2)
-    };
+    let question = args.search.of(Question::stretch_along(args.direction).with_lateral(args.l2));
     question.check().map_err(|e| refused(&e))?;
     asked(args.at_most.unwrap_or(0.0)).cell().map_err(&unusable)?;
     let (cancel, pool) = (interrupt::flag()?, pool(args.threads)?);
@@ -214,7 +208,7 @@ impl Told<'_> {
             say!("  wanted  l1 <= {:.9}", self.wanted);
             match outcome.narrow {
                 true => say!(
-                    "  a box too narrow to be split is left: there may be a state with this l1 that was not found; more --starts?"
+                    "  a box too narrow to be split is left: there may be a state with this l1 that was not found; try --effort thorough"
                 ),
                 false => say!("  {} boxes are left: more --time or --boxes may close them", outcome.open),
             }

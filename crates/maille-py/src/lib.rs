@@ -26,7 +26,7 @@ mod _native {
     #[pymodule_export]
     use crate::geometry::{circle_distance_minima, linking_number, torus_gap};
     #[pymodule_export]
-    use crate::map::{Record, characterize, map_question, numbers, read_record};
+    use crate::map::{Record, characterize, effort, map_question, numbers, read_record};
     #[pymodule_export]
     use crate::question::answer;
     #[pymodule_export]

@@ -8,6 +8,7 @@ use crate::{
 use maille::{
     error::InvalidInput,
     lattice::Across,
+    question::Effort,
     record::{Entry, Kind, LIMIT_COLUMNS},
     relaxation::limit::EnergyOptions,
     search::ExactOptions,
@@ -81,6 +82,12 @@ fn refused(wrong: &InvalidInput) -> PyErr {
         _ => "energy",
     };
     error::argument(field, plain(&wrong.problem), plain(&wrong.help))
+}
+
+/// An effort as it is written in questions.
+#[pyfunction]
+pub fn effort(text: &str) -> PyResult<String> {
+    text.parse::<Effort>().map(|effort| effort.to_string()).map_err(|e| refused(&e))
 }
 
 /// What a map asks, as JSON. `energy` has options of the energy method, as JSON.

@@ -38,6 +38,12 @@ def test_wrong_questions():
     for wrong in (dict(), dict(maximize="exx", minimize="eyy"), dict(maximize="exz"), dict(maximize="exx", free="exx")):
         with pytest.raises(maille.ArgumentError):
             maille.limit("1.1", **wrong)
+    for effort in ("high", "0s", 3):
+        for ask in (lambda e: maille.limit("1.1", maximize="exx", effort=e), lambda e: maille.tightest("1.1", effort=e),
+                    lambda e: maille.characterize("1.1", [0], [0], effort=e)):
+            with pytest.raises(maille.ArgumentError) as raised:
+                ask(effort)
+            assert raised.value.argument == "effort"
     with pytest.raises(maille.ArgumentError, match="held"):
         maille.limit("1.1", maximize="exx", fix={"eyy": -0.6})
 

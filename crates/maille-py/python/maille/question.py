@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from . import _native
 from .design import Design, DesignLike, chosen
 from .errors import ArgumentError, MailleError
-from .record import _sequence, _whole
+from .record import _effort, _sequence, _whole
 from .sheet import Sheet, start
 from .table import Columns
 
@@ -141,7 +141,7 @@ def limit(
     question = {
         "goal": {"strain": goal},
         "sense": "largest" if maximize is not None else "least",
-        "effort": effort,
+        "effort": _effort(effort),
         "starts": None if starts is None else _whole("starts", starts, 1),
         "seed": _whole("seed", seed, 0),
     }
@@ -204,7 +204,7 @@ def _extreme(
         raise ArgumentError("lattice", f"{lattice!r} is neither free nor fixed", 'give "free" or "fixed"')
     question = {
         "goal": {"wire" if thickest else "clearance": {"lattice_free": lattice == "free"}},
-        "effort": effort,
+        "effort": _effort(effort),
         "starts": None if starts is None else _whole("starts", starts, 1),
         "seed": _whole("seed", seed, 0),
     }

@@ -247,11 +247,17 @@ def _question(
         compression=compression,
         method=method,
         cell=cell,
-        effort=effort,
+        effort=_effort(effort),
         starts=None if starts is None else _whole("starts", starts, 1),
         seed=_whole("seed", seed, 0),
         energy=json.dumps(energy or {}),
     )
+
+
+def _effort(effort: str) -> str:
+    if not isinstance(effort, str):
+        raise ArgumentError("effort", f"{effort!r} is no effort", 'give "low", "normal", "thorough", or a time, as "30s"')
+    return _native.effort(effort)
 
 
 def _whole(name: str, value: int, least: int) -> int:

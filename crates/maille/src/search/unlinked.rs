@@ -42,9 +42,8 @@ impl ExactMethod<'_> {
         let none = vec![None; self.models.len()];
         let stop = self.stop();
         let drawn = (0..stop.least as usize).map(|k| explored_with_own_wire(model, self.options.seed, k));
-        let starts: Vec<Start> = neighbour.into_iter().chain(drawn).collect();
         let (mut runs, mut iterations) = (0, 0);
-        for start in starts.clone() {
+        for start in neighbour.iter().cloned().chain(drawn) {
             let (apart, more) = pull_apart(model, stretch, start, cancel);
             (runs, iterations) = (runs + 1, iterations + more);
             if cancel.load(Ordering::Relaxed) {
@@ -58,7 +57,7 @@ impl ExactMethod<'_> {
             }
         }
         let search = self.search(stretch, f64::INFINITY, cancel);
-        let mut found = search.run(model, starts, stop);
+        let mut found = search.run(model, neighbour.into_iter().collect(), stop);
         if cancel.load(Ordering::Relaxed) {
             return (self.without_state(Status::Interrupted), none);
         }
