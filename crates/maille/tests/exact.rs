@@ -52,6 +52,24 @@ fn known_limits_to_eight_digits() {
     }
 }
 
+/// A random design whose best limit is one of several: of 12 starts that move the design's state a little one found it, of 12 by way of
+/// thicker wire eleven (decision 19). Four starts of the first kind alone gave 0.572632.
+#[test]
+fn starts_explore() {
+    let text = include_str!("starts/four-limits.toml");
+    let design = maille_io::read_design("four-limits", text).unwrap();
+    let model = Model::compile(&design, Cell::PRIMITIVE).unwrap();
+    let found = map(&[model], &[62.0], &[-0.1], &ExactOptions::default());
+    assert_certificate(&found[0].row);
+    let (l1, row) = (found[0].row.l1.unwrap(), &found[0].row);
+    assert!(l1 > 0.575862, "{l1}");
+    // What the row says of its search fits together.
+    let (starts, distinct) = (row.n_starts.unwrap(), row.n_distinct.unwrap());
+    assert!(starts >= 8 && distinct > 1, "{starts} {distinct}");
+    let chance = row.better_chance.unwrap();
+    assert!(chance > 0.0 && chance <= 0.05, "{chance}");
+}
+
 /// All thirteen designs, doubled rings with their whole-circle contacts among them.
 #[test]
 fn every_design_is_certified_along_three_directions() {
