@@ -141,8 +141,7 @@ impl<T: Target> Multistart<'_, T> {
             let solved: Vec<Option<SearchResult>> = numbered.into_par_iter().with_max_len(1).map(solve).collect();
             solved.into_iter().flatten().for_each(|found| result.take(found));
         }
-        result.chance = (!result.attains(self.upper_bound)).then(|| result.better_chance());
-        result
+        result.with_chance(self.upper_bound)
     }
 
     /// One start. A certified solution just short of the upper bound is perturbed and solved again: in cells of many elements
@@ -256,8 +255,14 @@ impl SearchResult {
         }
     }
 
+    /// The same with its estimated chance, where the bound is not attained.
+    pub(super) fn with_chance(self, upper_bound: f64) -> Self {
+        let chance = (!self.attains(upper_bound)).then(|| self.better_chance());
+        SearchResult { chance, ..self }
+    }
+
     /// The estimated chance that another start finds more.
-    pub(crate) fn better_chance(&self) -> f64 {
+    fn better_chance(&self) -> f64 {
         let times: Vec<u64> = self.distinct.iter().map(|(_, times)| *times).collect();
         better_chance(self.starts, &times)
     }

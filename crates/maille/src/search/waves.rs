@@ -134,6 +134,7 @@ impl<T: Target> Multistart<'_, T> {
                 if here.improves_on(&found.result) {
                     // Where a wave leads further, other states of its cell may, too.
                     here.merge(self.run(&larger, Vec::new(), StopRule::exactly(own_starts)));
+                    here = here.with_chance(self.upper_bound);
                 }
                 found.by_cell.push(here.by_cell(cell));
                 improved = here.improves_on(&found.result);
