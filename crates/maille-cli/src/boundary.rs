@@ -1,6 +1,7 @@
 //! `maille boundary`: the surface of all in-plane strains of a sheet, as a table, meshes and a figure.
 
 use crate::{
+    effort::SearchArgs,
     exit,
     input::{Input, file_name},
     interrupt,
@@ -10,9 +11,11 @@ use crate::{
     progress::Progress,
 };
 use maille::{
-    lattice::Cell,
     record::Status,
-    survey::surface::{Boundary, BoundaryOptions, BoundaryVertex, boundary},
+    survey::{
+        CellChoice,
+        surface::{Boundary, BoundaryOptions, BoundaryVertex, boundary},
+    },
 };
 use maille_io::{
     boundary::{BoundaryHead, SurfaceFolder, boundary_csv, boundary_obj, boundary_ply},
@@ -39,6 +42,7 @@ Examples:
   maille boundary european-4-in-1
   maille boundary european-4-in-1 --tolerance 3e-4 --vertices 20000      finer, from the rays that are there
   maille boundary 1.1 --tolerance 0.005 --vertices 500 --out results/surface-1.1
+  maille boundary european-4-in-1 --cell auto --out folded                with folds in larger cells, some minutes
 
 Exit codes: 0 every ray has a certified end, 5 some have none, 130 interrupted.")]
 pub struct Args {
@@ -50,18 +54,15 @@ pub struct Args {
     /// Vertices at most
     #[arg(long, default_value_t = BoundaryOptions::default().most as u32, value_parser = clap::value_parser!(u32).range(162..=100_000))]
     vertices: u32,
-    /// Starts of each ray beside its neighbours' states
-    #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=1000))]
-    starts: u32,
-    /// Cell: 1x1, 2x1, …, or an integer matrix as "1,0;-1,2"
-    #[arg(long, default_value = "1x1", value_parser = read::<Cell>)]
-    cell: Cell,
+    /// Cell: 1x1, 2x1, …, an integer matrix as "1,0;-1,2", or auto: the larger cells to which
+    /// unstable waves through the sheet lead, which can take a hundred times as long
+    #[arg(long, default_value = "1x1", value_parser = read::<CellChoice>)]
+    cell: CellChoice,
     /// Minor radius of every ring that gives none, in the file's unit
     #[arg(long, value_parser = positive)]
     minor_radius: Option<f64>,
-    /// Seed of the shaking
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
+    #[command(flatten)]
+    search: SearchArgs,
     #[command(flatten)]
     run: RunArgs,
     /// No progress and no summary
@@ -72,16 +73,18 @@ pub struct Args {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let input = Input::read(&args.design, args.minor_radius)?;
-    let model = input.compile(&input.design, args.cell)?;
     let options = BoundaryOptions {
         tolerance: args.tolerance,
         most: args.vertices as usize,
-        starts: args.starts as usize,
-        seed: args.seed,
+        effort: args.search.effort,
+        starts: args.search.starts(),
+        seed: args.search.seed,
+        cells: args.cell.clone(),
     };
+    let model = input.compile(&input.design, options.cell())?;
     let usual = || PathBuf::from("maille-out").join(format!("{}-boundary", file_name(&input.design.name)));
     let out = args.run.out.clone().unwrap_or_else(usual);
-    let head = BoundaryHead::new(&input.design, args.cell, &options);
+    let head = BoundaryHead::new(&input.design, &options);
     output::folder(&out, "the surface is a folder")?;
     let (folder, known) = SurfaceFolder::open(&out, &head, args.run.overwrite)?;
     if !known.is_empty() && !args.quiet {
@@ -172,6 +175,10 @@ fn summary(out: &Path, input: &Input, surface: &Boundary, options: &BoundaryOpti
     let apart = |v: &&BoundaryVertex| v.distance.zip(v.first).is_some_and(|(far, first)| far - first > 1e-7);
     let count = vertices.iter().filter(apart).count();
     say!("  {count} rays go further than where the straight way is first stopped");
+    let unstable = vertices.iter().filter(|v| v.wave_curvature.is_some_and(|least| least < 0.0)).count();
+    if unstable > 0 && options.cells != CellChoice::Auto {
+        say!("  {unstable} rays end where a wave through the sheet is unstable: --cell auto goes on in larger cells");
+    }
     say!("  {}", accuracy(surface, options));
     if surface.complete && surface.open > 0 {
         say!("  the same command with more --vertices goes on from here");

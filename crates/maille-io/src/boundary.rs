@@ -6,7 +6,7 @@ mod journal;
 
 pub use self::journal::{BoundaryHead, SurfaceFolder, read_surface, surface_line, write_surface};
 
-use crate::record::csv_number;
+use crate::record::{csv_number, csv_text};
 use maille::{
     record::Status,
     survey::surface::{Boundary, BoundaryVertex},
@@ -21,15 +21,19 @@ pub(crate) fn point(vertex: &BoundaryVertex) -> Option<[f64; 3]> {
 /// The table: a line a vertex.
 pub fn boundary_csv(boundary: &Boundary) -> String {
     let mut out =
-        "vertex,direction_xx,direction_yy,direction_xy,status,distance,exx,eyy,exy,first_exit,bound,n_distinct\n"
+        "vertex,direction_xx,direction_yy,direction_xy,status,distance,exx,eyy,exy,first_exit,bound,n_distinct,wave_curvature,cell\n"
             .to_owned();
     for (k, v) in boundary.vertices.iter().enumerate() {
         let [x, y, z] = v.direction;
         let at = v.distance.map(|distance| v.point(distance));
         let [exx, eyy, exy] = std::array::from_fn(|i| csv_number(at.map(|p| p[i])));
         let (distance, first, bound) = (csv_number(v.distance), csv_number(v.first), csv_number(v.bound));
-        let (status, distinct) = (v.status.name(), v.n_distinct);
-        let _ = writeln!(out, "{k},{x:?},{y:?},{z:?},{status},{distance},{exx},{eyy},{exy},{first},{bound},{distinct}");
+        let (status, distinct, cell) = (v.status.name(), v.n_distinct, csv_text(&v.cell.to_string()));
+        let wave = csv_number(v.wave_curvature);
+        let _ = writeln!(
+            out,
+            "{k},{x:?},{y:?},{z:?},{status},{distance},{exx},{eyy},{exy},{first},{bound},{distinct},{wave},{cell}"
+        );
     }
     out
 }
@@ -110,11 +114,23 @@ fn one_line(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use maille::lattice::Cell;
 
     fn vertex(direction: [f64; 3], distance: Option<f64>, bound: Option<f64>) -> BoundaryVertex {
         let status = if distance.is_some() { Status::Local } else { Status::L2NotReached };
         let (lattice, poses) = ([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], Vec::new());
-        BoundaryVertex { direction, status, distance, first: None, bound, n_distinct: 0, lattice, poses }
+        BoundaryVertex {
+            direction,
+            status,
+            distance,
+            first: None,
+            bound,
+            n_distinct: 0,
+            wave_curvature: None,
+            cell: Cell::PRIMITIVE,
+            lattice,
+            poses,
+        }
     }
 
     #[test]
@@ -132,6 +148,6 @@ mod tests {
         let ply = boundary_ply(&surface, "a");
         assert!(ply.contains("element vertex 3\n") && ply.contains("element face 1\n"));
         assert!(ply.contains("0 0.5 0 -1 ") && ply.contains("0 0 0.25 0.75 ") && ply.ends_with("3 0 2 1\n"));
-        assert!(boundary_csv(&surface).contains("\n0,1.0,0.0,0.0,l2-not-reached,,,,,,,0\n"));
+        assert!(boundary_csv(&surface).contains("\n0,1.0,0.0,0.0,l2-not-reached,,,,,,,0,,1x1\n"));
     }
 }

@@ -25,7 +25,7 @@ mod run;
 mod simulation;
 mod states;
 
-pub(crate) use csv::csv_number;
+pub(crate) use csv::{csv_number, csv_text};
 pub use error::RecordError;
 pub use folder::{NamedRecord, Record, RecordFolder, file_name};
 pub use forces::{FORCE_COLUMNS, ForceTable, PLACE_COLUMNS, read_forces, write_forces};

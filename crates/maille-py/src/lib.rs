@@ -34,7 +34,7 @@ mod _native {
     #[pymodule_export]
     use crate::study::{folder_name, study};
     #[pymodule_export]
-    use crate::surface::{SurfaceFolder, boundary, boundary_by, solve_rays};
+    use crate::surface::{SurfaceFolder, boundary, boundary_by, boundary_options, solve_rays};
     #[pymodule_export]
     use crate::view::Sheet;
 

@@ -74,7 +74,7 @@ fn energy_options(named: &str, seed: u64) -> PyResult<EnergyOptions> {
 }
 
 /// A question that was refused, with the names of arguments.
-fn refused(wrong: &InvalidInput) -> PyErr {
+pub fn refused(wrong: &InvalidInput) -> PyErr {
     let plain = |text: &str| text.replace('`', "");
     let field = match wrong.field.as_str() {
         "direction_deg" | "directions_deg" => "directions",

@@ -3,11 +3,11 @@
 use crate::{
     design::Design,
     error,
-    map::write,
+    map::{refused, write},
     wait::{Step, wait},
 };
 use maille::{
-    lattice::Cell,
+    survey::CellChoice,
     survey::surface::{BoundaryOptions, BoundaryVertex, Ray, RaySolver, boundary_by as boundary_by_rays},
 };
 use maille_io::boundary::BoundaryHead;
@@ -25,15 +25,27 @@ use std::{
 /// Vertices as JSON documents, corners of the triangles, the largest expected distance from them.
 type Surface = (Vec<String>, Vec<[usize; 3]>, f64);
 
-fn options(tolerance: f64, vertices: usize, starts: usize, seed: u64) -> PyResult<BoundaryOptions> {
+/// Options of a surface, as JSON.
+#[pyfunction]
+#[pyo3(signature = (*, tolerance, vertices, effort, starts, cell, seed))]
+pub fn boundary_options(
+    tolerance: f64,
+    vertices: usize,
+    effort: &str,
+    starts: Option<usize>,
+    cell: &str,
+    seed: u64,
+) -> PyResult<String> {
     if !(tolerance.is_finite() && tolerance > 0.0) {
         return Err(error::argument("tolerance", format!("{tolerance} is not positive"), "give a strain, as 0.001"));
     }
-    Ok(BoundaryOptions { tolerance, most: vertices, starts, seed })
+    let effort = effort.parse().map_err(|e| refused(&e))?;
+    let cells = cell.parse::<CellChoice>().map_err(|e| error::invalid(&e))?;
+    Ok(write(&BoundaryOptions { tolerance, most: vertices, effort, starts, seed, cells }))
 }
 
-fn cell_of(text: &str) -> PyResult<Cell> {
-    text.parse().map_err(|e| error::invalid(&e))
+fn options(text: &str) -> PyResult<BoundaryOptions> {
+    serde_json::from_str(text).map_err(|e| error::other(&format!("no options of a surface: {e}")))
 }
 
 fn read<T: DeserializeOwned>(texts: &[String]) -> PyResult<Vec<T>> {
@@ -47,20 +59,16 @@ fn surface(found: maille::survey::surface::Boundary) -> Surface {
 
 /// The surface, as `maille boundary` finds it.
 #[pyfunction]
-#[pyo3(signature = (design, *, tolerance, vertices, starts, cell, seed, progress, threads))]
+#[pyo3(signature = (design, search, *, progress, threads))]
 pub fn boundary(
     py: Python<'_>,
     design: &Design,
-    tolerance: f64,
-    vertices: usize,
-    starts: usize,
-    cell: &str,
-    seed: u64,
+    search: &str,
     progress: Option<Bound<'_, PyAny>>,
     threads: Option<usize>,
 ) -> PyResult<Surface> {
-    let options = options(tolerance, vertices, starts, seed)?;
-    let model = design.compile(cell_of(cell)?)?;
+    let options = options(search)?;
+    let model = design.compile(options.cell())?;
     let found = wait(py, threads, progress.as_ref(), |cancel, tell| {
         let mut planned = |rays| tell(Step::More(rays));
         let found = |_: &_| tell(Step::Done);
@@ -79,16 +87,8 @@ pub struct SurfaceFolder {
 impl SurfaceFolder {
     /// Opens the folder of `maille boundary`; with the rays of an earlier run as JSON.
     #[staticmethod]
-    fn open(
-        design: &Design,
-        starts: usize,
-        cell: &str,
-        seed: u64,
-        folder: PathBuf,
-        overwrite: bool,
-    ) -> PyResult<(Self, Vec<String>)> {
-        let options = BoundaryOptions { starts, seed, ..BoundaryOptions::default() };
-        let head = BoundaryHead::new(&design.design, cell_of(cell)?, &options);
+    fn open(design: &Design, search: &str, folder: PathBuf, overwrite: bool) -> PyResult<(Self, Vec<String>)> {
+        let head = BoundaryHead::new(&design.design, &options(search)?);
         let opened = maille_io::boundary::SurfaceFolder::open(&folder, &head, overwrite);
         let (open, known) = opened.map_err(|e| error::record(&e))?;
         Ok((Self { open: Mutex::new(Some(open)) }, known.iter().map(write).collect()))
@@ -110,16 +110,9 @@ impl SurfaceFolder {
 
 /// Ends of rays, on this thread: JSON in and out.
 #[pyfunction]
-pub fn solve_rays(
-    py: Python<'_>,
-    design: &Design,
-    rays: Vec<String>,
-    starts: usize,
-    cell: &str,
-    seed: u64,
-) -> PyResult<Vec<String>> {
-    let options = BoundaryOptions { starts, seed, ..BoundaryOptions::default() };
-    let (model, rays) = (design.compile(cell_of(cell)?)?, read::<Ray>(&rays)?);
+pub fn solve_rays(py: Python<'_>, design: &Design, rays: Vec<String>, search: &str) -> PyResult<Vec<String>> {
+    let options = options(search)?;
+    let (model, rays) = (design.compile(options.cell())?, read::<Ray>(&rays)?);
     let ends = wait(py, Some(1), None, |cancel, _| {
         let solver = RaySolver::new(&model, &options);
         rays.iter().map_while(|ray| solver.solve(ray, cancel)).collect::<Vec<_>>()
@@ -130,18 +123,9 @@ pub fn solve_rays(
 /// The surface with rays solved by `solve`: it gets the rays of a pass, and whether they are new, and gives their ends. `known` are
 /// vertices of an earlier run.
 #[pyfunction]
-pub fn boundary_by(
-    design: &Design,
-    tolerance: f64,
-    vertices: usize,
-    starts: usize,
-    cell: &str,
-    seed: u64,
-    known: Vec<String>,
-    solve: &Bound<'_, PyAny>,
-) -> PyResult<Surface> {
-    let options = options(tolerance, vertices, starts, seed)?;
-    design.compile(cell_of(cell)?)?;
+pub fn boundary_by(design: &Design, search: &str, known: Vec<String>, solve: &Bound<'_, PyAny>) -> PyResult<Surface> {
+    let options = options(search)?;
+    design.compile(options.cell())?;
     let known = read::<BoundaryVertex>(&known)?;
     let (cancel, failure) = (AtomicBool::new(false), RefCell::new(None));
     let mut by_solve = |rays: &[Ray], new: bool| {

@@ -17,6 +17,12 @@ pub struct Cell {
     rows: [[i32; 2]; 2],
 }
 
+impl Default for Cell {
+    fn default() -> Self {
+        Cell::PRIMITIVE
+    }
+}
+
 impl Cell {
     /// The design's own cell.
     pub const PRIMITIVE: Cell = Cell { rows: [[1, 0], [0, 1]] };

@@ -93,7 +93,7 @@ impl Sheet {
     fn strain(&self, question: &Question, cancel: &AtomicBool) -> Result<Answer, InvalidInput> {
         let Question { effort, starts, seed, sense, .. } = *question;
         let Some(query) = question.strain_query()? else { unreachable!("a strain or a ray is asked for") };
-        let options = StrainOptions { effort, starts, seed, sense };
+        let options = StrainOptions { effort, starts, seed, sense, follow_waves: self.models.len() > 1 };
         let method = StrainMethod::new(&self.models, options);
         let Some(stretch) = question.as_stretch() else { return Ok(method.solve(&query, &[], cancel)) };
         let answer = self.answer_until(&stretch, cancel)?;

@@ -9,7 +9,6 @@ use crate::{
 };
 use maille::{
     design::Design,
-    lattice::Cell,
     survey::surface::{BoundaryOptions, BoundaryVertex},
 };
 use serde::{Deserialize, Serialize};
@@ -32,8 +31,10 @@ pub struct BoundaryHead {
 
 impl BoundaryHead {
     /// That of a surface of `design`. Tolerance and number of vertices say which rays there are, not where one ends.
-    pub fn new(design: &Design, cell: Cell, options: &BoundaryOptions) -> Self {
-        let parameters = json!({ "starts": options.starts, "seed": options.seed, "cell": cell.to_string() });
+    pub fn new(design: &Design, options: &BoundaryOptions) -> Self {
+        let parameters = json!({
+            "effort": options.effort, "starts": options.starts, "seed": options.seed, "cells": options.cells,
+        });
         BoundaryHead {
             program_version: env!("CARGO_PKG_VERSION").into(),
             input_hash: input_hash(design, &parameters),

@@ -4,7 +4,7 @@ use super::error::{RecordError, complete};
 use ::csv::{ReaderBuilder, StringRecord};
 
 /// A text in quotes where it needs them.
-pub(super) fn csv_text(text: &str) -> String {
+pub(crate) fn csv_text(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) { csv_quoted(text) } else { text.to_owned() }
 }
 

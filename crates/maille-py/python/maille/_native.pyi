@@ -91,36 +91,26 @@ def joint_csv(names: list[str], records: list[Record]) -> str: ...
 def study(name: str, text: str) -> str: ...
 def folder_name(name: str) -> str: ...
 def answer(design: Design, question: str, *, cell: str, threads: int | None) -> tuple[str, Design | None]: ...
+def boundary_options(
+    *, tolerance: float, vertices: int, effort: str, starts: int | None, cell: str, seed: int
+) -> str: ...
 def boundary(
     design: Design,
+    search: str,
     *,
-    tolerance: float,
-    vertices: int,
-    starts: int,
-    cell: str,
-    seed: int,
     progress: _Progress | None,
     threads: int | None,
 ) -> tuple[list[str], list[tuple[int, int, int]], float]: ...
 
 class SurfaceFolder:
     @staticmethod
-    def open(
-        design: Design, starts: int, cell: str, seed: int, folder: Path, overwrite: bool
-    ) -> tuple[SurfaceFolder, list[str]]: ...
+    def open(design: Design, search: str, folder: Path, overwrite: bool) -> tuple[SurfaceFolder, list[str]]: ...
     def keep(self, vertices: list[str]) -> None: ...
     def close(self) -> None: ...
 
-def solve_rays(design: Design, rays: list[str], starts: int, cell: str, seed: int) -> list[str]: ...
+def solve_rays(design: Design, rays: list[str], search: str) -> list[str]: ...
 def boundary_by(
-    design: Design,
-    tolerance: float,
-    vertices: int,
-    starts: int,
-    cell: str,
-    seed: int,
-    known: list[str],
-    solve: Callable[[list[str], bool], list[str]],
+    design: Design, search: str, known: list[str], solve: Callable[[list[str], bool], list[str]]
 ) -> tuple[list[str], list[tuple[int, int, int]], float]: ...
 def circle_distance_minima(
     center_a: _Floats,

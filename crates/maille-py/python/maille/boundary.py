@@ -119,10 +119,11 @@ class Boundary(Columns):
 def boundary(
     design: DesignLike,
     *,
-    tolerance: float = 1e-3,
-    vertices: int = 1500,
-    starts: int = 2,
+    tolerance: float = 3e-3,
+    vertices: int = 5000,
     cell: str = "1x1",
+    effort: str = "normal",
+    starts: int | None = None,
     minor_radius: float | None = None,
     seed: int = 1,
     progress: Progress = None,
@@ -131,19 +132,29 @@ def boundary(
     """The closed surface of all in-plane strains of a sheet: what `maille boundary` finds.
 
     Rays are added until the surface is expected within `tolerance` of its triangles, or there are that many `vertices`.
+    `effort`, or a number of `starts`, says how long each is searched; with the cell `auto` unstable waves are followed
+    into larger cells.
     """
+    search = _search(tolerance, vertices, effort, starts, cell, seed)
     with _Bar(progress, unit="ray") as told:
         found, triangles, arch = _native.boundary(
             chosen(design, minor_radius)._inner,
-            tolerance=tolerance,
-            vertices=_whole("vertices", vertices, 162),
-            starts=_whole("starts", starts, 1),
-            cell=cell,
-            seed=_whole("seed", seed, 0),
+            search,
             progress=told,
             threads=None if threads is None else _whole("threads", threads, 1),
         )
     return _surface(found, triangles, arch)
+
+
+def _search(tolerance: float, vertices: int, effort: str, starts: int | None, cell: str, seed: int) -> str:
+    return _native.boundary_options(
+        tolerance=tolerance,
+        vertices=_whole("vertices", vertices, 162),
+        effort=effort,
+        starts=None if starts is None else _whole("starts", starts, 1),
+        cell=cell,
+        seed=_whole("seed", seed, 0),
+    )
 
 
 def _surface(found: list[str], triangles: list[tuple[int, int, int]], arch: float) -> Boundary:

@@ -16,7 +16,7 @@ use super::{
 use crate::{
     answer::{Answer, CellTrend, WaveCurvature},
     lattice::Cell,
-    model::Model,
+    model::{Model, of_cell},
     program::{Contact, LatticeFamily, SheetProgram},
     record::Status,
     solver::sqp::{SqpOptions, maximize},
@@ -93,9 +93,12 @@ pub(super) struct CellSearch {
     pub wave: Option<WaveCurvature>,
     /// What each cell found.
     pub by_cell: Vec<CellTrend>,
-    /// The best of each cell as a start.
-    pub starts: Vec<Option<Start>>,
+    /// The best of each listed cell, and of the best cell, as starts.
+    pub starts: CellStarts,
 }
+
+/// Starts, each in its cell.
+pub(super) type CellStarts = Vec<(Cell, Start)>;
 
 impl CellSearch {
     /// The model of its cell, where `models` were searched.
@@ -110,12 +113,21 @@ pub(super) struct LargerCells<'a> {
     pub every: bool,
     /// Starts of a larger cell of its own.
     pub own_starts: u64,
+    /// Whether unstable waves are followed into cells that are not listed.
+    pub follow_waves: bool,
     /// Whether larger cells are tried where the first one has no state.
     pub where_none: bool,
     /// The state that is repeated over a larger cell where the first one has none.
     pub fallback: Option<Start>,
-    /// States of the larger cells at a neighbouring question.
-    pub neighbours: &'a [Option<Start>],
+    /// States of cells at neighbouring questions. A larger cell that is not searched otherwise is tried from them alone.
+    pub neighbours: &'a [(Cell, Start)],
+}
+
+impl LargerCells<'_> {
+    /// The neighbours' states of one cell.
+    fn of(&self, cell: Cell) -> impl Iterator<Item = Start> {
+        self.neighbours.iter().filter(move |(other, _)| *other == cell).map(|(_, start)| start.clone())
+    }
 }
 
 impl<T: Target> Multistart<'_, T> {
@@ -195,10 +207,11 @@ impl<T: Target> Multistart<'_, T> {
 
     /// Goes on from the first of `models` to larger ones, see [`LargerCells`]. `result` is what the first cell found.
     pub(crate) fn larger_cells(&self, models: &[Model], result: SearchResult, rule: &LargerCells<'_>) -> CellSearch {
-        let mut by_cell = vec![result.by_cell(models[0].cell)];
-        let mut reached: Vec<Option<Start>> = vec![None; models.len()];
-        reached[0] = result.best.as_ref().map(|best| self.target.start(best));
-        let smallest = reached[0].clone().or_else(|| rule.fallback.clone());
+        let own = models[0].cell;
+        let mut by_cell = vec![result.by_cell(own)];
+        let best = |result: &SearchResult| result.best.as_ref().map(|best| self.target.start(best));
+        let smallest = best(&result).or_else(|| rule.fallback.clone());
+        let mut starts: CellStarts = best(&result).map(|start| (own, start)).into_iter().collect();
         let presses = |best: &LocalSolution| own_image_force(&models[0], &best.contacts) > OWN_IMAGE_FORCE;
         let asks = rule.every || result.best.as_ref().map_or(rule.where_none, presses);
         let (mut result, mut cell) = (result, 0);
@@ -210,25 +223,44 @@ impl<T: Target> Multistart<'_, T> {
             }
             let repeated = smallest.iter().map(|from| {
                 let mut stream = rng(self.seed, Use::Cell, larger as u64);
-                let state =
-                    perturbed(model, &tiled(model, models[0].cell, &from.state), CELL_PERTURBATION, &mut stream);
+                let state = perturbed(model, &tiled(model, own, &from.state), CELL_PERTURBATION, &mut stream);
                 Start { state, ..from.clone() }
             });
-            let neighbour = rule.neighbours.get(larger).into_iter().flatten().cloned();
             // Then starts of its own: the smaller cell's answer can hide what they find.
-            let given: Vec<Start> = repeated.chain(neighbour).collect();
-            let starts = given.len() as u64 + rule.own_starts;
-            let found = self.run(model, given, StopRule::exactly(starts));
+            let given: Vec<Start> = repeated.chain(rule.of(model.cell)).collect();
+            let count = given.len() as u64 + rule.own_starts;
+            let found = self.run(model, given, StopRule::exactly(count));
             by_cell.push(found.by_cell(model.cell));
-            reached[larger] = found.best.as_ref().map(|best| self.target.start(best));
+            starts.extend(best(&found).map(|start| (model.cell, start)));
             if found.improves_on(&result) {
                 cell = larger;
             }
             result.merge(found);
         }
-        let mut found = CellSearch { result, cell, further: None, wave: None, by_cell, starts: reached };
-        self.follow_waves(models, rule.own_starts, &mut found);
+        let mut found = CellSearch { result, cell, further: None, wave: None, by_cell, starts };
+        self.try_neighbours(models, rule, &mut found);
+        self.follow_waves(models, rule, &mut found);
+        let further = found.further.as_ref().map(|model| model.cell);
+        found.starts.extend(further.zip(best(&found.result)));
         found
+    }
+
+    /// Solves the larger cells in which neighbouring questions found states, and which were not searched.
+    fn try_neighbours(&self, models: &[Model], rule: &LargerCells<'_>, found: &mut CellSearch) {
+        for &(cell, _) in rule.neighbours {
+            let known = found.by_cell.iter().any(|trend| trend.cell == cell);
+            let larger = cell.copies() > models[0].cell.copies();
+            if known || !larger || found.result.attains(self.upper_bound) || self.cancelled() {
+                continue;
+            }
+            let model = of_cell(models, cell).into_owned();
+            let here = self.run(&model, rule.of(cell).collect(), StopRule::exactly(0));
+            found.by_cell.push(here.by_cell(cell));
+            if here.improves_on(&found.result) {
+                found.further = Some(model);
+            }
+            found.result.merge(here);
+        }
     }
 
     pub(super) fn cancelled(&self) -> bool {

@@ -8,7 +8,7 @@
 
 use super::{
     local::LocalSolution,
-    multistart::{Entered, LargerCells, Multistart, Target, verdict},
+    multistart::{CellStarts, Entered, LargerCells, Multistart, Target, verdict},
     options::{FREE_SLACK, STRAIGHT},
     starts::{Start, Use, perturbed, rng},
     stop::StopRule,
@@ -17,6 +17,7 @@ use super::{
 use crate::{
     answer::{Answer, CellTrend},
     bound::{ChainBound, MetricBound, metric_bound},
+    lattice::Cell,
     model::{Model, of_cell},
     program::{LatticeFamily, Parameter, SheetProgram},
     question::{Effort, Sense, StrainQuery},
@@ -39,11 +40,13 @@ pub struct StrainOptions {
     /// Which end is sought. A least strain is searched in all cells, as a fold can be larger than a cell that shows no sign of it,
     /// and no answer is `global`: a still larger cell can fold further.
     pub sense: Sense,
+    /// Whether unstable waves are followed into cells of which there is no model.
+    pub follow_waves: bool,
 }
 
 impl Default for StrainOptions {
     fn default() -> Self {
-        StrainOptions { effort: Effort::Normal, starts: None, seed: 1, sense: Sense::Largest }
+        StrainOptions { effort: Effort::Normal, starts: None, seed: 1, sense: Sense::Largest, follow_waves: true }
     }
 }
 
@@ -115,9 +118,9 @@ impl<'a> StrainMethod<'a> {
         metric_bound(&self.chain, &(Matrix2::identity() + query.held * 2.0), &rates)
     }
 
-    /// The largest p₀, as the value of the strain itself: −p₀ of a least one. `from` are further starts of the first cell, tried
-    /// before the perturbed ones. An unreachable strain is proved to be so by the chains; one that is not reached is not.
-    pub fn solve(&self, query: &StrainQuery, from: &[State], cancel: &AtomicBool) -> Answer {
+    /// The largest p₀, as the value of the strain itself: −p₀ of a least one. `from` are states of neighbouring queries, each with
+    /// its cell. An unreachable strain is proved to be so by the chains; one that is not reached is not.
+    pub fn solve(&self, query: &StrainQuery, from: &[(Cell, State)], cancel: &AtomicBool) -> Answer {
         let (model, sign) = (&self.models[0], self.options.sense.sign());
         let none = |status: Status| Answer { n_starts: Some(0), n_distinct: Some(0), ..Answer::new(model, status) };
         let bound = match self.bound(query) {
@@ -128,16 +131,18 @@ impl<'a> StrainMethod<'a> {
         let least = self.options.sense == Sense::Least;
         // A least strain is never called global: larger cells can fold further.
         let upper_bound = bound.filter(|_| !least).unwrap_or(f64::INFINITY);
-        let StrainOptions { effort, starts, seed, .. } = self.options;
+        let StrainOptions { effort, starts, seed, follow_waves, .. } = self.options;
         let stop = StopRule::of(effort, starts);
         let search = Multistart { target: query, upper_bound, seed, cancel };
         let straight = perturbed(model, &model.start, STRAIGHT, &mut rng(seed, Use::Start, u64::from(u32::MAX)));
-        let first = std::iter::once(straight).chain(from.iter().cloned()).map(Start::written);
-        let first = search.run(model, first.collect(), stop);
+        let neighbours: CellStarts = from.iter().map(|(cell, state)| (*cell, Start::written(state.clone()))).collect();
+        let own = neighbours.iter().filter(|(cell, _)| *cell == model.cell).map(|(_, start)| start.clone());
+        let first = search.run(model, std::iter::once(Start::written(straight)).chain(own).collect(), stop);
         let exit = first.first;
         let own_starts = stop.of_larger_cell(least);
         let fallback = Some(Start::written(model.start.clone()));
-        let rule = LargerCells { every: least, own_starts, where_none: false, fallback, neighbours: &[] };
+        let rule =
+            LargerCells { every: least, own_starts, where_none: true, fallback, follow_waves, neighbours: &neighbours };
         let found = search.larger_cells(self.models, first, &rule);
         let model = &found.model(self.models).clone();
         let wave = found.wave;

@@ -11,7 +11,7 @@
 
 use super::{
     local::LocalSolution,
-    multistart::{Entered, LargerCells, Multistart, SearchResult, Target, verdict},
+    multistart::{CellStarts, Entered, LargerCells, Multistart, SearchResult, Target, verdict},
     options::{ATTAINED, ExactOptions, LATERAL_ROUNDS, LATERAL_STARTS, LATERAL_STEP, SAME_VALUE},
     overlap::{Overlapping, beyond_repair},
     starts::{Start, explored},
@@ -22,7 +22,7 @@ use super::{
 use crate::{
     answer::{Answer, CellTrend},
     bound::{Bound, ChainBound, ImageBound, LinkBound, NearImages, best_bound_across},
-    lattice::{Across, Direction},
+    lattice::{Across, Cell, Direction},
     model::Model,
     program::{LatticeFamily, SheetProgram},
     record::Status,
@@ -101,9 +101,6 @@ impl Target for Stretch {
     }
 }
 
-/// The best of each cell, for the next l2.
-type Neighbours = Vec<Option<Start>>;
-
 impl<'a> ExactMethod<'a> {
     /// Prepares the bounds. `models` are the same design compiled for cells of growing size: the first is solved, the
     /// others where it asks for more (see [`Self::limits`]). After `cancel` limits come back as interrupted.
@@ -136,33 +133,31 @@ impl<'a> ExactMethod<'a> {
         let stretch = |l2: f64| Stretch { direction, l2, across, sign: if compression { -1.0 } else { 1.0 } };
         let mut order: Vec<usize> = (0..l2.len()).collect();
         order.sort_by(|&a, &b| l2[a].abs().total_cmp(&l2[b].abs()).then(l2[a].total_cmp(&l2[b])));
-        let mut sides: [Neighbours; 2] = [self.no_neighbours(), self.no_neighbours()];
+        let mut sides: [CellStarts; 2] = [Vec::new(), Vec::new()];
         if !compression && !l2.contains(&0.0) {
-            let (_, at_zero) = self.limit(&stretch(0.0), &sides[0], cancel);
+            let (_, at_zero) = self.limit(&stretch(0.0), &[], cancel);
             sides = [at_zero.clone(), at_zero];
         }
         for k in order {
             let (answer, found) = self.limit(&stretch(l2[k]), &sides[usize::from(l2[k] > 0.0)], cancel);
-            for (side, belongs) in sides.iter_mut().zip([l2[k] <= 0.0, l2[k] >= 0.0]) {
-                for (known, new) in side.iter_mut().zip(&found).filter(|(_, new)| belongs && new.is_some()) {
-                    known.clone_from(new);
-                }
+            for (side, _) in sides.iter_mut().zip([l2[k] <= 0.0, l2[k] >= 0.0]).filter(|(_, belongs)| *belongs) {
+                side.retain(|(cell, _)| found.iter().all(|(new, _)| new != cell));
+                side.extend(found.iter().cloned());
             }
             finished(k, answer);
         }
     }
 
     /// One limit; with the states of the cells at it, from which the next one goes on.
-    fn limit(&self, stretch: &Stretch, neighbours: &Neighbours, cancel: &AtomicBool) -> (Answer, Neighbours) {
+    fn limit(&self, stretch: &Stretch, neighbours: &[(Cell, Start)], cancel: &AtomicBool) -> (Answer, CellStarts) {
         let least = stretch.sign < 0.0;
         let Stretch { direction, l2, across, .. } = *stretch;
-        let none = || self.no_neighbours();
         let bound = best_bound_across(&self.chain, Some(&self.link), direction, l2, across);
         let unreachable = matches!(bound, Bound::L2Unreachable { .. });
         // The bounds are of the largest l1; of the least one they tell only that no state has this l2.
         let proved = |answer: Answer| if least && !unreachable { answer } else { answer.bounded_by(&bound) };
         let ended =
-            |status: Status, note: Option<String>| (proved(Answer { note, ..self.without_state(status) }), none());
+            |status: Status, note: Option<String>| (proved(Answer { note, ..self.without_state(status) }), Vec::new());
         if cancel.load(Ordering::Relaxed) {
             return ended(Status::Interrupted, None);
         }
@@ -172,14 +167,15 @@ impl<'a> ExactMethod<'a> {
         if let Some(overlapping) = &self.overlapping {
             return ended(Status::InfeasibleStart, Some(overlapping.message()));
         }
-        let neighbour = neighbours[0].clone();
+        let of = |cell: Cell| neighbours.iter().find(|(other, _)| *other == cell).map(|(_, start)| start.clone());
+        let neighbour = of(self.models[0].cell);
         let upper_bound = match bound {
             Bound::Finite { l1, .. } if !least => l1,
             Bound::Unbounded if !least => return self.unlinked(stretch, neighbour, cancel),
             _ => f64::INFINITY,
         };
         let search = self.search(stretch, upper_bound, cancel);
-        let own = self.own_cell(&search, neighbours.last().cloned().flatten());
+        let own = self.own_cell(&search, of(Cell::PRIMITIVE));
         let mut first = if least {
             let given = own.starts.into_iter().chain(neighbour.iter().cloned()).collect();
             search.run(&self.models[0], given, self.stop())
@@ -200,7 +196,8 @@ impl<'a> ExactMethod<'a> {
             // Under lateral compression a larger cell can fold where this one cannot.
             where_none: l2 < 0.0,
             fallback: (!least).then(|| neighbour.unwrap_or_else(|| Start::written(self.models[0].start.clone()))),
-            neighbours: if least { neighbours } else { &[] },
+            follow_waves: self.models.len() > 1,
+            neighbours,
         };
         let found = search.larger_cells(self.models, first, &rule);
         if cancel.load(Ordering::Relaxed) {
@@ -225,12 +222,11 @@ impl<'a> ExactMethod<'a> {
             return ended(Status::Interrupted, None);
         }
         let by_cell = kept.into_iter().map(value).collect();
-        (Answer { by_cell, wave, ..answer }, found.starts.into_iter().chain([own.best]).collect())
-    }
-
-    /// Of each cell, and of the design's own where the first is larger.
-    fn no_neighbours(&self) -> Neighbours {
-        vec![None; self.models.len() + 1]
+        // Of a largest l1 the best cell is enough.
+        let best = |cell: &Cell| least || [self.models[0].cell, model.cell].contains(cell);
+        let reached = found.starts.into_iter().filter(|(cell, _)| best(cell));
+        let own = own.best.map(|start| (Cell::PRIMITIVE, start));
+        (Answer { by_cell, wave, ..answer }, reached.chain(own).collect())
     }
 
     /// What the design's own cell gives to a larger first one.

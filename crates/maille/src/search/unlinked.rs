@@ -5,7 +5,7 @@
 //! of rings, say: then there is a limit as any other, only without a bound.
 
 use super::{
-    multistart::{Entered, Target},
+    multistart::{CellStarts, Entered, Target},
     options::{UNLINKED_STAGE, UNLINKED_STAGES},
     starts::{Start, explored_with_own_wire},
     stretch::{ExactMethod, Stretch},
@@ -37,9 +37,8 @@ impl ExactMethod<'_> {
         stretch: &Stretch,
         neighbour: Option<Start>,
         cancel: &AtomicBool,
-    ) -> (Answer, Vec<Option<Start>>) {
+    ) -> (Answer, CellStarts) {
         let model = &self.models[0];
-        let none = vec![None; self.models.len()];
         let stop = self.stop();
         let drawn = (0..stop.least as usize).map(|k| explored_with_own_wire(model, self.options.seed, k));
         let (mut runs, mut iterations) = (0, 0);
@@ -47,27 +46,26 @@ impl ExactMethod<'_> {
             let (apart, more) = pull_apart(model, stretch, start, cancel);
             (runs, iterations) = (runs + 1, iterations + more);
             if cancel.load(Ordering::Relaxed) {
-                return (self.without_state(Status::Interrupted), none);
+                return (self.without_state(Status::Interrupted), Vec::new());
             }
             if let Some(Separated { state, p }) = apart {
                 let gradient = stretch.lattices(model).gradient(&p, stretch.l2);
                 let note = Some(format!("no chain of links; at l1 = {:.3} nothing is left that could hold it", p[0]));
                 let nothing = self.without_state(Status::Unbounded);
-                return (Answer { state, gradient, runs, iterations, note, ..nothing }, none);
+                return (Answer { state, gradient, runs, iterations, note, ..nothing }, Vec::new());
             }
         }
         let search = self.search(stretch, f64::INFINITY, cancel);
         let mut found = search.run(model, neighbour.into_iter().collect(), stop);
         if cancel.load(Ordering::Relaxed) {
-            return (self.without_state(Status::Interrupted), none);
+            return (self.without_state(Status::Interrupted), Vec::new());
         }
         (found.runs, found.iterations) = (found.runs + runs, found.iterations + iterations);
-        let mut reached = none.clone();
-        reached[0] = found.best.as_ref().map(|best| stretch.start(best));
+        let reached = found.best.iter().map(|best| (model.cell, stretch.start(best))).collect();
         let wave = found.best.as_ref().and_then(|best| search.waves(&self.models[0], best).curvature());
         let answer = self.judge(&self.models[0], stretch, f64::INFINITY, found, cancel);
         if cancel.load(Ordering::Relaxed) {
-            return (self.without_state(Status::Interrupted), none);
+            return (self.without_state(Status::Interrupted), Vec::new());
         }
         match answer.status {
             Status::Local => {
@@ -78,7 +76,7 @@ impl ExactMethod<'_> {
             Status::Uncertified if answer.contacts.is_empty() => {
                 let note = Some("no chain of links, and no contact held it where the search was stopped".into());
                 let Answer { runs, iterations, .. } = answer;
-                (Answer { runs, iterations, note, ..self.without_state(Status::Uncertified) }, none)
+                (Answer { runs, iterations, note, ..self.without_state(Status::Uncertified) }, Vec::new())
             }
             _ => (answer, reached),
         }

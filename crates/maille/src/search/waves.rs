@@ -9,7 +9,7 @@
 
 use super::{
     local::LocalSolution,
-    multistart::{CellSearch, Multistart, SearchResult, Target},
+    multistart::{CellSearch, LargerCells, Multistart, SearchResult, Target},
     options::{ATTAINED, FOLLOWED_ELEMENTS, WAVE_COPIES, WAVE_ELEMENTS, WAVE_SIZE},
     starts::{Start, moved, tiled},
     stop::StopRule,
@@ -114,11 +114,11 @@ impl<T: Target> Multistart<'_, T> {
 }
 
 impl<T: Target> Multistart<'_, T> {
-    /// Measures the waves at the best solution of some cells and, if more than one may be solved, goes on along the worst of them, each in
+    /// Measures the waves at the best solution of some cells and, where they are followed, goes on along the worst of them, each in
     /// the smallest cell that holds it, until one gives more; that cell is then searched from as many starts
     /// of its own, and the waves of what is best there are followed.
-    pub(super) fn follow_waves(&self, models: &[Model], own_starts: u64, found: &mut CellSearch) {
-        let most = if models.len() > 1 { FOLLOWED_WAVES } else { 0 };
+    pub(super) fn follow_waves(&self, models: &[Model], rule: &LargerCells<'_>, found: &mut CellSearch) {
+        let most = if rule.follow_waves { FOLLOWED_WAVES } else { 0 };
         loop {
             let (model, Some(best)) = (found.model(models), &found.result.best) else { return };
             let (waves, from) = (self.waves(model, best), self.target.start(best));
@@ -133,7 +133,7 @@ impl<T: Target> Multistart<'_, T> {
                 let mut here = self.run(&larger, waves.starts(&larger, wave, &from), StopRule::exactly(0));
                 if here.improves_on(&found.result) {
                     // Where a wave leads further, other states of its cell may, too.
-                    here.merge(self.run(&larger, Vec::new(), StopRule::exactly(own_starts)));
+                    here.merge(self.run(&larger, Vec::new(), StopRule::exactly(rule.own_starts)));
                     here = here.with_chance(self.upper_bound);
                 }
                 found.by_cell.push(here.by_cell(cell));

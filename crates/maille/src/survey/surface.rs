@@ -8,10 +8,14 @@
 //! A ray starts from the states of the two rays that it was put between, and may end in a worse fold than a neighbour found. So
 //! when no edge is left to divide, states are handed on along the edges at which the surface bends more than it should, until no ray gains by it.
 
-use super::icosphere::{Bent, Sphere};
+use super::{
+    icosphere::{Bent, Sphere},
+    request::CellChoice,
+};
 use crate::{
+    lattice::Cell,
     model::Model,
-    question::StrainQuery,
+    question::{Effort, Sense, StrainQuery},
     record::Status,
     search::strain::{StrainMethod, StrainOptions},
     state::{Pose, State},
@@ -32,15 +36,37 @@ pub struct BoundaryOptions {
     pub tolerance: f64,
     /// Vertices at most.
     pub most: usize,
-    /// Starts of each ray beside its neighbours' states.
-    pub starts: usize,
-    /// Seed of the shaking.
+    /// How long each ray is searched whose bound is not attained.
+    pub effort: Effort,
+    /// So many starts in place of an effort.
+    pub starts: Option<usize>,
+    /// Seed of the starts that are drawn.
     pub seed: u64,
+    /// The cell that is solved; with `auto` the design's own, and unstable waves are followed into larger ones.
+    pub cells: CellChoice,
 }
 
 impl Default for BoundaryOptions {
     fn default() -> Self {
-        BoundaryOptions { tolerance: 1e-3, most: 5000, starts: 2, seed: 1 }
+        BoundaryOptions {
+            tolerance: 3e-3,
+            most: 5000,
+            effort: Effort::Normal,
+            starts: None,
+            seed: 1,
+            cells: Cell::PRIMITIVE.into(),
+        }
+    }
+}
+
+impl BoundaryOptions {
+    /// The cell to compile.
+    #[doc(hidden)]
+    pub fn cell(&self) -> Cell {
+        match &self.cells {
+            CellChoice::These(cells) => cells.first().copied().unwrap_or_default(),
+            CellChoice::Auto => Cell::PRIMITIVE,
+        }
     }
 }
 
@@ -59,6 +85,13 @@ pub struct BoundaryVertex {
     pub bound: Option<f64>,
     /// Distinct certified distances that the starts led to.
     pub n_distinct: u64,
+    /// Least curvature found on waves through the sheet at the state, see [`crate::answer::WaveCurvature`]; negative where a larger cell may go
+    /// further. `None` where it was not measured.
+    #[serde(default)]
+    pub wave_curvature: Option<f64>,
+    /// The cell of the state.
+    #[serde(default)]
+    pub cell: Cell,
     /// Lattice vectors of the state.
     pub lattice: [[f64; 3]; 2],
     /// Position and quaternion (w, x, y, z) of each element.
@@ -72,13 +105,13 @@ impl BoundaryVertex {
         self.direction.map(|x| x * at)
     }
 
-    fn state(&self) -> State {
+    fn state(&self) -> (Cell, State) {
         let pose = |&[x, y, z, w, i, j, k]: &[f64; 7]| Pose {
             position: Vec3::new(x, y, z),
             rotation: UnitQuaternion::new_normalize(Quaternion::new(w, i, j, k)),
         };
         let [a1, a2] = self.lattice.map(Vec3::from);
-        State { poses: self.poses.iter().map(pose).collect(), a1, a2 }
+        (self.cell, State { poses: self.poses.iter().map(pose).collect(), a1, a2 })
     }
 }
 
@@ -122,14 +155,15 @@ pub struct RaySolver<'a>(StrainMethod<'a>);
 impl<'a> RaySolver<'a> {
     /// For rays of one surface.
     pub fn new(model: &'a Model, options: &BoundaryOptions) -> Self {
-        let BoundaryOptions { starts, seed, .. } = *options;
-        let options = StrainOptions { starts: Some(starts), seed, ..StrainOptions::default() };
+        let BoundaryOptions { effort, starts, seed, .. } = *options;
+        let follow_waves = options.cells == CellChoice::Auto;
+        let options = StrainOptions { effort, starts, seed, follow_waves, sense: Sense::Largest };
         RaySolver(StrainMethod::new(std::slice::from_ref(model), options))
     }
 
     /// Where the ray ends; `None` after `cancel`.
     pub fn solve(&self, ray: &Ray, cancel: &AtomicBool) -> Option<BoundaryVertex> {
-        let from: Vec<State> = ray.from.iter().map(BoundaryVertex::state).collect();
+        let from: Vec<(Cell, State)> = ray.from.iter().map(BoundaryVertex::state).collect();
         let [xx, yy, xy] = ray.direction;
         let query = StrainQuery { held: Matrix2::zeros(), free: vec![Matrix2::new(xx, xy, xy, yy)] };
         let answer = self.0.solve(&query, &from, cancel);
@@ -147,6 +181,8 @@ impl<'a> RaySolver<'a> {
             first: answer.first,
             bound: answer.bound.filter(|bound| bound.is_finite()),
             n_distinct: answer.n_distinct.unwrap_or(0),
+            wave_curvature: answer.wave.map(|wave| wave.least),
+            cell: answer.cell,
             lattice: [answer.state.a1, answer.state.a2].map(Into::into),
             poses: answer.state.poses.iter().map(pose).collect(),
         })

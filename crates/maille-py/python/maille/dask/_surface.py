@@ -17,7 +17,7 @@ from pyarrow import parquet
 
 from .. import _native
 from .._files import write_whole
-from ..boundary import Boundary, _surface
+from ..boundary import Boundary, _search, _surface
 from ..design import Design
 from ..errors import ChainError, MailleError, RecordError
 from ..record import Progress, _Bar, _whole
@@ -50,10 +50,11 @@ def boundary(
     *,
     out: str | os.PathLike[str],
     client: distributed.Client | None = None,
-    tolerance: float = 1e-3,
-    vertices: int = 1500,
-    starts: int = 2,
+    tolerance: float = 3e-3,
+    vertices: int = 5000,
     cell: str = "1x1",
+    effort: str = "normal",
+    starts: int | None = None,
     seed: int = 1,
     overwrite: bool = False,
     retries: int = 2,
@@ -66,7 +67,7 @@ def boundary(
     vertices as Parquet. `designs`, `client`, `retries` and failures are as in `characterize`, the rest as in `maille.boundary`.
     """
     client = client_of(client)
-    starts, seed, vertices = _whole("starts", starts, 1), _whole("seed", seed, 0), _whole("vertices", vertices, 162)
+    search = _search(tolerance, vertices, effort, starts, cell, seed)
     retries = _whole("retries", retries, 0)
     surfaces: dict[str, Boundary] = {}
     failures: list[Failure] = []
@@ -78,14 +79,10 @@ def boundary(
                 if isinstance(design, MailleError):
                     raise design
                 design.check()
-                folder, known = _native.SurfaceFolder.open(
-                    design._inner, starts, cell, seed, Path(out) / name, overwrite
-                )
+                folder, known = _native.SurfaceFolder.open(design._inner, search, Path(out) / name, overwrite)
                 with closing(folder):
-                    ask = _Ask(client, design, starts, cell, seed, retries, folder, counted)
-                    found = _native.boundary_by(
-                        design._inner, tolerance, vertices, starts, cell, seed, known, ask.solve
-                    )
+                    ask = _Ask(client, design, search, retries, folder, counted)
+                    found = _native.boundary_by(design._inner, search, known, ask.solve)
                 _write_rays(Path(out) / RAYS / f"record={name}", found[0])
                 surfaces[name] = _surface(*found)
             except RecordError:
@@ -114,9 +111,7 @@ class _Ask:
 
     client: Any
     design: Design
-    starts: int
-    cell: str
-    seed: int
+    search: str
     retries: int
     folder: _native.SurfaceFolder
     counted: _Counted
@@ -130,8 +125,8 @@ class _Ask:
         calls: dict[str, tuple[Any, ...]] = {}
         for k in first:
             part = rays[k : k + size]
-            inputs = "".join([self.design.to_toml(), repr((self.starts, self.cell, self.seed, k)), *part])
-            question = (self.design, part, self.starts, self.cell, self.seed, _native.__VERSION__)
+            inputs = "".join([self.design.to_toml(), self.search, str(k), *part])
+            question = (self.design, part, self.search, _native.__VERSION__)
             calls[f"maille-{sha256(inputs.encode()).hexdigest()[:32]}"] = question
         ends: dict[str, list[str]] = {}
         with closing(results(self.client, solve, calls, self.retries)) as found:
@@ -145,14 +140,12 @@ class _Ask:
         return [end for key in calls for end in ends[key]]
 
 
-def solve(
-    design: Design, rays: list[str], starts: int, cell: str, seed: int, version: str
-) -> Union[list[str], MailleError]:
+def solve(design: Design, rays: list[str], search: str, version: str) -> Union[list[str], MailleError]:
     """What a worker does: the ends of rays."""
     if version != _native.__VERSION__:
         return ChainError(f"the worker has maille {_native.__VERSION__}, not {version}")
     try:
-        return _native.solve_rays(design._inner, rays, starts, cell, seed)
+        return _native.solve_rays(design._inner, rays, search)
     except MailleError as error:
         return error
 
