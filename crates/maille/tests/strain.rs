@@ -14,6 +14,7 @@ use maille::{
         strain::{StrainMethod, StrainOptions},
     },
     sheet::Sheet,
+    state::State,
     survey::surface::{BoundaryOptions, BoundaryVertex, boundary},
 };
 use nalgebra::Matrix2;
@@ -287,4 +288,23 @@ fn free_width_along_nearly_straight_chains() {
     assert!(matches!(row.status, Status::Local | Status::Global), "{:?}", row.status);
     // With l2 held at −0.7 the bound is attained, 0.44526226.
     assert!(row.l1.is_some_and(|l1| (0.445262..0.445501).contains(&l1)), "{:?}", row.l1);
+}
+
+/// European 4-in-1 pushed together along x folds in a larger cell, to which an unstable wave leads; a neighbouring ray goes on from that state
+/// in its cell, without a wave of its own.
+#[test]
+fn states_of_larger_cells_are_handed_on() {
+    let model = model("european-4-in-1");
+    let solve = |free: Matrix2<f64>, from: &[(Cell, State)], follow_waves: bool| {
+        let options = StrainOptions { starts: Some(1), follow_waves, ..StrainOptions::default() };
+        let query = StrainQuery { held: Matrix2::zeros(), free: vec![free] };
+        StrainMethod::new(slice::from_ref(&model), options).solve(&query, from, &AtomicBool::new(false))
+    };
+    let along = Matrix2::new(-1.0, 0.0, 0.0, 0.0);
+    let [own, folded] = [false, true].map(|follow_waves| solve(along, &[], follow_waves));
+    assert!(own.cell == Cell::PRIMITIVE && folded.cell.copies() > 1);
+    assert!(folded.value.unwrap() > 2.0 * own.value.unwrap(), "{:?} {:?}", folded.value, own.value);
+    let beside = solve(Matrix2::new(-1.0, 0.0, 0.0, 0.05), &[(folded.cell, folded.state.clone())], false);
+    assert_eq!((beside.cell, beside.status), (folded.cell, Status::Local));
+    assert!(beside.value.unwrap() > 2.0 * own.value.unwrap() && beside.links_ok == Some(true));
 }
