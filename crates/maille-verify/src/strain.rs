@@ -36,6 +36,12 @@ fn condition(lattice: [Vec3; 2]) -> f64 {
     m.norm_squared() / m.determinant().abs()
 }
 
+/// Eigenvalues of a symmetric matrix, the larger one first.
+fn eigenvalues(c: &Matrix2<f64>) -> [f64; 2] {
+    let (mean, half) = ((c[(0, 0)] + c[(1, 1)]) / 2.0, ((c[(0, 0)] - c[(1, 1)]) / 2.0).hypot(c[(0, 1)]));
+    [mean + half, mean - half]
+}
+
 /// Compares the state's lattice with all that the row says of it; gives the largest difference, or what does not fit.
 ///
 /// With the thesis's `corners` as targets, F is that of the middle of the cell's four corners, F (A1 + A2) = x4 − x1 for the
@@ -55,19 +61,15 @@ pub(crate) fn deformation(
     let (d, side) = axes(row.direction_deg);
     let (l1, l2) = (d.dot(&(f * d)) - 1.0, side.dot(&(f * side)) - 1.0);
     let (shear, lean) = (d.dot(&(f * side)), side.dot(&(f * d)));
-    let c = f.transpose() * f;
-    let (mean, half) = ((c[(0, 0)] + c[(1, 1)]) / 2.0, ((c[(0, 0)] - c[(1, 1)]) / 2.0).hypot(c[(0, 1)]));
+    let [largest_eigenvalue, least_eigenvalue] = eigenvalues(&(f.transpose() * f));
     let allowed = SAME * condition(then);
     let mut largest = 0.0_f64;
     let mut compare = |name: &str, written: Option<f64>, found: f64| {
         let Some(written) = written else { return Ok(()) };
         let off = (written - found).abs() / found.abs().max(1.0);
         largest = largest.max(off);
-        if off <= allowed {
-            Ok(())
-        } else {
-            Err(format!("{name} is {written:?} in limits.csv, {found:?} in the state"))
-        }
+        let differs = || format!("{name} is {written:?} in limits.csv, {found:?} in the state");
+        if off <= allowed { Ok(()) } else { Err(differs()) }
     };
     compare("l1", row.l1.or(row.l1_uncertified), l1)?;
     let free = |word: &Option<String>| word.as_deref() == Some("free");
@@ -81,12 +83,12 @@ pub(crate) fn deformation(
             compare("the shear", Some(0.0), shear)?;
         }
     }
-    compare("lambda1", row.lambda1, mean + half)?;
-    compare("lambda2", row.lambda2, mean - half)?;
-    compare("stretch1", row.stretch1, (mean + half).sqrt())?;
+    compare("lambda1", row.lambda1, largest_eigenvalue)?;
+    compare("lambda2", row.lambda2, least_eigenvalue)?;
+    compare("stretch1", row.stretch1, largest_eigenvalue.sqrt())?;
     // A root near 0 has half of its square's digits.
-    if mean - half > 1e-4 {
-        compare("stretch2", row.stretch2, (mean - half).sqrt())?;
+    if least_eigenvalue > 1e-4 {
+        compare("stretch2", row.stretch2, least_eigenvalue.sqrt())?;
     }
     if corners {
         let diagonal = columns(then) * Vector2::new(1.0, -1.0);
@@ -105,9 +107,9 @@ pub(crate) fn deformation(
     let m = Matrix2::from_fn(|i, j| f64::from(cell[j][i]));
     if let Some(inverse) = m.try_inverse() {
         let own = columns(now) * inverse;
-        let written = [row.a1_x, row.a1_y, row.a2_x, row.a2_y];
-        for (k, name) in ["a1_x", "a1_y", "a2_x", "a2_y"].into_iter().enumerate() {
-            compare(name, written[k], own[(k % 2, k / 2)])?;
+        let written = [("a1_x", row.a1_x), ("a1_y", row.a1_y), ("a2_x", row.a2_x), ("a2_y", row.a2_y)];
+        for (k, (name, written)) in written.into_iter().enumerate() {
+            compare(name, written, own[(k % 2, k / 2)])?;
         }
     }
     let within = |name: &str, found: f64, [least, most]: [Option<f64>; 2]| match (least, most) {

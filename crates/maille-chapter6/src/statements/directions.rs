@@ -58,6 +58,12 @@ pub(super) fn least_along_interlocking(maps: &[Map]) -> Finding {
 /// Within this angle of 0° the thesis sees compression lower the limit of design 2, at R/10; as r falls it vanishes.
 const STACKED_DEG: f64 = 15.0;
 
+/// A line of the directions that are lowered at some l2.
+fn lowered_at(map: &Map, maps: &[Map], what: &str, of_l2: &[f64]) -> String {
+    let list: Vec<String> = of_l2.iter().map(|l2| signed(*l2)).collect();
+    format!("{}, l₂ = {}: {what}. {}", map.label(), list.join(", "), cause(&[map], maps, of_l2[0]))
+}
+
 /// Statement 3.
 pub(super) fn compression_raises(maps: &[Map]) -> Finding {
     let mut usual = Cases { usual: true, ..Cases::of("compression raises the limit") };
@@ -101,12 +107,8 @@ pub(super) fn compression_raises(maps: &[Map]) -> Finding {
             }
         }
         // Each direction counts, and one line names them all.
-        let lines = groups.iter().map(|(what, of_l2)| {
-            let list: Vec<String> = of_l2.iter().map(|l2| signed(*l2)).collect();
-            format!("{}, l₂ = {}: {what}. {}", map.label(), list.join(", "), cause(&[map], maps, of_l2[0]))
-        });
         let before = usual.exceptions.len();
-        usual.exceptions.extend(lines);
+        usual.exceptions.extend(groups.iter().map(|(what, of_l2)| lowered_at(map, maps, what, of_l2)));
         usual.exceptions.resize(before + lowered_in_all, String::new());
         if of_2.iter().sum::<usize>() > 0 {
             stacked.sort_by(f64::total_cmp);

@@ -125,33 +125,25 @@ fn parse_segments(text: &str) -> Result<Fineness, String> {
 /// Triangles that make large files where every ring has its own.
 const MANY: usize = 5_000_000;
 
-/// Runs the command.
-pub fn run(args: &Args) -> Result<()> {
-    let source = args.source.read(Wanted { locked: args.frames.is_some(), overlaps: false, threads: None })?;
-    let Source { design, model, locked, .. } = &source;
-    // A simulated sheet is one cell, the whole of it.
-    let tile = if model.periodic { args.tile } else { Tile([1, 1]) };
-    let (destination, formats) = destination(args.out.as_deref(), &args.format, args.frames.is_some(), &source)?;
-    let note = |text: String| {
-        if !args.quiet {
-            eprintln!("note: {text}");
-        }
+/// Millimetres in one unit of the file.
+fn millimetres(args: &Args, unit: Option<&str>, note: impl Fn(String)) -> f64 {
+    let assumed = |why: String| {
+        note(why);
+        1.0
     };
-    let mm = match (args.scale, design.unit.as_deref()) {
+    match (args.scale, unit) {
         (Some(mm), _) => mm,
         (None, None) => {
-            note("the design names no unit: one unit of the file becomes 1 mm (change it with --scale)".into());
-            1.0
+            assumed("the design names no unit: one unit of the file becomes 1 mm (change it with --scale)".into())
         }
         (None, Some(unit)) => mesh::millimetres(unit).unwrap_or_else(|| {
-            note(format!("the unit \"{unit}\" is not known: one becomes 1 mm (change it with --scale)"));
-            1.0
+            assumed(format!("the unit \"{unit}\" is not known: one becomes 1 mm (change it with --scale)"))
         }),
-    };
-    source.caution().into_iter().for_each(note);
-    let tolerance = args.tolerance.unwrap_or(0.01 * design.reference_radius);
-    let fineness = args.segments.unwrap_or(Fineness::Tolerance(tolerance));
-    let options = WriteOptions {
+    }
+}
+
+fn write_options(args: &Args) -> WriteOptions {
+    WriteOptions {
         objects: match args.objects {
             ObjectsArg::Element => Objects::Element,
             ObjectsArg::Ring => Objects::Ring,
@@ -164,7 +156,26 @@ pub fn run(args: &Args) -> Result<()> {
             None => Colours::Load,
         },
         gpu_instancing: args.gpu_instancing,
+    }
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<()> {
+    let source = args.source.read(Wanted { locked: args.frames.is_some(), overlaps: false, threads: None })?;
+    let Source { design, model, locked, .. } = &source;
+    // A simulated sheet is one cell, the whole of it.
+    let tile = if model.periodic { args.tile } else { Tile([1, 1]) };
+    let (destination, formats) = destination(args.out.as_deref(), &args.format, args.frames.is_some(), &source)?;
+    let note = |text: String| {
+        if !args.quiet {
+            eprintln!("note: {text}");
+        }
     };
+    let mm = millimetres(args, design.unit.as_deref(), note);
+    source.caution().into_iter().for_each(note);
+    let tolerance = args.tolerance.unwrap_or(0.01 * design.reference_radius);
+    let fineness = args.segments.unwrap_or(Fineness::Tolerance(tolerance));
+    let options = write_options(args);
     if matches!(args.color_by, Some(ColorArg::Load)) && source.contacts().is_empty() {
         note("there are no contact forces in this state: colours show the kind of element".into());
     }
@@ -221,15 +232,19 @@ pub fn run(args: &Args) -> Result<()> {
             }
         }
     }
-    if let Destination::Files(prefix) = &destination
-        && args.frames.is_some()
-        && formats.contains(&FormatArg::Vtk)
-    {
-        for (path, text) in collections(prefix, &series) {
-            output::write(&path, text.as_bytes())?;
-            if !args.quiet {
-                output::say!("{}  {} frames", path.display(), frames.len());
-            }
+    match &destination {
+        Destination::Files(prefix) if args.frames.is_some() && formats.contains(&FormatArg::Vtk) => {
+            write_collections(prefix, &series, frames.len(), args.quiet)
+        }
+        _ => Ok(()),
+    }
+}
+
+fn write_collections(prefix: &Path, series: &[(MeshFile, f64, PathBuf)], frames: usize, quiet: bool) -> Result<()> {
+    for (path, text) in collections(prefix, series) {
+        output::write(&path, text.as_bytes())?;
+        if !quiet {
+            output::say!("{}  {frames} frames", path.display());
         }
     }
     Ok(())
