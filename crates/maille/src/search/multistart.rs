@@ -141,7 +141,9 @@ impl<T: Target> Multistart<'_, T> {
         let (mut given, mut drawn) = (given.into_iter(), 0);
         while !self.cancelled() && !result.attains(self.upper_bound) {
             let mut starts: Vec<Start> = given.by_ref().take(batch).collect();
-            let left = rule.left(result.starts, result.better_chance(), began.elapsed().as_secs_f64());
+            // States without a certificate are no reason to stop.
+            let chance = if result.lacks_certificate() { 1.0 } else { result.better_chance() };
+            let left = rule.left(result.starts, chance, began.elapsed().as_secs_f64());
             let own = (batch.min(left as usize)).saturating_sub(starts.len());
             starts.extend((drawn..drawn + own).map(|k| self.target.explored(model, self.seed, k)));
             drawn += own;
@@ -291,6 +293,11 @@ impl SearchResult {
     pub(super) fn with_chance(self, upper_bound: f64) -> Self {
         let chance = (!self.attains(upper_bound)).then(|| self.better_chance());
         SearchResult { chance, ..self }
+    }
+
+    /// Whether states were found, but none with a certificate.
+    fn lacks_certificate(&self) -> bool {
+        self.best.as_ref().is_some_and(|best| !best.certified)
     }
 
     /// The estimated chance that another start finds more.

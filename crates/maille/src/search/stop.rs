@@ -7,7 +7,7 @@
 //!
 //! chance = (s + 1)/((n + 1)(d + 1)).
 //!
-//! It is an estimate for starts of the kinds that are tried, see [`super::options`]: a state that none of them leads to is not counted.
+//! Where states were found, but none with a certificate, the search goes on to the end. It is an estimate for starts of the kinds that are tried, see [`super::options`]: a state that none of them leads to is not counted.
 
 use super::options::{CELL_SHARE, CELL_STARTS, FOLD_SHARE};
 use crate::question::Effort;
