@@ -5,7 +5,7 @@ use super::frame::{Entry, Frame, GRID, INK, Layout, RIM, SOFT, style};
 use super::look::{self, Look};
 use super::scale::{Scale, range};
 use crate::boundary::{colour, point, triangles};
-use maille::{record::Status, survey::surface::Boundary};
+use maille::{lattice::Cell, record::Status, survey::surface::Boundary};
 
 /// Names of the coordinates.
 const NAMES: [&str; 3] = ["E_xx", "E_yy", "E_xy"];
@@ -37,7 +37,7 @@ pub fn boundary_svg(boundary: &Boundary, title: &str, caption: Vec<String>) -> S
     legend.push(Entry::Note("circle: the sheet as written".into()));
     let frame = Frame {
         title: title.to_owned(),
-        subtitle: "All in-plane strains of the sheet: Green strain E, E_xy the tensor shear (no unit)".into(),
+        subtitle: format!("{}: Green strain E, E_xy the tensor shear (no unit)", of_cells(boundary)),
         legend,
         caption,
     };
@@ -47,6 +47,23 @@ pub fn boundary_svg(boundary: &Boundary, title: &str, caption: Vec<String>) -> S
         }
         view(canvas, PANELS[3], boundary, &solid);
     })
+}
+
+/// Of which cells the strains are.
+fn of_cells(boundary: &Boundary) -> String {
+    let mut cells: Vec<Cell> = Vec::new();
+    for vertex in &boundary.vertices {
+        if !cells.contains(&vertex.cell) {
+            cells.push(vertex.cell);
+        }
+    }
+    match cells.as_slice() {
+        [cell] => format!("All in-plane strains of the cell {cell}"),
+        _ => {
+            let most = cells.iter().map(Cell::copies).max().unwrap_or(1);
+            format!("In-plane strains in cells of up to {most} copies")
+        }
+    }
 }
 
 fn hex([r, g, b]: [u8; 3]) -> String {
