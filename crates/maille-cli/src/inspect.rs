@@ -6,7 +6,7 @@ use crate::{
     numbers::{positive, read},
     output,
     source::tolerant,
-    units::parse_density,
+    units::{parse_density, parse_size},
     watch::watch,
 };
 use maille::{
@@ -30,7 +30,8 @@ const BOUND_DIRECTIONS: [f64; 7] = [0.0, 15.0, 30.0, 45.0, 60.0, 75.0, 90.0];
 Examples:
   maille inspect 1.1
   maille inspect my-weave.toml --minor-radius 0.08
-  maille inspect european-4-in-1 --density 7.85g/cm3      its weight in steel
+  maille inspect european-4-in-1 --density steel                    its weight for each square metre
+  maille inspect european-4-in-1 --density steel --size 40x60cm     rings, wire and weight of a piece
   maille inspect kings-mail --json | jq .smallest_gap
   maille inspect my-weave.toml --watch")]
 pub struct Args {
@@ -42,9 +43,12 @@ pub struct Args {
     /// Cell: 1x1, 2x1, … or an integer matrix as "1,0;-1,2"
     #[arg(long, default_value = "1x1", value_parser = read::<Cell>)]
     cell: Cell,
-    /// Density of the wire, as 7.85g/cm3 or 7850kg/m3: adds the weight
+    /// Density of the wire, as 7.85g/cm3 or 7850kg/m3, or a material: steel, stainless, aluminium, brass, pla, …: adds the weight
     #[arg(long, value_parser = parse_density)]
     density: Option<f64>,
+    /// Width and height of a piece, as 400x600mm or 16x24in: adds its whole cells, rings, wire and weight, in the spacing of the design
+    #[arg(long, value_parser = parse_size, conflicts_with = "cell")]
+    size: Option<[f64; 2]>,
     /// Print one JSON document; docs/json.md has its keys
     #[arg(long)]
     json: bool,
@@ -72,6 +76,8 @@ struct Inspection {
     smallest_gap: Option<Gap>,
     overlap_allowed: bool,
     wire: Wire,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    piece: Option<Piece>,
     binding_vectors: Vec<Shift>,
     chains: Vec<Chain>,
     bounds: Vec<Bound>,
@@ -114,6 +120,17 @@ struct Wire {
     kilograms_per_square_metre: Option<f64>,
 }
 
+/// The whole cells nearest to a size that is asked for: `cells[0]` along a1, `cells[1]` along a2. Lengths in millimetres.
+#[derive(Serialize)]
+struct Piece {
+    cells: [u64; 2],
+    /// Along a1, and across it.
+    size_mm: [f64; 2],
+    rings: u64,
+    wire_metres: f64,
+    kilograms: Option<f64>,
+}
+
 #[derive(Serialize)]
 struct Chain {
     vector: Shift,
@@ -142,7 +159,7 @@ fn once(args: &Args) -> Result<ExitCode> {
     let input = Input::read(&args.design, args.minor_radius)?;
     // Overlaps are shown here, not refused.
     let model = input.compile(&tolerant(&input.design), args.cell)?;
-    let found = inspection(&input, &model, args.density)?;
+    let found = inspection(&input, &model, args)?;
     if args.json {
         output::print_json(&found)?;
     } else {
@@ -151,7 +168,7 @@ fn once(args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::from(exit::DONE))
 }
 
-fn inspection(input: &Input, model: &Model, density: Option<f64>) -> Result<Inspection> {
+fn inspection(input: &Input, model: &Model, args: &Args) -> Result<Inspection> {
     let design = &input.design;
     let (a1, a2) = (model.start.a1, model.start.a2);
     let area = a1.cross(&a2).norm() * model.unit * model.unit;
@@ -181,6 +198,9 @@ fn inspection(input: &Input, model: &Model, density: Option<f64>) -> Result<Insp
     });
     let binding_vectors = topology::binding_vectors(model);
     let (chains, bounds) = if binding_vectors.is_empty() { Default::default() } else { bounds(model) };
+    let metres = metres(design.unit.as_deref(), args)?;
+    let wire = wire(model, metres, area, args.density);
+    let piece = args.size.zip(metres).map(|(size, metres)| piece(model, metres, size, &wire));
     Ok(Inspection {
         design: design.name.clone(),
         title: design.title.clone(),
@@ -197,32 +217,58 @@ fn inspection(input: &Input, model: &Model, density: Option<f64>) -> Result<Insp
         elements: (0..model.elements.len()).map(element).collect(),
         smallest_gap: gap,
         overlap_allowed: design.allow_initial_overlap,
-        wire: wire(model, design.unit.as_deref(), area, density)?,
+        wire,
+        piece,
         binding_vectors,
         chains,
         bounds,
     })
 }
 
-/// A ring of major radius R and minor radius r is 2 π R of wire and 2 π² R r² of metal.
-fn wire(model: &Model, unit: Option<&str>, area: f64, density: Option<f64>) -> Result<Wire> {
+/// Metres in one unit of the file, where it is known.
+fn metres(unit: Option<&str>, args: &Args) -> Result<Option<f64>> {
     let metres = unit.and_then(millimetres).map(|mm| mm / 1000.0);
-    if density.is_some() && metres.is_none() {
-        let problem = match unit {
-            None => "a weight needs the design's unit of length, and the file names none".into(),
-            Some(unit) => format!("a weight needs a unit of length, and \"{unit}\" is not known"),
-        };
-        return Err(wrong(exit::USAGE, problem, "write unit = \"mm\" at the top of the file, or leave --density out"));
+    let asked = [("a weight", "--density", args.density.is_some()), ("a size", "--size", args.size.is_some())];
+    let Some((what, option, _)) = asked.into_iter().find(|(.., given)| *given && metres.is_none()) else {
+        return Ok(metres);
+    };
+    let problem = match unit {
+        None => format!("{what} needs the design's unit of length, and the file names none"),
+        Some(unit) => format!("{what} needs a unit of length, and \"{unit}\" is not known"),
+    };
+    let help = format!("write unit = \"mm\" at the top of the file, or leave {option} out");
+    Err(wrong(exit::USAGE, problem, help))
+}
+
+/// The piece of whole cells nearest to `size`, in millimetres: its width along a1, its height across it.
+fn piece(model: &Model, metres: f64, size: [f64; 2], wire: &Wire) -> Piece {
+    let mm = model.unit * metres * 1000.0;
+    let (a1, a2) = (model.start.a1, model.start.a2);
+    let steps = [a1.norm() * mm, a1.cross(&a2).norm() / a1.norm() * mm];
+    let cells: [f64; 2] = std::array::from_fn(|k| (size[k] / steps[k]).round().max(1.0));
+    let size_mm: [f64; 2] = std::array::from_fn(|k| cells[k] * steps[k]);
+    let count = cells[0] * cells[1];
+    let square_metres = size_mm[0] * size_mm[1] * 1e-6;
+    Piece {
+        cells: cells.map(|n| n as u64),
+        size_mm,
+        rings: (count * model.rings.len() as f64) as u64,
+        wire_metres: count * wire.length * metres,
+        kilograms: wire.kilograms_per_square_metre.map(|weight| weight * square_metres),
     }
+}
+
+/// A ring of major radius R and minor radius r is 2 π R of wire and 2 π² R r² of metal.
+fn wire(model: &Model, metres: Option<f64>, area: f64, density: Option<f64>) -> Wire {
     let length: f64 = model.rings.iter().map(|r| TAU * r.major_radius * model.unit).sum();
     let of_ring = |r: &maille::model::Ring| TAU * r.major_radius * (TAU / 2.0) * r.minor_radius * r.minor_radius;
     let volume = model.rings.iter().map(of_ring).sum::<f64>() * model.unit.powi(3);
-    Ok(Wire {
+    Wire {
         length,
         length_per_area: length / area,
         metres_per_square_metre: metres.map(|m| length / area / m),
         kilograms_per_square_metre: density.zip(metres).map(|(density, m)| density * volume / area * m),
-    })
+    }
 }
 
 /// What the links alone prove: the chains that can bind, and bounds of l1 with l2 = 0.
@@ -297,6 +343,12 @@ impl Inspection {
         line(format!("wire {length:.4}{unit} a cell, {per_area}"));
         if let Some(weight) = kilograms_per_square_metre {
             line(format!("weight {weight:.3} kg a square metre"));
+        }
+        if let Some(Piece { cells: [n, m], size_mm: [width, height], rings, wire_metres, kilograms }) = &self.piece {
+            let weight = kilograms.map_or(String::new(), |weight| format!(", {weight:.3} kg"));
+            line(format!(
+                "piece of {n}x{m} cells (--tile {n}x{m}), {width:.1} x {height:.1} mm: {rings} rings, {wire_metres:.1} m of wire{weight}"
+            ));
         }
         if self.binding_vectors.is_empty() {
             line("warning: no chain of links joins the cells; no pull has a bound".into());

@@ -83,15 +83,46 @@ pub fn parse_wire(text: &str) -> Result<Length, String> {
     })
 }
 
-/// Reads a density as `7.85g/cm3` or `7850kg/m3`; gives kilograms per cubic metre.
+/// Reads `400x600mm`, `40x60cm` or `16x24in`; gives both in millimetres.
+pub fn parse_size(text: &str) -> Result<[f64; 2], String> {
+    let wrong = || format!("\"{text}\" is no size; give width and height with their unit, as 400x600mm or 16x24in");
+    let (width, height) = text.trim().split_once(['x', '×']).ok_or_else(wrong)?;
+    let [width, height] = [width, height].map(str::trim);
+    let unit = height.trim_start_matches(|c: char| c.is_ascii_digit() || "./".contains(c));
+    let length = |text: &str| parse_length(text).map(|length| length.mm).map_err(|_| wrong());
+    Ok([length(&format!("{width}{unit}"))?, length(height)?])
+}
+
+/// Typical densities of what rings are made of, in g/cm³.
+const MATERIALS: [(&str, f64); 13] = [
+    ("steel", 7.85),
+    ("stainless", 7.93),
+    ("aluminium", 2.70),
+    ("copper", 8.96),
+    ("brass", 8.5),
+    ("bronze", 8.8),
+    ("titanium", 4.5),
+    ("silver", 10.4),
+    ("pla", 1.24),
+    ("petg", 1.27),
+    ("abs", 1.04),
+    ("nylon", 1.01),
+    ("resin", 1.15),
+];
+
+/// Reads a density as `7.85g/cm3` or `7850kg/m3`, or a material's name; gives kilograms per cubic metre.
 pub fn parse_density(text: &str) -> Result<f64, String> {
     let text = text.trim();
+    if let Some((_, density)) = MATERIALS.iter().find(|(name, _)| name.eq_ignore_ascii_case(text)) {
+        return Ok(density * 1000.0);
+    }
     let units = [("g/cm3", 1000.0), ("g/cm³", 1000.0), ("kg/m3", 1.0), ("kg/m³", 1.0)];
     let found =
         units.iter().find_map(|(unit, factor)| Some(text.strip_suffix(unit)?.trim().parse::<f64>().ok()? * factor));
-    found
-        .filter(|x| x.is_finite() && *x > 0.0)
-        .ok_or_else(|| format!("\"{text}\" is no density; give it as 7.85g/cm3 or 7850kg/m3"))
+    found.filter(|x| x.is_finite() && *x > 0.0).ok_or_else(|| {
+        let names: Vec<&str> = MATERIALS.iter().map(|(name, _)| *name).collect();
+        format!("\"{text}\" is no density; give it as 7.85g/cm3 or 7850kg/m3, or as one of {}", names.join(", "))
+    })
 }
 
 #[cfg(test)]
@@ -118,7 +149,18 @@ mod tests {
     }
 
     #[test]
+    fn sizes() {
+        assert_eq!(parse_size("400x600mm"), Ok([400.0, 600.0]));
+        assert_eq!(parse_size("40 x 60 cm"), Ok([400.0, 600.0]));
+        assert_eq!(parse_size("16×24in"), Ok([16.0 * 25.4, 24.0 * 25.4]));
+        for wrong in ["", "400mm", "400x600", "x600mm", "0x1mm", "400x-1mm", "4x5x6mm", "4cmx5mm"] {
+            assert!(parse_size(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
     fn densities() {
+        assert_eq!((parse_density("steel"), parse_density(" PLA ")), (Ok(7850.0), Ok(1240.0)));
         assert_eq!((parse_density("7.85g/cm3"), parse_density("7850 kg/m³")), (Ok(7850.0), Ok(7850.0)));
         for wrong in ["", "7.85", "g/cm3", "-1g/cm3", "7.85 lb/in3"] {
             assert!(parse_density(wrong).is_err(), "{wrong}");
