@@ -7,7 +7,8 @@
 //!
 //! chance = (s + 1)/((n + 1)(d + 1)).
 //!
-//! Where states were found, but none with a certificate, the search goes on to the end. It is an estimate for starts of the kinds that are tried, see [`super::options`]: a state that none of them leads to is not counted.
+//! It is an estimate for starts of the kinds that are tried, see [`super::options`]: a state that none of them leads to is not
+//! counted. While there are states, but none with a certificate, the search goes on.
 
 use super::options::{CELL_SHARE, CELL_STARTS, FOLD_SHARE};
 use crate::question::Effort;
