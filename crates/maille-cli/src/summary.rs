@@ -19,6 +19,7 @@ pub struct Summary {
     statuses: BTreeMap<&'static str, usize>,
     images: usize,
     grows_with_cell: usize,
+    below_bound: Option<f64>,
     better_chance: Option<f64>,
     unstable_waves: usize,
     solved: usize,
@@ -72,6 +73,11 @@ impl Summary {
             statuses: Status::ALL.iter().map(|s| (s.name(), count(*s))).filter(|(_, n)| *n > 0).collect(),
             images: rows.iter().filter(|r| r.image_of_deg.is_some()).count(),
             grows_with_cell: rows.iter().filter(|r| r.l1.is_some() && r.grows_with_cell == Some(true)).count(),
+            below_bound: rows
+                .iter()
+                .filter(|r| r.status == Status::Local)
+                .filter_map(|r| r.bound_gap)
+                .max_by(f64::total_cmp),
             better_chance: rows.iter().filter_map(|r| r.better_chance).max_by(f64::total_cmp),
             unstable_waves: rows.iter().filter(|r| r.wave_curvature.is_some_and(|least| least < 0.0)).count(),
             solved,
@@ -91,13 +97,18 @@ impl Summary {
         }
         for status in Status::ALL {
             if let Some(count) = self.statuses.get(status.name()) {
-                output::say!("{count} {}", status.name());
+                let more = match (status, self.below_bound) {
+                    (Status::Global, _) => ": proved to be the largest".into(),
+                    (Status::Local, Some(gap)) => format!(": up to {gap:.2} below a proven bound"),
+                    _ => String::new(),
+                };
+                output::say!("{count} {}{more}", status.name());
             }
         }
         if let Some(chance) = self.better_chance {
             let percent = 100.0 * chance;
             output::say!(
-                "estimated chance that one more start raises a limit: up to {percent:.0} %; see better_chance"
+                "estimated chance that one more start raises a limit: up to {percent:.0} %; --effort thorough searches further"
             );
         }
         match self.grows_with_cell {
