@@ -13,6 +13,7 @@ use super::{
     starts::{Start, Use, perturbed, rng},
     stop::StopRule,
     stretch_lattices::farthest,
+    waves::OwnCell,
 };
 use crate::{
     answer::{Answer, CellTrend},
@@ -55,6 +56,8 @@ pub struct StrainMethod<'a> {
     models: &'a [Model],
     options: StrainOptions,
     chain: ChainBound,
+    /// The design's own cell, where the first one is larger: its answer is a start.
+    own: Option<Model>,
 }
 
 fn parameter(rate: &Matrix2<f64>) -> Parameter {
@@ -109,7 +112,8 @@ impl<'a> StrainMethod<'a> {
     /// # Panics
     /// If there is no model.
     pub fn new(models: &'a [Model], options: StrainOptions) -> Self {
-        StrainMethod { models, options, chain: ChainBound::new(&models[0]) }
+        let own = (models[0].cell.copies() > 1).then(|| models[0].primitive());
+        StrainMethod { models, options, chain: ChainBound::new(&models[0]), own }
     }
 
     /// The proven bound of p₀.
@@ -136,8 +140,13 @@ impl<'a> StrainMethod<'a> {
         let search = Multistart { target: query, upper_bound, seed, cancel };
         let straight = perturbed(model, &model.start, STRAIGHT, &mut rng(seed, Use::Start, u64::from(u32::MAX)));
         let neighbours: CellStarts = from.iter().map(|(cell, state)| (*cell, Start::written(state.clone()))).collect();
-        let own = neighbours.iter().filter(|(cell, _)| *cell == model.cell).map(|(_, start)| start.clone());
-        let first = search.run(model, std::iter::once(Start::written(straight)).chain(own).collect(), stop);
+        let of =
+            |cell: Cell| neighbours.iter().filter(move |(other, _)| *other == cell).map(|(_, start)| start.clone());
+        let own = self.own.as_ref().map(|own| search.own_cell(own, of(own.cell).collect(), stop, model));
+        let OwnCell { starts: repeated, runs, iterations, .. } = own.unwrap_or_default();
+        let given = std::iter::once(Start::written(straight)).chain(repeated).chain(of(model.cell));
+        let mut first = search.run(model, given.collect(), stop);
+        (first.runs, first.iterations) = (first.runs + runs, first.iterations + iterations);
         let exit = first.first;
         let own_starts = stop.of_larger_cell(least);
         let fallback = Some(Start::written(model.start.clone()));
