@@ -99,7 +99,7 @@ impl Summary {
             if let Some(count) = self.statuses.get(status.name()) {
                 let more = match (status, self.below_bound) {
                     (Status::Global, _) => ": proved to be the largest".into(),
-                    (Status::Local, Some(gap)) => format!(": up to {gap:.2} below a proven bound"),
+                    (Status::Local, Some(gap)) => format!(": up to {gap:.4} below a proven bound"),
                     _ => String::new(),
                 };
                 output::say!("{count} {}{more}", status.name());
@@ -108,7 +108,7 @@ impl Summary {
         if let Some(chance) = self.better_chance {
             let percent = 100.0 * chance;
             output::say!(
-                "estimated chance that one more start raises a limit: up to {percent:.0} %; --effort thorough searches further"
+                "estimated chance that one more start raises a limit: up to {percent:.1} %; a higher --effort searches further"
             );
         }
         match self.grows_with_cell {

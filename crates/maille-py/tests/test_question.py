@@ -40,7 +40,7 @@ def test_wrong_questions():
             maille.limit("1.1", **wrong)
     for effort in ("high", "0s", 3):
         for ask in (lambda e: maille.limit("1.1", maximize="exx", effort=e), lambda e: maille.tightest("1.1", effort=e),
-                    lambda e: maille.characterize("1.1", [0], [0], effort=e)):
+                    lambda e: maille.characterize("1.1", [0], [0], effort=e), lambda e: maille.boundary("1.1", effort=e)):
             with pytest.raises(maille.ArgumentError) as raised:
                 ask(effort)
             assert raised.value.argument == "effort"

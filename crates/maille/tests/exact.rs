@@ -70,6 +70,15 @@ fn starts_explore() {
     assert!(chance > 0.0 && chance <= 0.05, "{chance}");
 }
 
+/// The first 19 starts reach the limit with residuals too large for a certificate, and the search goes on until one has it.
+#[test]
+fn states_without_a_certificate_do_not_end_a_search() {
+    let model = model("5.2", 0.1);
+    let row = map(&[model], &[30.0], &[-0.25], &ExactOptions::default()).remove(0).row;
+    assert_certificate(&row);
+    assert!((row.l1.unwrap() - 0.355_733_687).abs() < 1e-8, "{:?}", row.l1);
+}
+
 /// All thirteen designs, doubled rings with their whole-circle contacts among them.
 #[test]
 fn every_design_is_certified_along_three_directions() {

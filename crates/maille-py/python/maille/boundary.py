@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _native
 from .design import DesignLike, chosen
 from .errors import ShapeError
-from .record import Progress, _Bar, _whole
+from .record import Progress, _Bar, _effort, _whole
 from .table import Columns
 
 if TYPE_CHECKING:
@@ -150,7 +150,7 @@ def _search(tolerance: float, vertices: int, effort: str, starts: int | None, ce
     return _native.boundary_options(
         tolerance=tolerance,
         vertices=_whole("vertices", vertices, 162),
-        effort=effort,
+        effort=_effort(effort),
         starts=None if starts is None else _whole("starts", starts, 1),
         cell=cell,
         seed=_whole("seed", seed, 0),

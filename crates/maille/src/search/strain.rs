@@ -47,7 +47,7 @@ pub struct StrainOptions {
 
 impl Default for StrainOptions {
     fn default() -> Self {
-        StrainOptions { effort: Effort::Normal, starts: None, seed: 1, sense: Sense::Largest, follow_waves: true }
+        StrainOptions { effort: Effort::Normal, starts: None, seed: 1, sense: Sense::Largest, follow_waves: false }
     }
 }
 
