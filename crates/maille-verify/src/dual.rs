@@ -10,6 +10,8 @@
 //!
 //! (1 + l1) P ≤ Σ |y_k| L_k + Σ σ(−M_i) − (1 + l2) T − γ U.
 //!
+//! The links together do no more than Σ |y_k| L_k, and no more than [`crate::width`] says, where each ring has one normal.
+//!
 //! **Rounding.** The forces balance to rounding; what they leave on an element, |Σ w y|, counts times the largest distance of its centre from
 //! another one that it is joined with: the sum over all links of L + |F s| + |o_a| + |o_b|, as a path uses each link at most once. (Over the elements
 //! that are joined the rests sum to 0, so only distances matter.) |F s| ≤ (1 + l1) |s·D| + (1 + l2) |s·D⊥| where l2 is held and γ is 0; the part
@@ -19,9 +21,10 @@
 
 use crate::{
     record::Dual,
-    sheet::{ROUNDING, Vec3},
+    sheet::{ROUNDING, Sheet, Vec3},
     strain::axes,
     tie::{Linked, Place, Tie},
+    width::most_width,
 };
 use nalgebra::{Matrix3, Vector2};
 
@@ -42,8 +45,24 @@ pub(crate) struct Starts<'a> {
     pub first: Option<Linked<'a>>,
 }
 
-/// The value that `forces` prove: 1 + l1 is no larger. Below 0 no state with l1 > −1 has this l2. What is wrong with them otherwise.
-pub(crate) fn bound(starts: Starts<'_>, forces: &[Dual], direction_deg: f64, held: Held) -> Result<f64, String> {
+/// What forces prove: 1 + l1 is no larger than either number. Below 0 no state with l1 > −1 has this l2.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Proven {
+    /// With the length of each link.
+    pub by_lengths: f64,
+    /// With one normal for each ring.
+    pub by_normals: f64,
+}
+
+impl Proven {
+    /// The lower one.
+    pub fn least(&self) -> f64 {
+        self.by_lengths.min(self.by_normals)
+    }
+}
+
+/// What `forces` prove, or what is wrong with them.
+pub(crate) fn bound(starts: Starts<'_>, forces: &[Dual], direction_deg: f64, held: Held) -> Result<Proven, String> {
     let ties: Vec<(Tie, Vec3)> = forces
         .iter()
         .map(|dual| {
@@ -67,7 +86,9 @@ pub(crate) fn bound(starts: Starts<'_>, forces: &[Dual], direction_deg: f64, hel
         pull.add(y.dot(&d) * tie.span.dot(&d), y.norm() * tie.span.norm());
         lateral.add(y.dot(&side) * tie.span.dot(&side), y.norm() * tie.span.norm());
         shear.add(y.dot(&d) * tie.span.dot(&side), y.norm() * tie.span.norm());
-        total.add(y.norm() * tie.length, y.norm() * tie.length);
+        if !tie.is_link {
+            total.add(y.norm() * tie.length, y.norm() * tie.length);
+        }
         for (ring, weight) in &tie.terms {
             let ring = &own.rings[*ring];
             rest[ring.element] += y * *weight;
@@ -99,13 +120,43 @@ pub(crate) fn bound(starts: Starts<'_>, forces: &[Dual], direction_deg: f64, hel
     if held.shear_free {
         total.value += charged(shear.value.abs() + shear.error(), stretch.unwrap_or(f64::INFINITY));
     }
-    let most = total.value + total.error() + charged(left, fixed);
     let least_pull = pull.value - pull.error() - charged(left, growing);
-    if least_pull.is_nan() || least_pull <= 0.0 || !most.is_finite() {
+    let proven = |links: Sum| {
+        let most = total.value + links.value + total.error() + links.error() + charged(left, fixed);
+        // For a negative sum the largest P gives the largest quotient.
+        if most > 0.0 { most / least_pull } else { most / (pull.value + pull.error()) }
+    };
+    let proven = Proven { by_lengths: proven(lengths(&ties)), by_normals: proven(normals(own, &ties)) };
+    if least_pull.is_nan() || least_pull <= 0.0 || !proven.by_lengths.is_finite() {
         return Err("the forces of the bound do not pull".into());
     }
-    // For a negative sum the largest P gives the largest quotient.
-    Ok(if most > 0.0 { most / least_pull } else { most / (pull.value + pull.error()) })
+    Ok(proven)
+}
+
+/// Σ |y| L of the links.
+fn lengths(ties: &[(Tie, Vec3)]) -> Sum {
+    let mut sum = Sum::default();
+    ties.iter()
+        .filter(|(tie, _)| tie.is_link)
+        .for_each(|(tie, y)| sum.add(y.norm() * tie.length, y.norm() * tie.length));
+    sum
+}
+
+/// The most of the links with one normal for each ring.
+fn normals(own: &Sheet, ties: &[(Tie, Vec3)]) -> Sum {
+    let mut at = vec![Vec::new(); own.rings.len()];
+    let mut sum = Sum::default();
+    for (tie, y) in ties.iter().filter(|(tie, _)| tie.is_link) {
+        for (ring, _) in &tie.terms {
+            at[*ring].push(*y);
+            sum.add(-own.rings[*ring].wire * y.norm(), own.rings[*ring].wire * y.norm());
+        }
+    }
+    for (ring, forces) in own.rings.iter().zip(&at).filter(|(_, forces)| !forces.is_empty()) {
+        let width = ring.radius * most_width(forces);
+        sum.add(width, width);
+    }
+    sum
 }
 
 fn y_sum(ties: &[(Tie, Vec3)]) -> f64 {

@@ -25,6 +25,7 @@ mod strain;
 mod tie;
 mod verifier;
 mod waves;
+mod width;
 
 pub use balance::{COMPLEMENTARITY, RESIDUAL};
 pub use gaps::OVERLAP;

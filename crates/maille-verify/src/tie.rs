@@ -25,6 +25,8 @@ pub(crate) fn between(from: [i32; 2], to: [i32; 2]) -> Option<[i32; 2]> {
 
 /// A tie, derived from the links of a start.
 pub(crate) struct Tie {
+    /// Whether it is of two linked rings.
+    pub is_link: bool,
     /// Rings with their weights; none for a chain.
     pub terms: Vec<(usize, f64)>,
     /// S = Σ w s.
@@ -104,13 +106,13 @@ impl<'a> Linked<'a> {
             ("crossing-pairs", &[a, a2, b, b2]) => (&[0.5, 0.5, -0.5, -0.5], self.crossing_pairs([a, a2], [b, b2])?),
             ("chain", _) => {
                 let (vector, length) = self.chain(rings)?;
-                return Ok(Tie { terms: Vec::new(), span: self.sheet.translation(vector), length });
+                return Ok(Tie { is_link: false, terms: Vec::new(), span: self.sheet.translation(vector), length });
             }
             _ => return Err(format!("\"{kind}\" of {} rings is no tie", rings.len())),
         };
         let span = rings.iter().zip(weights).map(|(place, w)| self.sheet.translation(place.1) * *w).sum();
         let terms = rings.iter().map(|place| place.0).zip(weights.iter().copied()).collect();
-        Ok(Tie { terms, span, length })
+        Ok(Tie { is_link: kind == "link", terms, span, length })
     }
 
     fn strand_pair(&self, a: Place, a2: Place, b: Place) -> Result<f64, String> {

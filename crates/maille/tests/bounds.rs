@@ -3,13 +3,13 @@
 use maille::{
     bound::{Bound, BoundKind, ChainBound, LinkBound, best_bound, crossing_pairs_length},
     design::Design,
-    lattice::Direction,
+    lattice::{Across, Direction},
     model::Model,
     state::State,
     topology,
 };
-use maille_geometry::Vec3;
-use nalgebra::Vector2;
+use maille_geometry::{Circle, Vec3, circle_distance_minima, linking_number};
+use nalgebra::{UnitVector3, Vector2};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -289,6 +289,66 @@ fn a_chain_binds_next_to_the_direction_across_it() {
     }
 }
 
+/// Weaves whose rings are pulled in several directions: more than the links prove, and not below the limits found.
+#[test]
+fn normals_lower_the_bound_of_woven_sheets() {
+    let cases = [
+        ("european-4-in-1", 0.0, 0.0, 0.0620502, 0.087),
+        ("european-4-in-1", 90.0, 0.0, 0.1316982, 0.245),
+        ("european-4-in-1", 30.0, 0.1, -0.0112107, 0.042),
+        ("2", 90.0, 0.0, 0.1951130, 0.24),
+        ("kings-mail", 90.0, 0.0, 0.4101681, 0.95),
+    ];
+    for (name, direction_deg, l2, limit, most) in cases {
+        let design = maille_io::read_design(name, maille_io::builtin(name).unwrap()).unwrap();
+        let model = Model::compile(&design, "1x1".parse().unwrap()).unwrap();
+        let chain = ChainBound::new(&model);
+        let link = LinkBound::new(&model, &chain);
+        let direction = Direction::of_degrees(direction_deg);
+        let found = link.limit_by_normals(direction, l2, Across::HELD).l1;
+        assert!(limit <= found && found <= most, "{name} {direction_deg}° {l2}: {found}");
+        assert!(found < best_bound(&chain, Some(&link), direction, l2).l1().unwrap(), "{name} {direction_deg}°");
+    }
+    // Straight chains attain theirs; the descent may stay a little above.
+    for name in ["1.1", "3.1"] {
+        let (chain, link) = bounds(name, 0.1, "1x1");
+        let direction = Direction::of_degrees(0.0);
+        let (attained, found) =
+            (chain.limit(direction, 0.0).l1().unwrap(), link.limit_by_normals(direction, 0.0, Across::HELD).l1);
+        assert!((attained - 1e-12..attained + 1e-3).contains(&found), "{name}: {found} of {attained}");
+    }
+}
+
+/// The lemma on random linked pairs that do not overlap: y·(c_b − c_a) ≤ R_a |y × N_a| + R_b |y × N_b| − (r_a + r_b) |y|.
+#[test]
+fn normals_hold_linked_rings() {
+    let mut rng = ChaCha8Rng::seed_from_u64(17);
+    let mut random = |size: f64| Vec3::from_fn(|_, _| rng.random_range(-size..size));
+    let (mut pairs, mut closest) = (0, f64::INFINITY);
+    while pairs < 2000 {
+        let radii = [0, 1].map(|_| 0.8 + 0.4 * random(1.0).x);
+        let mut circle =
+            |center: Vec3, radius: f64| Circle { center, normal: UnitVector3::new_normalize(random(1.0)), radius };
+        let (a, b) = (circle(Vec3::zeros(), radii[0]), circle(Vec3::zeros(), radii[1]));
+        let b = Circle { center: random(1.9), ..b };
+        if linking_number(&a, &b) == 0 {
+            continue;
+        }
+        pairs += 1;
+        // The thickest wire that fits.
+        let wires = circle_distance_minima(&a, &b).closest().distance;
+        for _ in 0..50 {
+            // Mostly along the line of centres, where it is sharpest.
+            let y = (b.center - a.center) + random(0.5);
+            let width = |circle: &Circle| circle.radius * y.cross(&circle.normal).norm();
+            let slack = width(&a) + width(&b) - wires * y.norm() - y.dot(&(b.center - a.center));
+            assert!(slack >= -1e-12, "{slack} for {a:?}, {b:?}, {y:?}");
+            closest = closest.min(slack / y.norm());
+        }
+    }
+    assert!(closest < 0.02, "never sharp: {closest}");
+}
+
 /// States without overlap that climb towards a limit by random moves never pass the bound.
 #[test]
 fn states_stay_below_the_bound() {
@@ -297,7 +357,9 @@ fn states_stay_below_the_bound() {
         let model = model(name, 0.1, "1x1");
         let (chain, link) = bounds(name, 0.1, "1x1");
         for (degrees, l2) in [(0.0, 0.0), (37.0, -0.02)] {
-            let bound = best_bound(&chain, Some(&link), Direction::of_degrees(degrees), l2).l1().unwrap();
+            let direction = Direction::of_degrees(degrees);
+            let of_links = best_bound(&chain, Some(&link), direction, l2).l1().unwrap();
+            let bound = of_links.min(link.limit_by_normals(direction, l2, Across::HELD).l1);
             let stretched = |state: &State, l1: f64| {
                 let gradient = Direction::of_degrees(degrees).gradient(l1, l2, 0.0);
                 let map = |v: Vec3| {

@@ -57,6 +57,11 @@ pub struct LinkSolution {
 }
 
 impl LinkSolution {
+    /// Nothing is proved.
+    fn nothing() -> Self {
+        LinkSolution { l1: f64::INFINITY, primal_l1: f64::INFINITY, dual: Vec::new(), iterations: 0 }
+    }
+
     /// Whether it is proved that no state has this l2.
     pub fn l2_unreachable(&self) -> bool {
         self.l1 < -1.0 - 1e-9
@@ -70,6 +75,8 @@ const UNREACHABLE: f64 = -1.01;
 #[derive(Clone, Debug)]
 pub struct LinkBound {
     ties: Vec<Tie>,
+    /// Major radii of the rings.
+    radii: Vec<f64>,
     /// First of the nine unknowns of Q, for elements that need it.
     turn: Vec<Option<usize>>,
     /// G and K, complete but for the column of 1 + l1, which depends on the direction.
@@ -79,6 +86,8 @@ pub struct LinkBound {
 
 /// Cells with more elements get the bound of the chains alone: the program is dense, and grows with the cube of their number.
 const MOST_ELEMENTS: usize = 400;
+/// Cells with more elements get no bound by normals: each of its steps balances all forces.
+const MOST_TURNED: usize = 40;
 
 impl LinkBound {
     /// Prepares the program of `model`; its chain bound is used to charge rounding and to recognise free directions.
@@ -111,7 +120,8 @@ impl LinkBound {
         let center: Vec<_> = free.into_iter().map(|yes| take(yes, 3)).collect();
         let turn: Vec<_> = turned.into_iter().map(|yes| take(yes, 9)).collect();
         let template = template(&ties, &center, &turn, next);
-        LinkBound { ties, turn, template, chain: chain.clone() }
+        let radii = model.rings.iter().map(|ring| ring.major_radius).collect();
+        LinkBound { ties, radii, turn, template, chain: chain.clone() }
     }
 
     /// The program of the chains alone, each of them a tie between a ring and its own image.
@@ -125,7 +135,7 @@ impl LinkBound {
         };
         let ties: Vec<Tie> = chain.directions().zip(chain.chains()).map(tie).collect();
         let template = template(&ties, &[], &[], 1);
-        LinkBound { ties, turn: Vec::new(), template, chain: chain.clone() }
+        LinkBound { ties, radii: Vec::new(), turn: Vec::new(), template, chain: chain.clone() }
     }
 
     /// The bound of l1 along a direction with l2 held.
@@ -135,15 +145,8 @@ impl LinkBound {
 
     /// The bound of l1 along a direction, with l2 and the shear held or free.
     pub(crate) fn limit_across(&self, direction: Direction, l2: f64, free: Across) -> LinkSolution {
-        let nothing = LinkSolution { l1: f64::INFINITY, primal_l1: f64::INFINITY, dual: Vec::new(), iterations: 0 };
-        let largest_stretch = match self.chain.limit(direction, l2) {
-            _ if free.any() => self.chain.largest_stretch(),
-            Bound::Unbounded => return nothing,
-            Bound::Finite { l1, .. } => (1.0 + l1).max(1.0 + l2),
-            Bound::L2Unreachable { .. } => 1.0 + l2.max(0.0),
-        };
-        let (along, across) = (direction.along().push(0.0), direction.across().push(0.0));
-        let query = Query { ties: &self.ties, turn: &self.turn, along, across, l2, free, largest_stretch };
+        let Some(query) = self.query(direction, l2, free) else { return LinkSolution::nothing() };
+        let Query { along, across, .. } = query;
         let mut program = self.template.clone();
         let held = program.cost.len();
         let axes: Vec<Vec3> = query.free_axes().collect();
@@ -170,7 +173,7 @@ impl LinkBound {
             }
             best.as_ref().is_some_and(|(l1, _)| *l1 < UNREACHABLE)
         });
-        let Some((l1, forces)) = best else { return nothing };
+        let Some((l1, forces)) = best else { return LinkSolution::nothing() };
         let pull = query.pull(&forces);
         LinkSolution {
             l1,
@@ -178,6 +181,29 @@ impl LinkBound {
             dual: self.dual(&forces, pull),
             iterations: solution.iterations,
         }
+    }
+
+    /// The bound with one normal for each ring, `docs/theory/bounds.md`, "Normals of the rings": lower where the forces at a ring
+    /// pull out of a plane. It takes longer, and is not solved to the last digit.
+    pub fn limit_by_normals(&self, direction: Direction, l2: f64, free: Across) -> LinkSolution {
+        let linked = self.ties.iter().any(Tie::is_link) && self.turn.len() <= MOST_TURNED;
+        let query = self.query(direction, l2, free).filter(|_| linked);
+        let found = query.and_then(|query| query.descend().map(|(l1, forces)| (query.pull(&forces), l1, forces)));
+        let Some((pull, l1, forces)) = found else { return LinkSolution::nothing() };
+        LinkSolution { l1, primal_l1: f64::NEG_INFINITY, dual: self.dual(&forces, pull), iterations: 0 }
+    }
+
+    /// What is asked; `None` where the chains give no bound.
+    fn query(&self, direction: Direction, l2: f64, free: Across) -> Option<Query<'_>> {
+        let largest_stretch = match self.chain.limit(direction, l2) {
+            _ if free.any() => self.chain.largest_stretch(),
+            Bound::Unbounded => return None,
+            Bound::Finite { l1, .. } => (1.0 + l1).max(1.0 + l2),
+            Bound::L2Unreachable { .. } => 1.0 + l2.max(0.0),
+        };
+        let (along, across) = (direction.along().push(0.0), direction.across().push(0.0));
+        let LinkBound { ties, radii, turn, .. } = self;
+        Some(Query { ties, radii, turn, along, across, l2, free, largest_stretch })
     }
 
     /// The forces that are not 0, for a unit pull.

@@ -23,9 +23,11 @@ mod chain;
 mod image;
 mod link;
 mod metric;
+mod normals;
 mod outcome;
 mod proof;
 mod tie;
+mod width;
 
 pub use chain::ChainBound;
 pub use image::{ImageBound, NearImages};
@@ -52,6 +54,20 @@ pub fn best_bound(chain: &ChainBound, link: Option<&LinkBound>, direction: Direc
         Bound::Finite { l1: solution.l1, kind: BoundKind::Link, chain: path.clone(), dual: solution.dual }
     } else {
         first
+    }
+}
+
+/// `bound`, or what the normals of the rings prove where that is lower: for limits that do not attain their bound.
+pub(crate) fn lowered(bound: Bound, link: &LinkBound, direction: Direction, l2: f64, free: Across) -> Bound {
+    let Bound::Finite { l1, chain, .. } = &bound else { return bound };
+    let solution = link.limit_by_normals(direction, l2, free);
+    let (kind, chain) = (BoundKind::Link, chain.clone());
+    if solution.l2_unreachable() {
+        Bound::L2Unreachable { kind, chain, dual: solution.dual }
+    } else if solution.l1 < l1 - SAME {
+        Bound::Finite { l1: solution.l1, kind, chain, dual: solution.dual }
+    } else {
+        bound
     }
 }
 

@@ -8,6 +8,8 @@ use nalgebra::{DMatrix, DVector, Matrix3, Matrix4};
 /// One direction and l2 of a bound.
 pub(super) struct Query<'a> {
     pub ties: &'a [Tie],
+    /// Major radii of the rings.
+    pub radii: &'a [f64],
     /// For each element whether it has a matrix Q.
     pub turn: &'a [Option<usize>],
     pub along: Vec3,
@@ -54,17 +56,24 @@ impl Query<'_> {
         out
     }
 
-    /// The l1 that these forces prove; `None` where they do not pull.
-    fn prove(&self, forces: &[Vec3]) -> Option<f64> {
+    /// Σ |y| L over the links.
+    pub(super) fn lengths_of_links(&self, forces: &[Vec3]) -> f64 {
+        self.ties.iter().zip(forces).filter(|(tie, _)| tie.is_link()).map(|(tie, y)| y.norm() * tie.length).sum()
+    }
+
+    /// The l1 that these forces prove if those of the links do no more than `links`; `None` where they do not pull.
+    pub(super) fn prove(&self, forces: &[Vec3], links: f64) -> Option<f64> {
         let pull = self.pull(forces);
         if !(pull > 0.0 && pull.is_finite()) {
             return None;
         }
-        let mut total = 0.0;
+        let mut total = links;
         let mut moments = vec![Matrix3::zeros(); self.turn.len()];
         let mut farthest = 0.0;
         for (tie, y) in self.ties.iter().zip(forces) {
-            total += y.norm() * tie.length;
+            if !tie.is_link() {
+                total += y.norm() * tie.length;
+            }
             if !self.free.lateral_free {
                 total -= (1.0 + self.l2) * y.dot(&self.across) * tie.span.dot(&self.across);
             }
@@ -105,7 +114,7 @@ impl Query<'_> {
             }
             kept_before = n_kept;
             let balanced = self.balanced(forces, &kept);
-            if let Some(l1) = self.prove(&balanced)
+            if let Some(l1) = self.prove(&balanced, self.lengths_of_links(&balanced))
                 && best.as_ref().is_none_or(|(least, _)| l1 < *least)
             {
                 best = Some((l1, balanced));
@@ -118,7 +127,7 @@ impl Query<'_> {
     ///
     /// B Bᵀ is singular (a connected part moves freely); a small shift and a few rounds give the pseudo-inverse. The rows of
     /// what is free couple the three axes of space; without them each axis is solved for itself.
-    fn balanced(&self, forces: &[Vec3], kept: &[bool]) -> Vec<Vec3> {
+    pub(super) fn balanced(&self, forces: &[Vec3], kept: &[bool]) -> Vec<Vec3> {
         let n = self.turn.len();
         let mut square = DMatrix::<f64>::identity(n, n) * 1e-6;
         for (tie, _) in self.ties.iter().zip(kept).filter(|(_, k)| **k) {

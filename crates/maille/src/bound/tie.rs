@@ -59,6 +59,12 @@ pub(super) struct Tie {
     pub(super) length: f64,
 }
 
+impl Tie {
+    pub(super) fn is_link(&self) -> bool {
+        self.kind == TieKind::Link
+    }
+}
+
 /// A ring of the sheet: index in the model and cell.
 pub(super) type Place = (usize, Shift);
 

@@ -21,7 +21,7 @@ use super::{
 };
 use crate::{
     answer::{Answer, CellTrend},
-    bound::{Bound, ChainBound, ImageBound, LinkBound, NearImages, best_bound_across},
+    bound::{Bound, ChainBound, ImageBound, LinkBound, NearImages, best_bound_across, lowered},
     lattice::{Across, Cell, Direction},
     model::Model,
     program::{LatticeFamily, SheetProgram},
@@ -155,17 +155,21 @@ impl<'a> ExactMethod<'a> {
         let bound = best_bound_across(&self.chain, Some(&self.link), direction, l2, across);
         let unreachable = matches!(bound, Bound::L2Unreachable { .. });
         // The bounds are of the largest l1; of the least one they tell only that no state has this l2.
-        let proved = |answer: Answer| if least && !unreachable { answer } else { answer.bounded_by(&bound) };
-        let ended =
-            |status: Status, note: Option<String>| (proved(Answer { note, ..self.without_state(status) }), Vec::new());
+        let proved = |answer: Answer, bound: &Bound| match bound {
+            Bound::Finite { .. } if least => answer,
+            _ => answer.bounded_by(bound),
+        };
+        let ended = |status: Status, note: Option<String>, bound: &Bound| {
+            (proved(Answer { note, ..self.without_state(status) }, bound), Vec::new())
+        };
         if cancel.load(Ordering::Relaxed) {
-            return ended(Status::Interrupted, None);
+            return ended(Status::Interrupted, None, &bound);
         }
         if unreachable {
-            return ended(Status::L2Unreachable, None);
+            return ended(Status::L2Unreachable, None, &bound);
         }
         if let Some(overlapping) = &self.overlapping {
-            return ended(Status::InfeasibleStart, Some(overlapping.message()));
+            return ended(Status::InfeasibleStart, Some(overlapping.message()), &bound);
         }
         let of = |cell: Cell| neighbours.iter().find(|(other, _)| *other == cell).map(|(_, start)| start.clone());
         let neighbour = of(self.models[0].cell);
@@ -201,7 +205,7 @@ impl<'a> ExactMethod<'a> {
         };
         let found = search.larger_cells(self.models, first, &rule);
         if cancel.load(Ordering::Relaxed) {
-            return ended(Status::Interrupted, None);
+            return ended(Status::Interrupted, None, &bound);
         }
         if let (None, Some(near)) = (&found.result.best, &near) {
             let name = &self.models[0].elements[near.element].name;
@@ -210,16 +214,21 @@ impl<'a> ExactMethod<'a> {
                 "in this cell element `{name}` and its image at ({p}, {q}) would be {:.3} R apart, which cannot be less than {:.3} R",
                 near.distance, near.least
             );
-            return ended(Status::L2Unreachable, Some(note));
+            return ended(Status::L2Unreachable, Some(note), &bound);
+        }
+        let bound = self.lowered(bound, stretch, &found.result);
+        let upper_bound = bound.l1().filter(|_| !least).unwrap_or(upper_bound);
+        if found.result.best.is_none() && matches!(bound, Bound::L2Unreachable { .. }) {
+            return ended(Status::L2Unreachable, None, &bound);
         }
         let (model, wave) = (found.model(self.models).clone(), found.wave);
         let kept = if least || found.by_cell.len() > 1 { found.by_cell } else { Vec::new() };
         // What was maximised is −l1 where the least is sought.
         let value = |t: CellTrend| CellTrend { value: t.value.map(|value| stretch.sign * value), ..t };
-        let answer = proved(self.judge(&model, stretch, upper_bound, found.result, cancel));
+        let answer = proved(self.judge(&model, stretch, upper_bound, found.result, cancel), &bound);
         // Ranges of what is free are solved for after the search: without them the answer is not whole.
         if cancel.load(Ordering::Relaxed) {
-            return ended(Status::Interrupted, None);
+            return ended(Status::Interrupted, None, &bound);
         }
         let by_cell = kept.into_iter().map(value).collect();
         // Of a largest l1 the best cell is enough.
@@ -227,6 +236,16 @@ impl<'a> ExactMethod<'a> {
         let reached = found.starts.into_iter().filter(|(cell, _)| best(cell));
         let own = own.best.map(|start| (Cell::PRIMITIVE, start));
         (Answer { by_cell, wave, ..answer }, reached.chain(own).collect())
+    }
+
+    /// The bound, or a lower one where the search does not attain it. Of the least l1 bounds only tell that no state has this l2.
+    fn lowered(&self, bound: Bound, stretch: &Stretch, found: &SearchResult) -> Bound {
+        let least = stretch.sign < 0.0;
+        let settled = if least { found.best.is_some() } else { bound.l1().is_none_or(|l1| found.attains(l1)) };
+        if settled {
+            return bound;
+        }
+        lowered(bound, &self.link, stretch.direction, stretch.l2, stretch.across)
     }
 
     /// What the design's own cell gives to a larger first one.
