@@ -227,7 +227,9 @@ impl Found<'_> {
             say!("  aspect ratio    {:.6} = inner diameter / wire diameter", size.aspect_ratio());
         }
         for (name, a) in [("a1", found.state.a1), ("a2", found.state.a2)].map(|(n, a)| (n, a * self.model().unit)) {
-            say!("  {name}              {:.6}, {:.6}{unit}", a.x, a.y);
+            // + 0.0 makes −0 equal to 0
+            let [x, y] = [a.x, a.y].map(|x| (x * 1e6).round() / 1e6 + 0.0);
+            say!("  {name}              {x:.6}, {y:.6}{unit}");
         }
         say!("  {}; {wall_s:.1} s", certificate::search(found));
         if let Some(c) = &found.certificate {

@@ -46,7 +46,7 @@ pub struct Args {
     /// Minor radius r, half of the wire's diameter
     #[arg(long, value_parser = positive, requires = "major")]
     minor: Option<f64>,
-    /// Unit of --major and --minor; a label in the file
+    /// Unit of --major and --minor, and of the file
     #[arg(long, default_value = "mm")]
     unit: String,
     /// Wire, as 1.6mm, 0.064in, 16swg or 16awg; the file is in mm
@@ -127,7 +127,7 @@ pub fn run(args: &Args) -> Result<()> {
         });
         let file = out.display();
         output::say!(
-            "{file}  {}: {} rings and {} links a cell{gap}",
+            "{file}  {}: {} rings and {} links per cell{gap}",
             design.title,
             model.rings.len(),
             model.links.len()

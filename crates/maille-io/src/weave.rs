@@ -284,7 +284,7 @@ impl Weave {
         out += "# The placement is the one with the largest gaps; strains are relative to it.\n\n";
         for line in write_design(design).lines() {
             out += match line.split(' ').next().unwrap_or_default() {
-                "unit" => "# A label; nothing is scaled by it.\n",
+                "unit" => "# The unit of all lengths in this file.\n",
                 "minor_radius" => "# Half of the wire's diameter.\n",
                 "reference_radius" => {
                     "# R, from the centre of a ring to the middle of its wire; tolerances are relative to it.\n"

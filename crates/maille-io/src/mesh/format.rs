@@ -125,8 +125,8 @@ impl MeshFile {
                     32 * corners + (3 * index + 1) * triangles
                 }
                 // Deflated text: meshes once, a line for each ring.
-                MeshFile::ThreeMf => 12 * shapes + 16 * rings,
-                MeshFile::Glb => 18 * shapes + 230 * rings,
+                MeshFile::ThreeMf => 10 * shapes + 4 * rings,
+                MeshFile::Glb => 18 * shapes + 130 * rings,
                 MeshFile::VtkRings => (24 + 20 + 20) * corners,
                 MeshFile::VtkPoses => 60 * rings,
                 MeshFile::VtkContacts => 56 * scene.contacts.len() as u64,
