@@ -47,7 +47,7 @@ def baked(prefix, expected):
         if isinstance(mesh, trimesh.Scene):
             mesh = mesh.to_mesh()
         check_trimesh(name, mesh, expected)
-        check_box(name, mesh.bounds, expected["box"])
+        check_box(name, mesh.bounds, [[0, 0, 0], np.subtract(*expected["box"][::-1])])
 
 
 def glb(prefix, expected):
@@ -61,8 +61,8 @@ def glb(prefix, expected):
     mesh.merge_vertices()
     check_trimesh(name, mesh, expected, 0.001)
     # glTF is y up: (x, y, z) is our (x, z, -y).
-    (x0, y0, z0), (x1, y1, z1) = expected["box"]
-    check_box(name, mesh.bounds, [[x0, z0, -y1], [x1, z1, -y0]], 0.001)
+    x, y, z = np.subtract(*expected["box"][::-1])
+    check_box(name, mesh.bounds, [[0, 0, -y], [x, z, 0]], 0.001)
 
 
 def transform(t):

@@ -7,22 +7,26 @@ use crate::{
     watch::watch,
 };
 use maille::{lattice::Cell, topology};
+use maille_io::ListedProblem;
 use miette::{Report, Result};
-use serde_json::{Value, json};
+use serde::Serialize;
+use serde_json::json;
 use std::process::ExitCode;
 
 /// Design files, checked without solving
 ///
 /// Reads each file, compiles it, and looks for overlap. What is wrong is shown with its line; --json lists it for scripts.
+/// Warnings name what can be solved but is odd: elements that nothing is linked to, elements of one shape with unequal numbers of
+/// neighbours, a sheet that does not hold together, an unknown unit.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   maille check my-weave.toml
-  maille check designs/*.toml --quiet && echo all right
+  maille check designs/*.toml --quiet && echo all can be solved
   maille check --watch my-weave.toml
   maille new x --weave kings-mail --wire 16swg --id 7/16in -o - | maille check -
 
-Exit codes: 0 all are right, 3 one is wrong or missing.")]
+Exit codes: 0 all can be solved, perhaps with warnings; 3 one is wrong or missing.")]
 pub struct Args {
     /// TOML files, built-in designs, or - for standard input
     #[arg(required = true, value_name = "FILE")]
@@ -51,17 +55,22 @@ fn once(args: &Args) -> Result<ExitCode> {
     for name in &args.designs {
         match check(name) {
             Ok(found) => {
+                if !args.json {
+                    for warning in &found.warnings {
+                        eprintln!("{}", line(name, warning));
+                    }
+                }
                 if !args.json && !args.quiet {
                     output::say!("{name}: {}", words(&found));
                 }
-                files.push(found);
+                files.push(json!(found));
             }
             Err(report) => {
                 worst = worst.max(remedy::code(&report));
                 if !args.json {
                     eprintln!("{report:?}");
                 }
-                files.push(json!({ "file": name, "ok": false, "problems": problems(&report) }));
+                files.push(json!({ "file": name, "ok": false, "problems": problems(&report), "warnings": [] }));
             }
         }
     }
@@ -71,34 +80,58 @@ fn once(args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::from(worst))
 }
 
-fn check(name: &str) -> Result<Value, Report> {
-    let input = Input::read(name, None)?;
-    let model = input.compile(&input.design, Cell::PRIMITIVE)?;
-    let gap = topology::smallest_gap(&model, &model.start).map(|(gap, _)| gap * model.unit);
-    Ok(json!({
-        "file": name,
-        "ok": true,
-        "problems": [],
-        "design": input.design.name,
-        "unit": input.design.unit,
-        "elements": model.elements.len(),
-        "rings": model.rings.len(),
-        "links": model.links.len(),
-        "smallest_gap": gap,
-        "bound": !topology::binding_vectors(&model).is_empty(),
-    }))
+/// What is told of a file that can be solved.
+#[derive(Serialize)]
+struct Found {
+    file: String,
+    ok: bool,
+    problems: [(); 0],
+    warnings: Vec<ListedProblem>,
+    design: String,
+    unit: Option<String>,
+    elements: usize,
+    rings: usize,
+    links: usize,
+    smallest_gap: Option<f64>,
+    bound: bool,
 }
 
-fn words(found: &Value) -> String {
-    let gap = match found["smallest_gap"].as_f64() {
+fn check(name: &str) -> Result<Found, Report> {
+    let input = Input::read(name, None)?;
+    let model = input.compile(&input.design, Cell::PRIMITIVE)?;
+    Ok(Found {
+        file: name.to_owned(),
+        ok: true,
+        problems: [],
+        warnings: input.warnings(&model),
+        elements: model.elements.len(),
+        rings: model.rings.len(),
+        links: model.links.len(),
+        smallest_gap: topology::smallest_gap(&model, &model.start).map(|(gap, _)| gap * model.unit),
+        bound: !topology::binding_vectors(&model).is_empty(),
+        design: input.design.name,
+        unit: input.design.unit,
+    })
+}
+
+/// `my-weave.toml:17: warning: …`.
+fn line(name: &str, warning: &ListedProblem) -> String {
+    let place = warning.line.map_or(String::new(), |line| format!("{line}:"));
+    let help = warning.help.as_ref().map_or(String::new(), |help| format!("\n  help: {help}"));
+    format!("{name}:{place} warning: {}{help}", warning.problem)
+}
+
+fn words(found: &Found) -> String {
+    let gap = match found.smallest_gap {
         Some(gap) if gap < 0.0 => format!(", overlap {:.6} (allowed by the file)", -gap),
         Some(gap) => format!(", smallest gap {gap:.6}"),
         None => String::new(),
     };
-    let unit = found["unit"].as_str().map_or(String::new(), |u| format!(" {u}"));
-    let free = match found["bound"].as_bool() {
-        Some(true) => "",
-        _ => "; no chain of links joins the cells: no pull has a bound",
+    let unit = found.unit.as_ref().map_or(String::new(), |u| format!(" {u}"));
+    let warnings = match found.warnings.len() {
+        0 => String::new(),
+        1 => " with 1 warning".into(),
+        n => format!(" with {n} warnings"),
     };
-    format!("right; {} rings, {} links a cell{gap}{unit}{free}", found["rings"], found["links"])
+    format!("OK{warnings}; {} rings, {} links per cell{gap}{unit}", found.rings, found.links)
 }

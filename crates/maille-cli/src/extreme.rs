@@ -9,7 +9,7 @@ use crate::{
     interrupt,
     map::pool,
     numbers::positive,
-    output::{self, say},
+    output::{self, Replace, say},
 };
 use maille::{
     answer::Answer,
@@ -21,7 +21,7 @@ use maille::{
     search::extreme::{Extreme, Size},
     sheet::Sheet,
 };
-use maille_io::{answer, write_design};
+use maille_io::{answer, mesh::millimetres, write_design};
 use miette::Result;
 use std::{path::PathBuf, process::ExitCode, time::Instant};
 
@@ -75,6 +75,8 @@ struct Common {
     /// Write the state as a design file
     #[arg(long, value_name = "FILE")]
     save: Option<PathBuf>,
+    #[command(flatten)]
+    replace: Replace,
     /// Threads [default: all cores]; results do not depend on it
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
@@ -101,6 +103,7 @@ pub fn roomiest(args: &RoomiestArgs) -> Result<ExitCode> {
 }
 
 fn run(args: &Common, what: Extreme) -> Result<ExitCode> {
+    args.save.iter().try_for_each(|file| args.replace.check(file))?;
     let input = Input::read(&args.design, args.minor_radius)?;
     let begun = Instant::now();
     let answer = search(&input, what, args.lattice, args.search, args.threads)?;
@@ -118,7 +121,8 @@ fn run(args: &Common, what: Extreme) -> Result<ExitCode> {
     Ok(exit::of_answer(found.status))
 }
 
-fn search<'a>(
+/// The extreme state, searched for.
+pub fn search<'a>(
     input: &'a Input,
     what: Extreme,
     lattice: Option<Lattice>,
@@ -158,13 +162,16 @@ pub fn as_design(
         }
         (status, Some(_)) => {
             let unit = input.design.unit.as_deref().map(|unit| format!(" {unit}")).unwrap_or_default();
-            let size = match what.clearance(&answer.found, answer.model()) {
-                Some(gap) => format!("smallest gap {gap:.9}{unit}"),
-                None => format!("minor radius {:.9}{unit}", what.sizes(&answer.found, answer.model())[0].minor_radius),
+            // The gap of the roomiest state is said where it is known in millimetres.
+            let size = match what {
+                Extreme::LargestClearance => String::new(),
+                Extreme::ThickestWire => {
+                    format!(": minor radius {:.9}{unit}", what.sizes(&answer.found, answer.model())[0].minor_radius)
+                }
             };
             Ok((
                 answer.what.design(&answer.found, &input.design, answer.model()),
-                format!("{}, {}: {size}", answer.title(), status.name()),
+                format!("{}, {}{size}", answer.title(), status.name()),
             ))
         }
     }
@@ -179,16 +186,17 @@ pub fn word(what: Extreme) -> &'static str {
 }
 
 /// What was asked, and what was found.
-struct Found<'a> {
+pub struct Found<'a> {
     input: &'a Input,
     sheet: Sheet,
     what: Extreme,
     lattice_free: bool,
-    found: Answer,
+    pub found: Answer,
 }
 
 impl Found<'_> {
-    fn model(&self) -> &Model {
+    /// The model of the state.
+    pub fn model(&self) -> &Model {
         self.sheet.model()
     }
 
@@ -207,7 +215,11 @@ impl Found<'_> {
             return;
         }
         if let Some(gap) = self.what.clearance(found, self.model()) {
-            say!("  smallest gap    {gap:.9}{unit}");
+            let mm = self.input.design.unit.as_deref().and_then(millimetres).filter(|mm| *mm != 1.0);
+            say!("  smallest gap    {gap:.9}{unit}{}", mm.map_or(String::new(), |mm| format!(" ({:.6} mm)", gap * mm)));
+        }
+        if self.what.clearance(found, self.model()).is_some_and(|gap| gap < 0.0) {
+            say!("  rings overlap even so: they need thinner wire or a larger inner diameter");
         }
         for size in self.what.sizes(found, self.model()) {
             let Size { major_radius, minor_radius } = size;
@@ -215,7 +227,9 @@ impl Found<'_> {
             say!("  aspect ratio    {:.6} = inner diameter / wire diameter", size.aspect_ratio());
         }
         for (name, a) in [("a1", found.state.a1), ("a2", found.state.a2)].map(|(n, a)| (n, a * self.model().unit)) {
-            say!("  {name}              {:.6}, {:.6}{unit}", a.x, a.y);
+            // + 0.0 makes −0 equal to 0
+            let [x, y] = [a.x, a.y].map(|x| (x * 1e6).round() / 1e6 + 0.0);
+            say!("  {name}              {x:.6}, {y:.6}{unit}");
         }
         say!("  {}; {wall_s:.1} s", certificate::search(found));
         if let Some(c) = &found.certificate {

@@ -1,9 +1,14 @@
 //! A design from a built-in name or a file, and its model.
 
 use crate::exit::{self, wrong};
-use maille::{design::Design, error::InvalidInput, lattice::Cell, model::Model, sheet::Sheet, survey::CellChoice};
+use maille::{
+    design::Design, error::InvalidInput, lattice::Cell, model::Model, sheet::Sheet, survey::CellChoice, topology,
+};
 pub use maille_io::record::file_name;
-use maille_io::{DesignError, DesignSource, builtin, builtin_designs, nearest_builtin, study::Variant, write_design};
+use maille_io::{
+    DesignError, DesignSource, ListedProblem, builtin, builtin_designs, mesh::millimetres, nearest_builtin,
+    study::Variant, write_design,
+};
 use miette::{IntoDiagnostic, Report, Result, WrapErr};
 use serde_json::{Value, json};
 use std::{io::Read, path::Path};
@@ -51,6 +56,16 @@ impl Input {
         Ok(Input { design, source, changed: minor_radius.map(|r| format!("--minor-radius {r}")) })
     }
 
+    /// What is odd about the design, with the place in the file; nothing of it keeps it from being solved.
+    pub fn warnings(&self, model: &Model) -> Vec<ListedProblem> {
+        let mut found = topology::warnings(model);
+        if let Some(unit) = self.design.unit.as_deref().filter(|unit| millimetres(unit).is_none()) {
+            let problem = format!("\"{unit}\" is not a known unit: no weight, no size in millimetres");
+            found.push(InvalidInput::new("unit", problem, "known are mm, cm, m, um, in and ft"));
+        }
+        self.source.explain(&found).list()
+    }
+
     /// The same design with the parameters of a study.
     pub fn varied(&self, variant: &Variant) -> Result<Input> {
         let design = variant.of(&self.design).map_err(|e| wrong(exit::USAGE, e.problem, e.help))?;
@@ -86,10 +101,17 @@ impl Input {
     }
 
     fn explain(&self, problems: &[InvalidInput]) -> Report {
-        match &self.changed {
-            Some(changed) => of_change(changed, problems),
-            None => Report::new(self.source.explain(problems)),
+        if let Some(changed) = &self.changed {
+            return of_change(changed, problems);
         }
+        let with_cure = |problem: &InvalidInput| {
+            let mut problem = problem.clone();
+            if problem.help.contains(OVERLAP_FIELD) {
+                problem.help += &format!("\n{}", cure(self.source.name()));
+            }
+            problem
+        };
+        Report::new(self.source.explain(&problems.iter().map(with_cure).collect::<Vec<_>>()))
     }
 }
 
@@ -99,10 +121,25 @@ const MOST: usize = 6;
 fn of_change(changed: &str, problems: &[InvalidInput]) -> Report {
     let mut list: Vec<String> = problems.iter().take(MOST).map(|p| format!("  {}: {}", p.field, p.problem)).collect();
     list.extend((problems.len() > MOST).then(|| format!("  … and {} more", problems.len() - MOST)));
-    wrong(
-        exit::DESIGN,
-        format!("with {changed} the design cannot be used:\n{}", list.join("\n")),
-        "take a smaller minor radius, or allow_initial_overlap = true in the file where rings may start overlapped",
+    let overlap = problems.iter().any(|p| p.help.contains(OVERLAP_FIELD));
+    let help = match (overlap, problems) {
+        (true, _) => {
+            format!("take a smaller minor radius, or write {OVERLAP_FIELD} = true in the file\n{}", cure("FILE"))
+        }
+        (false, [first, ..]) => first.help.clone(),
+        (false, []) => String::new(),
+    };
+    wrong(exit::DESIGN, format!("with {changed} the design cannot be used:\n{}", list.join("\n")), help)
+}
+
+/// The field by which a design allows overlaps at its start; errors of overlaps name it.
+const OVERLAP_FIELD: &str = "allow_initial_overlap";
+
+/// How rings that overlap find their places.
+fn cure(file: &str) -> String {
+    let file = if file.ends_with(".toml") { file } else { "FILE" };
+    format!(
+        "with that line, `maille roomiest {file} --lattice free --save NEW.toml` moves the rings as far apart as they go"
     )
 }
 

@@ -1,10 +1,12 @@
 //! `maille inspect`: what a design is made of, before anything is solved.
 
 use crate::{
-    exit::{self, wrong},
+    exit,
     input::Input,
+    inspect_piece::{OfCell, Piece, other_states},
     numbers::{positive, read},
     output,
+    piece::known_millimetres,
     source::tolerant,
     units::{parse_density, parse_size},
     watch::watch,
@@ -30,8 +32,9 @@ const BOUND_DIRECTIONS: [f64; 7] = [0.0, 15.0, 30.0, 45.0, 60.0, 75.0, 90.0];
 Examples:
   maille inspect 1.1
   maille inspect my-weave.toml --minor-radius 0.08
-  maille inspect european-4-in-1 --density steel                    its weight for each square metre
+  maille inspect european-4-in-1 --density steel                    its weight per square metre
   maille inspect european-4-in-1 --density steel --size 40x60cm     rings, wire and weight of a piece
+  maille inspect european-4-in-1 --density steel --size 40x60cm --states    also of a sheet that is stretched
   maille inspect kings-mail --json | jq .smallest_gap
   maille inspect my-weave.toml --watch")]
 pub struct Args {
@@ -46,9 +49,14 @@ pub struct Args {
     /// Density of the wire, as 7.85g/cm3 or 7850kg/m3, or a material: steel, stainless, aluminium, brass, pla, …: adds the weight
     #[arg(long, value_parser = parse_density)]
     density: Option<f64>,
-    /// Width and height of a piece, as 400x600mm or 16x24in: adds its whole cells, rings, wire and weight, in the spacing of the design
+    /// Width along a1 and height across it of a piece, as 400x600mm or 16x24in, measured with the wire: adds the whole cells that come
+    /// nearest, with rings, wire and weight
     #[arg(long, value_parser = parse_size, conflicts_with = "cell")]
     size: Option<[f64; 2]>,
+    /// With --size: the same piece also of the roomiest sheet, and of one stretched across its rows until it locks; both states are
+    /// searched for
+    #[arg(long, requires = "size")]
+    states: bool,
     /// Print one JSON document; docs/json.md has its keys
     #[arg(long)]
     json: bool,
@@ -78,6 +86,8 @@ struct Inspection {
     wire: Wire,
     #[serde(skip_serializing_if = "Option::is_none")]
     piece: Option<Piece>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    piece_of_other_states: Vec<Piece>,
     binding_vectors: Vec<Shift>,
     chains: Vec<Chain>,
     bounds: Vec<Bound>,
@@ -118,17 +128,6 @@ struct Wire {
     length_per_area: f64,
     metres_per_square_metre: Option<f64>,
     kilograms_per_square_metre: Option<f64>,
-}
-
-/// The whole cells nearest to a size that is asked for: `cells[0]` along a1, `cells[1]` along a2. Lengths in millimetres.
-#[derive(Serialize)]
-struct Piece {
-    cells: [u64; 2],
-    /// Along a1, and across it.
-    size_mm: [f64; 2],
-    rings: u64,
-    wire_metres: f64,
-    kilograms: Option<f64>,
 }
 
 #[derive(Serialize)]
@@ -200,7 +199,17 @@ fn inspection(input: &Input, model: &Model, args: &Args) -> Result<Inspection> {
     let (chains, bounds) = if binding_vectors.is_empty() { Default::default() } else { bounds(model) };
     let metres = metres(design.unit.as_deref(), args)?;
     let wire = wire(model, metres, area, args.density);
-    let piece = args.size.zip(metres).map(|(size, metres)| piece(model, metres, size, &wire));
+    let of_cell = metres.map(|metres| OfCell {
+        rings: model.rings.len(),
+        wire_metres: wire.length * metres,
+        kilograms: wire.kilograms_per_square_metre.map(|weight| weight * area * metres * metres),
+    });
+    let asked = args.size.zip(metres).zip(of_cell).map(|((size, metres), cell)| (size, metres * 1000.0, cell));
+    let piece = asked.map(|(size, mm, cell)| Piece::new(model, &model.start, mm, size, cell));
+    let piece_of_other_states = match asked.filter(|_| args.states) {
+        Some((size, mm, cell)) => other_states(input, mm, size, cell)?,
+        None => Vec::new(),
+    };
     Ok(Inspection {
         design: design.name.clone(),
         title: design.title.clone(),
@@ -219,43 +228,21 @@ fn inspection(input: &Input, model: &Model, args: &Args) -> Result<Inspection> {
         overlap_allowed: design.allow_initial_overlap,
         wire,
         piece,
+        piece_of_other_states,
         binding_vectors,
         chains,
         bounds,
     })
 }
 
-/// Metres in one unit of the file, where it is known.
+/// Metres in one unit of the file, where it is known; an error if it is not, and is needed.
 fn metres(unit: Option<&str>, args: &Args) -> Result<Option<f64>> {
-    let metres = unit.and_then(millimetres).map(|mm| mm / 1000.0);
     let asked = [("a weight", "--density", args.density.is_some()), ("a size", "--size", args.size.is_some())];
-    let Some((what, option, _)) = asked.into_iter().find(|(.., given)| *given && metres.is_none()) else {
-        return Ok(metres);
-    };
-    let problem = match unit {
-        None => format!("{what} needs the design's unit of length, and the file names none"),
-        Some(unit) => format!("{what} needs a unit of length, and \"{unit}\" is not known"),
-    };
-    let help = format!("write unit = \"mm\" at the top of the file, or leave {option} out");
-    Err(wrong(exit::USAGE, problem, help))
-}
-
-/// The piece of whole cells nearest to `size`, in millimetres: its width along a1, its height across it.
-fn piece(model: &Model, metres: f64, size: [f64; 2], wire: &Wire) -> Piece {
-    let mm = model.unit * metres * 1000.0;
-    let (a1, a2) = (model.start.a1, model.start.a2);
-    let steps = [a1.norm() * mm, a1.cross(&a2).norm() / a1.norm() * mm];
-    let cells: [f64; 2] = std::array::from_fn(|k| (size[k] / steps[k]).round().max(1.0));
-    let size_mm: [f64; 2] = std::array::from_fn(|k| cells[k] * steps[k]);
-    let count = cells[0] * cells[1];
-    let square_metres = size_mm[0] * size_mm[1] * 1e-6;
-    Piece {
-        cells: cells.map(|n| n as u64),
-        size_mm,
-        rings: (count * model.rings.len() as f64) as u64,
-        wire_metres: count * wire.length * metres,
-        kilograms: wire.kilograms_per_square_metre.map(|weight| weight * square_metres),
+    match asked.into_iter().find(|(.., given)| *given) {
+        Some((what, option, _)) => known_millimetres(unit, what, option).map(Some),
+        None => Ok(unit.and_then(millimetres)),
     }
+    .map(|mm| mm.map(|mm| mm / 1000.0))
 }
 
 /// A ring of major radius R and minor radius r is 2 π R of wire and 2 π² R r² of metal.
@@ -304,7 +291,7 @@ impl Inspection {
             "area {:.4}{square}, angle {:.2}°, reference radius {}{unit}",
             self.area, self.angle_deg, self.reference_radius
         ));
-        line(format!("{} elements, {} rings, {} links a cell\n", self.elements.len(), self.rings, self.links));
+        line(format!("{} elements, {} rings, {} links per cell\n", self.elements.len(), self.rings, self.links));
         for element in &self.elements {
             line(format!("\"{}\"", element.name));
             for ring in &element.rings {
@@ -337,18 +324,18 @@ impl Inspection {
         }
         let Wire { length, length_per_area, metres_per_square_metre, kilograms_per_square_metre } = &self.wire;
         let per_area = match metres_per_square_metre {
-            Some(metres) => format!("{metres:.1} m a square metre of sheet"),
-            None => format!("{length_per_area:.4} for each unit of area"),
+            Some(metres) => format!("{metres:.1} m per square metre of sheet"),
+            None => format!("{length_per_area:.4} per unit of area"),
         };
-        line(format!("wire {length:.4}{unit} a cell, {per_area}"));
+        line(format!("wire {length:.4}{unit} per cell, {per_area}"));
         if let Some(weight) = kilograms_per_square_metre {
-            line(format!("weight {weight:.3} kg a square metre"));
+            line(format!("weight {weight:.3} kg per square metre"));
         }
-        if let Some(Piece { cells: [n, m], size_mm: [width, height], rings, wire_metres, kilograms }) = &self.piece {
-            let weight = kilograms.map_or(String::new(), |weight| format!(", {weight:.3} kg"));
-            line(format!(
-                "piece of {n}x{m} cells (--tile {n}x{m}), {width:.1} x {height:.1} mm: {rings} rings, {wire_metres:.1} m of wire{weight}"
-            ));
+        for piece in self.piece.iter().chain(&self.piece_of_other_states) {
+            line(piece.words());
+        }
+        if self.piece.is_some() {
+            line("export, render and simulate take the same --size".into());
         }
         if self.binding_vectors.is_empty() {
             line("warning: no chain of links joins the cells; no pull has a bound".into());

@@ -17,12 +17,14 @@ mod export;
 mod extreme;
 mod input;
 mod inspect;
+mod inspect_piece;
 mod interrupt;
 mod limit;
 mod map;
 mod new;
 mod numbers;
 mod output;
+mod piece;
 mod plot;
 mod progress;
 mod prove;
@@ -42,6 +44,7 @@ mod verify;
 mod verify_proof;
 mod view;
 mod watch;
+mod weaves;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use miette::Result;
@@ -64,8 +67,9 @@ Examples:
   maille boundary european-4-in-1         all in-plane strains, as a surface
   maille tightest european-4-in-1         the thickest wire
   maille simulate 1.1 --fix left --pull right=5,0,0    a finite sheet
+  maille weaves --wire 16swg              which inner diameters suit which weave
   maille new shirt --weave european-4-in-1 --wire 16swg --id 5/16in
-  maille check my-weave.toml              is the file right, do rings overlap?
+  maille check my-weave.toml              is the file correct, do rings overlap?
   maille view 1.1                         see it lock, in the browser
 
 Exit codes:
@@ -89,6 +93,7 @@ enum Command {
     Inspect(inspect::Args),
     Check(check::Args),
     New(new::Args),
+    Weaves(weaves::Args),
     Designs(designs::Args),
     Replay(replay::Args),
     Verify(verify::Args),
@@ -130,6 +135,7 @@ fn main() -> ExitCode {
         Command::Reproduce(args) => reproduce::run(&args),
         Command::Simulate(args) => simulate::run(&args),
         Command::Designs(args) => done(designs::run(&args)),
+        Command::Weaves(args) => done(weaves::run(&args)),
         Command::Export(args) => done(export::run(&args)),
         Command::Render(args) => done(render::run(&args)),
         Command::Schema(args) => done(schema::run(&args)),

@@ -46,7 +46,7 @@ pub struct Args {
     /// Minor radius r, half of the wire's diameter
     #[arg(long, value_parser = positive, requires = "major")]
     minor: Option<f64>,
-    /// Unit of --major and --minor; a label in the file
+    /// Unit of --major and --minor, and of the file
     #[arg(long, default_value = "mm")]
     unit: String,
     /// Wire, as 1.6mm, 0.064in, 16swg or 16awg; the file is in mm
@@ -58,9 +58,8 @@ pub struct Args {
     /// The file, or - for standard output [default: NAME.toml]
     #[arg(long, short)]
     out: Option<PathBuf>,
-    /// Replace the file if it is there
-    #[arg(long)]
-    overwrite: bool,
+    #[command(flatten)]
+    replace: output::Replace,
     /// Neither a schema beside the file nor a line that names it
     #[arg(long)]
     no_schema: bool,
@@ -114,13 +113,7 @@ pub fn run(args: &Args) -> Result<()> {
 
     let out = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}.toml", file_name(&args.name))));
     let to_file = !output::is_standard(&out);
-    if to_file && !args.overwrite && out.is_file() {
-        return Err(wrong(
-            exit::USAGE,
-            format!("{} is there already", out.display()),
-            "name another file with --out, or replace it with --overwrite",
-        ));
-    }
+    args.replace.check(&out)?;
     // On standard output no path of a schema would be true.
     let schema = (to_file && !args.no_schema).then(|| out.with_file_name(SCHEMA));
     let text = weave.file(&design, schema.is_some().then_some(SCHEMA));
@@ -134,7 +127,7 @@ pub fn run(args: &Args) -> Result<()> {
         });
         let file = out.display();
         output::say!(
-            "{file}  {}: {} rings and {} links a cell{gap}",
+            "{file}  {}: {} rings and {} links per cell{gap}",
             design.title,
             model.rings.len(),
             model.links.len()

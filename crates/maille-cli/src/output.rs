@@ -14,6 +14,28 @@ pub fn is_standard(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
+/// Whether files that are there may be replaced: the same rule in every command that writes a file.
+#[derive(clap::Args, Clone, Copy)]
+pub struct Replace {
+    /// Replace files that are there
+    #[arg(long)]
+    pub overwrite: bool,
+}
+
+impl Replace {
+    /// Refuses a file that is there, before anything is computed for it.
+    pub fn check(self, path: &Path) -> Result<()> {
+        match !self.overwrite && !is_standard(path) && path.is_file() {
+            true => Err(wrong(
+                USAGE,
+                format!("{} is there already", path.display()),
+                "name another file, or replace it with --overwrite",
+            )),
+            false => Ok(()),
+        }
+    }
+}
+
 /// Removes what a killed run left half written in a folder, if there is one.
 pub fn remove_leftovers(folder: &Path) -> Result<()> {
     let removed = files::remove_leftovers(folder);

@@ -58,6 +58,8 @@ pub struct Args {
     /// The file, .svg or .png; may be given several times [default: maille-out/KIND-DESIGNS.svg and .png]
     #[arg(long, short, value_name = "FILE")]
     output: Vec<PathBuf>,
+    #[command(flatten)]
+    replace: output::Replace,
     /// Pixels of a PNG for each unit of its SVG, most of which are 860 units wide
     #[arg(long, default_value = "2", value_parser = positive)]
     scale: f64,
@@ -200,7 +202,10 @@ fn write(args: &Args, svg: &str, outputs: Vec<(&Path, Format)>, usual: &str) -> 
             .into(),
         false => Vec::new(),
     };
-    for (file, format) in outputs.into_iter().chain(default.iter().map(|(file, format)| (file.as_path(), *format))) {
+    let outputs: Vec<_> =
+        outputs.into_iter().chain(default.iter().map(|(file, format)| (file.as_path(), *format))).collect();
+    outputs.iter().try_for_each(|(file, _)| args.replace.check(file))?;
+    for (file, format) in outputs {
         match format {
             Format::Svg => output::write(file, svg.as_bytes())?,
             Format::Png => {

@@ -69,6 +69,8 @@ pub struct Args {
     /// File of the proof [default: maille-out/NAME-DIRECTIONdeg.proof, with l2 where it is not 0]
     #[arg(long)]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    replace: output::Replace,
     /// Threads [default: all cores]; the proof does not depend on it
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
@@ -83,6 +85,8 @@ pub struct Args {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let input = Input::read(&args.design, args.minor_radius)?;
+    let file = args.out.clone().unwrap_or_else(|| usual_file(args, &input));
+    args.replace.check(&file)?;
     input.compile(&input.design, Cell::PRIMITIVE)?;
     let design = serde_json::to_value(&input.design).into_diagnostic().wrap_err("cannot write the design")?;
     // What cannot be proved is refused before anything is solved.
@@ -117,7 +121,6 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let outcome = pool.install(|| search(&cell, options, &cancel, told));
     spinner.finish();
     let claim = outcome.claim(claim);
-    let file = args.out.clone().unwrap_or_else(|| usual_file(args, &input));
     output::write(&file, write(&claim, outcome.nodes()).as_bytes())?;
     let told = Told { claim: &claim, outcome: &outcome, found: found.as_ref().map(|(answer, _)| answer), wanted: l1 };
     let seconds = begun.elapsed().as_secs_f64();

@@ -4,8 +4,10 @@ use crate::{
     exit::{self, wrong},
     numbers::positive,
     output,
+    piece::{self, known_millimetres},
     progress::Spinner,
     source::{Source, SourceArgs, Wanted},
+    units,
 };
 use maille_io::{
     Tile,
@@ -29,6 +31,7 @@ use std::{
 Examples:
   maille render 1.1                                               maille-out/1.1.png
   maille render 3.1 --view top --cell                             from above, with the unit cell
+  maille render shirt.toml --size 100x100mm --size 800x600        a piece of sheet, and the picture's pixels
   maille render my-weave.toml --tile 6x4 --perspective --background dark --out slide.png
   maille render 1.1 --at direction=30,l2=-0.125                   a limit of maille-out/1.1, with its forces
   maille render 1.1 --at roomiest                                 the state with the widest gaps
@@ -48,6 +51,10 @@ pub struct Args {
     /// Show this many cells along a1 and a2
     #[arg(long, value_name = "MxN", conflicts_with = "patch")]
     tile: Option<Tile>,
+    /// Pixels across and down, as 800x600 [default: 1600x1200, or 1600x600 along the sheet]; or, with a unit, the piece of sheet, as
+    /// 100x100mm: the whole cells that come nearest, measured with the wire. May be given once for each
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    size: Vec<SizeArg>,
     /// Show the elements in a rectangle of this size in the file's unit, without loose ends [default: as fills the picture]
     #[arg(long, value_name = "WxH", value_parser = parse_patch)]
     patch: Option<[f64; 2]>,
@@ -57,9 +64,6 @@ pub struct Args {
     /// Near rings larger than far ones
     #[arg(long)]
     perspective: bool,
-    /// Pixels across and down
-    #[arg(long, value_name = "WxH", default_value = "1600x1200", value_parser = parse_size)]
-    size: [u32; 2],
     /// What is behind the sheet
     #[arg(long, value_enum, default_value_t = BackgroundArg::White)]
     background: BackgroundArg,
@@ -87,6 +91,8 @@ pub struct Args {
     /// The file, or - for standard output [default: maille-out/DESIGN.png (.gif), with the state in its name]
     #[arg(long)]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    replace: output::Replace,
     /// Threads [default: all cores]; the picture does not depend on it
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
@@ -118,12 +124,67 @@ enum ForcesArg {
     None,
 }
 
-fn parse_size(text: &str) -> Result<[u32; 2], String> {
+/// What `--size` gives: that of the picture, or of the sheet.
+#[derive(Clone, Copy)]
+enum SizeArg {
+    Pixels([u32; 2]),
+    Millimetres([f64; 2]),
+}
+
+fn parse_size(text: &str) -> Result<SizeArg, String> {
     let side = |t: &str| t.parse::<u32>().ok();
-    match text.split_once('x').map(|(w, h)| (side(w), side(h))) {
-        Some((Some(w), Some(h))) => Ok([w, h]),
-        _ => Err(format!("\"{text}\" is no size; give pixels across and down, as 1600x1200")),
+    if let Some((Some(w), Some(h))) = text.split_once('x').map(|(w, h)| (side(w), side(h))) {
+        return Ok(SizeArg::Pixels([w, h]));
     }
+    units::parse_size(text).map(SizeArg::Millimetres).map_err(|_| {
+        format!("\"{text}\" is no size; give pixels across and down, as 1600x1200, or a piece of sheet with its unit, as 100x100mm")
+    })
+}
+
+/// The pixels, and the piece of sheet.
+fn sizes(args: &Args) -> Result<([u32; 2], Option<[f64; 2]>)> {
+    let (mut pixels, mut piece) = (None, None);
+    for size in &args.size {
+        let twice = match size {
+            SizeArg::Pixels(size) => pixels.replace(*size).is_some(),
+            SizeArg::Millimetres(size) => piece.replace(*size).is_some(),
+        };
+        if twice {
+            let help = "give --size once in pixels and once with a unit";
+            return Err(wrong(exit::USAGE, "--size is given twice for the same", help));
+        }
+    }
+    if piece.is_some() && (args.tile.is_some() || args.patch.is_some()) {
+        let help = "leave out --tile and --patch, or --size";
+        return Err(wrong(exit::USAGE, "--size says already how much of the sheet is shown", help));
+    }
+    Ok((pixels.unwrap_or(if args.view.is_low() { [1600, 600] } else { [1600, 1200] }), piece))
+}
+
+/// Which part of the sheet is shown.
+fn extent(args: &Args, source: &Source, pixels: [u32; 2], piece: Option<[f64; 2]>) -> Result<Extent> {
+    let Source { design, model, locked, .. } = source;
+    if !model.periodic {
+        if piece.is_some() {
+            let help = "leave --size out, or simulate a sheet of that size";
+            return Err(wrong(exit::USAGE, "a simulated sheet is shown as a whole", help));
+        }
+        return Ok(Extent::Cells([1, 1]));
+    }
+    Ok(match (piece, args.tile, args.patch) {
+        (Some(size), ..) => {
+            let mm = known_millimetres(design.unit.as_deref(), "a size", "--size")?;
+            let state = locked.as_ref().map_or(&model.start, |(_, state)| state);
+            let tile = piece::nearest(model, state, mm, size);
+            if !args.quiet {
+                eprintln!("note: {}", piece::words(tile, model, state, mm));
+            }
+            Extent::Cells(tile.0)
+        }
+        (None, Some(tile), _) => Extent::Cells(tile.0),
+        (None, None, Some(patch)) => Extent::Patch(patch),
+        (None, None, None) => Extent::filling(pixels, args.view, design.reference_radius),
+    })
 }
 
 fn parse_patch(text: &str) -> Result<[f64; 2], String> {
@@ -138,20 +199,42 @@ const FRAME_CENTISECONDS: u16 = 8;
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
+    let (size, piece) = sizes(args)?;
     let source = args.source.read(Wanted { locked: args.frames.is_some(), overlaps: true, threads: args.threads })?;
+    let kind = if args.frames.is_some() { "gif" } else { "png" };
+    let out = destination(args.out.as_deref(), &source, kind)?;
+    args.replace.check(&out)?;
     let contacts = source.contacts();
     if let Some(caution) = source.caution().filter(|_| !args.quiet) {
         eprintln!("note: {caution}");
     }
-    let extent = match (args.tile, args.patch) {
-        // A simulated sheet is one cell, the whole of it.
-        _ if !source.model.periodic => Extent::Cells([1, 1]),
-        (Some(tile), _) => Extent::Cells(tile.0),
-        (None, Some(patch)) => Extent::Patch(patch),
-        (None, None) => Extent::filling(args.size, args.view, source.design.reference_radius),
+    let options = options(args, size, extent(args, &source, size, piece)?, !contacts.is_empty());
+    let frames = source.frames(args.frames);
+    let unit = source.design.unit.as_deref();
+    let subjects: Vec<Subject<'_>> =
+        frames.iter().map(|frame| Subject { model: &source.model, state: &frame.state, contacts, unit }).collect();
+    let begun = Instant::now();
+    let pictures = draw(args, &subjects, &options)?.map_err(|e| match e {
+        RenderError::NoForces => args.source.no_forces(&source),
+        e => Report::new(e),
+    })?;
+    let bytes = match (&pictures[..], args.frames, args.palette) {
+        (pictures, Some(_), _) => film(pictures, FRAME_CENTISECONDS).into_diagnostic()?,
+        ([picture], None, true) => with_palette(&picture.to_png()?).into_diagnostic()?,
+        (pictures, None, _) => pictures.first().map_or(Ok(Vec::new()), Picture::to_png)?,
     };
-    let options = RenderOptions {
-        size: args.size,
+    output::write(&out, &bytes)?;
+    if !args.quiet && !output::is_standard(&out) {
+        let ([w, h], rings) = (size, pictures.first().map_or(0, |picture| picture.rings));
+        let frames = args.frames.map_or(String::new(), |_| format!("{} frames, ", pictures.len()));
+        output::say!("{}  {frames}{w} × {h}, {rings} rings, {:.1} s", out.display(), begun.elapsed().as_secs_f64());
+    }
+    Ok(())
+}
+
+fn options(args: &Args, size: [u32; 2], extent: Extent, forces: bool) -> RenderOptions {
+    RenderOptions {
+        size,
         view: args.view,
         perspective: args.perspective,
         background: match args.background {
@@ -166,51 +249,33 @@ pub fn run(args: &Args) -> Result<()> {
         },
         forces: match args.forces {
             Some(ForcesArg::Arrows) => Forces::Arrows,
-            None if !contacts.is_empty() && args.frames.is_none() => Forces::Arrows,
+            None if forces && args.frames.is_none() => Forces::Arrows,
             Some(ForcesArg::None) | None => Forces::None,
         },
         cell: args.cell,
         scale_bar: !args.no_scale_bar,
         shadow: !args.no_shadow,
         ..RenderOptions::new(extent)
-    };
-    let kind = if args.frames.is_some() { "gif" } else { "png" };
-    let out = destination(args.out.as_deref(), &source, kind)?;
-    let frames = source.frames(args.frames);
-    let unit = source.design.unit.as_deref();
-    let subjects: Vec<Subject<'_>> =
-        frames.iter().map(|frame| Subject { model: &source.model, state: &frame.state, contacts, unit }).collect();
+    }
+}
+
+/// The pictures of all frames; says how far they are.
+fn draw(args: &Args, subjects: &[Subject<'_>], options: &RenderOptions) -> Result<Result<Vec<Picture>, RenderError>> {
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(args.threads.map_or(0, usize::from))
         .build()
         .into_diagnostic()
         .wrap_err("cannot start the threads")?;
-    let begun = Instant::now();
-    let progress = Spinner::new(args.quiet || args.frames.is_none());
-    let mut pictures = Vec::with_capacity(subjects.len());
-    let all = pool.install(|| {
-        render_frames(&subjects, &options, |picture| {
-            pictures.push(picture);
-            progress.says(|| format!("frame {} of {}", pictures.len(), subjects.len()));
-        })
-    });
-    progress.finish();
-    all.map_err(|e| match e {
-        RenderError::NoForces => args.source.no_forces(&source),
-        e => Report::new(e),
-    })?;
-    let bytes = match (&pictures[..], args.frames, args.palette) {
-        (pictures, Some(_), _) => film(pictures, FRAME_CENTISECONDS).into_diagnostic()?,
-        ([picture], None, true) => with_palette(&picture.to_png()?).into_diagnostic()?,
-        (pictures, None, _) => pictures.first().map_or(Ok(Vec::new()), Picture::to_png)?,
+    let progress = Spinner::new(args.quiet);
+    let of_frames = |frame: usize| match subjects.len() {
+        1 => String::new(),
+        count => format!("frame {} of {count}, ", frame + 1),
     };
-    output::write(&out, &bytes)?;
-    if !args.quiet && !output::is_standard(&out) {
-        let ([w, h], rings) = (args.size, pictures.first().map_or(0, |picture| picture.rings));
-        let frames = args.frames.map_or(String::new(), |_| format!("{} frames, ", pictures.len()));
-        output::say!("{}  {frames}{w} × {h}, {rings} rings, {:.1} s", out.display(), begun.elapsed().as_secs_f64());
-    }
-    Ok(())
+    let told = |frame: usize, part: f64| progress.says(|| format!("{}{:.0} % drawn", of_frames(frame), 100.0 * part));
+    let mut pictures = Vec::with_capacity(subjects.len());
+    let all = pool.install(|| render_frames(subjects, options, told, |picture| pictures.push(picture)));
+    progress.finish();
+    Ok(all.map(|()| pictures))
 }
 
 /// The file to write, or `-`.

@@ -18,9 +18,12 @@ pub struct Args {
     /// The file, or - for standard output
     #[arg(long, short, default_value = "-")]
     out: PathBuf,
+    #[command(flatten)]
+    replace: output::Replace,
 }
 
 /// Writes the schema.
 pub fn run(args: &Args) -> Result<()> {
+    args.replace.check(&args.out)?;
     output::write(&args.out, DESIGN_JSON_SCHEMA.as_bytes())
 }

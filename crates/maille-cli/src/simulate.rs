@@ -6,6 +6,7 @@ use crate::{
     interrupt,
     numbers::positive,
     output,
+    piece::{PieceArgs, known_millimetres},
     progress::Spinner,
 };
 use maille::{
@@ -21,7 +22,7 @@ use maille::{
 use maille_geometry::Vec3;
 use maille_io::{
     Tile,
-    record::{ForceTable, LoadedPlace, PulledPlace, SheetPlan, SimulationRecord, save_simulation},
+    record::{ForceTable, LoadedPlace, PulledPlace, SIMULATION, SheetPlan, SimulationRecord, save_simulation},
 };
 use miette::{Report, Result};
 use serde_json::json;
@@ -43,6 +44,7 @@ use std::{
 Examples:
   maille simulate 1.1 --tile 4x4 --fix left --pull right=5,0,0      locks on the way
   maille simulate 1.1 --tile 1x6 --fix top --gravity 0,-1,0         a strip that hangs
+  maille simulate shirt.toml --size 100x150mm --fix top --gravity 0,-1,0    a piece of this size
   maille simulate 1.1 --tile 4x4 --gravity 0,0,-1 --floor -3        a sheet that falls on a floor
   maille simulate 1.1 --tile 1x6 --fix top --force flat@0,0=0,-5,0  a strip with a load on one ring
   maille simulate 1.1 --tile 8x2 --fix left --pull right=-6,0,0/0,0,0 --gravity 0,0,-1 --floor -3   folded and unfolded
@@ -59,9 +61,8 @@ Exit codes: 0 the pull was done, or the sheet locked; 5 a step did not converge;
 pub struct Args {
     /// A built-in design (see `maille designs`), a TOML file, or - for standard input
     design: String,
-    /// Cells along a1 and a2
-    #[arg(long, value_name = "MxN", default_value = "4x4")]
-    tile: Tile,
+    #[command(flatten)]
+    piece: PieceArgs,
     /// Where elements are held: left, right, top, bottom or elements, as left,flat@0,2
     #[arg(long, value_name = "PLACE,…", value_parser = parse_places)]
     fix: Option<Places>,
@@ -86,6 +87,8 @@ pub struct Args {
     /// Folder of the result [default: maille-out/DESIGN-simulate]
     #[arg(long, short)]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    replace: output::Replace,
     /// Another folder with every state that the minimisation accepted as a frame, and no forces.csv
     #[arg(long, value_name = "DIR")]
     frames: Option<PathBuf>,
@@ -183,9 +186,17 @@ fn refused(problem: InvalidInput) -> Report {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let input = Input::read(&args.design, args.minor_radius)?;
-    let [m, n] = args.tile.0.map(|k| i32::try_from(k).unwrap_or(i32::MAX));
-    let tile = Cell::new([[m, 0], [0, n]]).map_err(|e| refused(InvalidInput { field: "tile".into(), ..e }))?;
-    let model = input.compile_sheet(&input.design, tile)?;
+    let out = args
+        .out
+        .clone()
+        .unwrap_or_else(|| PathBuf::from("maille-out").join(file_name(&input.design.name) + "-simulate"));
+    for folder in [Some(&out), args.frames.as_ref()].into_iter().flatten() {
+        args.replace.check(&folder.join(SIMULATION[0]))?;
+    }
+    let tile = tile(args, &input)?;
+    let [m, n] = tile.0.map(|k| i32::try_from(k).unwrap_or(i32::MAX));
+    let cells = Cell::new([[m, 0], [0, n]]).map_err(|e| refused(InvalidInput { field: "tile".into(), ..e }))?;
+    let model = input.compile_sheet(&input.design, cells)?;
     let plan = plan(args)?;
     let setup = plan.setup(&model).map_err(refused)?;
     let begun = Instant::now();
@@ -210,9 +221,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let end = simulate(&model, &setup, &cancel, &mut watch).map_err(refused)?;
     progress.finish();
     let forces = ForceTable::new(&plan, &model, &setup, &end).map_err(refused)?;
-    let record = SimulationRecord::new(&input.design, args.tile, plan, &model, &end);
-    let stem = file_name(&input.design.name) + "-simulate";
-    let out = args.out.clone().unwrap_or_else(|| PathBuf::from("maille-out").join(stem));
+    let record = SimulationRecord::new(&input.design, tile, plan, &model, &end);
     // A run that failed at once has reached nothing: its last state is shown.
     let last = || FrameRecord { run: 0, share: end.share, energy: end.energy, poses: pose_records(&model, &end.state) };
     let rests = if end.path.is_empty() { vec![last()] } else { end.path.clone() };
@@ -236,13 +245,27 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             "wall_s": wall_s,
         }))?;
     } else if !args.quiet {
-        summary(args, &model, &end, &forces, &out, rests.len(), wall_s);
+        summary(args, tile, &model, &end, &forces, &out, rests.len(), wall_s);
     }
     Ok(ExitCode::from(match end.end {
         End::Reached | End::Locked => exit::DONE,
         End::NotConverged => exit::INCOMPLETE,
         End::Interrupted => exit::INTERRUPTED,
     }))
+}
+
+/// The cells of the sheet; says which, if a size was asked for.
+fn tile(args: &Args, input: &Input) -> Result<Tile> {
+    let mm = match args.piece.is_size() {
+        true => known_millimetres(input.design.unit.as_deref(), "a size", "--size")?,
+        false => 1.0,
+    };
+    let cell = input.compile(&input.design, Cell::PRIMITIVE)?;
+    let (tile, words) = args.piece.tile(&cell, &cell.start, mm);
+    if let Some(words) = words.filter(|_| !args.quiet) {
+        eprintln!("note: {words}");
+    }
+    Ok(tile)
 }
 
 fn plan(args: &Args) -> Result<SheetPlan> {
@@ -269,7 +292,16 @@ fn plan(args: &Args) -> Result<SheetPlan> {
     Ok(plan)
 }
 
-fn summary(args: &Args, model: &Model, end: &Simulation, forces: &ForceTable, out: &Path, frames: usize, wall_s: f64) {
+fn summary(
+    args: &Args,
+    tile: Tile,
+    model: &Model,
+    end: &Simulation,
+    forces: &ForceTable,
+    out: &Path,
+    frames: usize,
+    wall_s: f64,
+) {
     let percent = 100.0 * end.share;
     let what = match end.end {
         End::Reached if args.pull.is_empty() => "at rest".into(),
@@ -278,7 +310,7 @@ fn summary(args: &Args, model: &Model, end: &Simulation, forces: &ForceTable, ou
         End::NotConverged => format!("a step after {percent:.1} % of the pull did not converge"),
         End::Interrupted => format!("interrupted after {percent:.1} % of the pull"),
     };
-    output::say!("{}, {} cells, {} elements: {what}", model.name, args.tile, model.elements.len());
+    output::say!("{}, {tile} cells, {} elements: {what}", model.name, model.elements.len());
     for pull in &args.pull {
         let way: Vec<Vec3> = pull.way.iter().map(|by| Vec3::from(*by)).collect();
         let by = along(&way, end.share);

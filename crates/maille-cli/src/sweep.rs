@@ -136,7 +136,8 @@ fn read(path: &Path) -> Result<Study> {
     let text = match std::fs::read_to_string(path) {
         Ok(text) => text,
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
-            let help = format!("write one with `maille sweep --example > {}`", path.display());
+            let help = "a study is a TOML file that names designs: `maille sweep --example > my-study.toml` writes one; `maille \
+                        characterize` takes a design itself";
             return Err(wrong(exit::USAGE, format!("there is no study {}", path.display()), help));
         }
         Err(e) => return Err(e).into_diagnostic().wrap_err_with(|| format!("cannot read {}", path.display())),

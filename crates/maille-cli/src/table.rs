@@ -53,6 +53,8 @@ pub struct Args {
     /// The file, or - for standard output
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    replace: output::Replace,
 }
 
 /// Conditions of one `--where`; also of `maille plot`.
@@ -100,6 +102,7 @@ pub fn run(args: &Args) -> Result<()> {
     if format == Format::Parquet && file.is_none() && std::io::stdout().is_terminal() {
         return Err(wrong(exit::USAGE, "Parquet is not for the terminal", "name a file, as -o limits.parquet"));
     }
+    file.into_iter().try_for_each(|file| args.replace.check(file))?;
     let records = records::read(&args.records)?;
     let bytes = written(args, &records, format)?;
     match file {

@@ -78,9 +78,23 @@ pub fn parse_wire(text: &str) -> Result<Length, String> {
             })?;
         return Ok(Length { mm, gauge: Some(gauge) });
     }
+    if let Some(number) = gauge_number(&lower) {
+        let of = |gauge: Gauge| gauge.millimetres(number).map(|mm| format!("{number}{} is {mm:.4} mm", gauge.name()));
+        let tables: Vec<String> = [Gauge::Swg, Gauge::Awg].into_iter().filter_map(of).collect();
+        let tables = if tables.is_empty() { "both have the numbers 0 to 40".into() } else { tables.join(", ") };
+        return Err(format!(
+            "\"{text}\" may be of two tables of gauges, swg (British) or awg (American): {tables}; a diameter takes its unit, as 1.6mm"
+        ));
+    }
     parse_length(text).map_err(|_| {
         format!("\"{text}\" is no wire; give a diameter as 1.6mm or 0.064in, or a gauge as 16swg or 14awg")
     })
+}
+
+/// The number of a gauge that names no table: `16`, `16g`, `16ga`, `16 gauge`.
+fn gauge_number(lower: &str) -> Option<usize> {
+    let number = ["gauge", "ga", "g"].iter().find_map(|word| lower.strip_suffix(word)).unwrap_or(lower);
+    number.trim().parse().ok()
 }
 
 /// Reads `400x600mm`, `40x60cm` or `16x24in`; gives both in millimetres.
@@ -116,9 +130,9 @@ pub fn parse_density(text: &str) -> Result<f64, String> {
     if let Some((_, density)) = MATERIALS.iter().find(|(name, _)| name.eq_ignore_ascii_case(text)) {
         return Ok(density * 1000.0);
     }
-    let units = [("g/cm3", 1000.0), ("g/cm³", 1000.0), ("kg/m3", 1.0), ("kg/m³", 1.0)];
-    let found =
-        units.iter().find_map(|(unit, factor)| Some(text.strip_suffix(unit)?.trim().parse::<f64>().ok()? * factor));
+    let plain = text.replace(['^', ' '], "").replace('³', "3");
+    let units = [("g/cm3", 1000.0), ("kg/m3", 1.0)];
+    let found = units.iter().find_map(|(unit, factor)| Some(plain.strip_suffix(unit)?.parse::<f64>().ok()? * factor));
     found.filter(|x| x.is_finite() && *x > 0.0).ok_or_else(|| {
         let names: Vec<&str> = MATERIALS.iter().map(|(name, _)| *name).collect();
         format!("\"{text}\" is no density; give it as 7.85g/cm3 or 7850kg/m3, or as one of {}", names.join(", "))
@@ -143,6 +157,11 @@ mod tests {
         {
             assert!(parse_wire(wrong).is_err(), "{wrong}");
         }
+        for open in ["16", "16g", "16ga", "16 gauge", "16G"] {
+            let said = parse_wire(open).unwrap_err();
+            assert!(said.contains("16swg is 1.6256 mm, 16awg is 1.2908 mm"), "{said}");
+        }
+        assert!(parse_wire("99ga").unwrap_err().contains("numbers 0 to 40"));
         assert!(parse_length("16swg").is_err());
         assert_eq!(Gauge::Swg.thinner(1.6).as_deref(), Some("17swg (1.4224 mm)"));
         assert!(SWG_MIL.windows(2).all(|w| w[0] > w[1]));
@@ -162,6 +181,8 @@ mod tests {
     fn densities() {
         assert_eq!((parse_density("steel"), parse_density(" PLA ")), (Ok(7850.0), Ok(1240.0)));
         assert_eq!((parse_density("7.85g/cm3"), parse_density("7850 kg/m³")), (Ok(7850.0), Ok(7850.0)));
+        assert_eq!((parse_density("7850kg/m^3"), parse_density("7.85 g/cm^3")), (Ok(7850.0), Ok(7850.0)));
+        assert_eq!(parse_density("7850 kg / m^3"), Ok(7850.0));
         for wrong in ["", "7.85", "g/cm3", "-1g/cm3", "7.85 lb/in3"] {
             assert!(parse_density(wrong).is_err(), "{wrong}");
         }

@@ -32,6 +32,8 @@ pub struct Args {
     /// Write one file that needs no server, with the limits of a record, or of the design at --directions and --l2
     #[arg(long, value_name = "FILE")]
     bundle: Option<PathBuf>,
+    #[command(flatten)]
+    replace: crate::output::Replace,
     /// Directions of a bundle's map, degrees: a list, or first:last:step
     #[arg(long, default_value = "0:180:15", value_parser = parse, allow_hyphen_values = true)]
     directions: Numbers,
@@ -79,6 +81,7 @@ mod with_viewer {
     pub fn run(args: &Args) -> Result<()> {
         let opened = open(&args.design)?;
         if let Some(out) = &args.bundle {
+            args.replace.check(out)?;
             return bundle(args, opened, out);
         }
         let folder = std::env::current_dir().into_diagnostic().wrap_err("there is no current folder")?;

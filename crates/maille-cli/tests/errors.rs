@@ -58,6 +58,7 @@ fn prepare(folder: &Path) {
     fs::write(folder.join("overlap.toml"), overlapping).unwrap();
     fs::write(folder.join("no-text.toml"), [0xff, 0xfe, 0x00]).unwrap();
     fs::write(folder.join("a-file"), "not mine\n").unwrap();
+    fs::write(folder.join("there.stl"), "not mine\n").unwrap();
     fs::write(folder.join("wrong-study.toml"), "angles = 3\n[[designs]]\ndesign = \"1.1\"\n").unwrap();
     fs::write(folder.join("twice.toml"), "[[designs]]\ndesign = \"1.1\"\n[[designs]]\ndesign = \"mine.toml\"\n")
         .unwrap();

@@ -39,7 +39,7 @@ fn a_new_design_goes_through_pipes() {
     let folder = folder.path();
     let design = done(folder, "new shirt --weave european-6-in-1 --wire 16swg --id 3/8in -o -", b"");
     assert!(!String::from_utf8_lossy(&design).contains("#:schema"), "there is no schema beside standard output");
-    assert!(done(folder, "check -", &design).starts_with(b"-: right; 2 rings, 6 links a cell"));
+    assert!(done(folder, "check -", &design).starts_with(b"-: OK; 2 rings, 6 links per cell"));
     assert!(String::from_utf8_lossy(&done(folder, "inspect -", &design)).contains("6 interlocking neighbours"));
     let stl = done(folder, "export - --tile 1x1 --format stl --out - --quiet", &design);
     let triangles = u32::from_le_bytes(stl[80..84].try_into().unwrap()) as usize;
@@ -173,7 +173,7 @@ fn watch_runs_again_when_the_file_is_saved() {
         .unwrap();
     let begun = Instant::now();
     let wait_for = |runs: usize| {
-        while fs::read_to_string(&log).unwrap().matches("mine.toml: right").count() < runs {
+        while fs::read_to_string(&log).unwrap().matches("mine.toml: OK").count() < runs {
             assert!(begun.elapsed() < Duration::from_secs(60), "{}", fs::read_to_string(&log).unwrap());
             std::thread::sleep(Duration::from_millis(50));
         }
@@ -365,7 +365,7 @@ fn the_roomiest_state_is_exported() {
     let told = json(folder, "roomiest european-4-in-1 --json")["gap"].as_f64().unwrap();
     let export = |clearance: f64| {
         let line = format!(
-            "export european-4-in-1 --at roomiest --tile 2x2 --tolerance 0.001 --out e.stl --min-clearance {clearance:.12}"
+            "export european-4-in-1 --at roomiest --tile 2x2 --tolerance 0.001 --out e.stl --overwrite --min-clearance {clearance:.12}"
         );
         maille(folder, &line, b"").status.code()
     };
@@ -382,7 +382,7 @@ fn the_clearance_is_that_of_the_mesh_that_is_written() {
     let folder = folder.path();
     done(folder, "new thr --weave european-4-in-1 --wire 1.6mm --id 6.1mm --quiet", b"");
     let export = |more: &str| {
-        let line = format!("export thr.toml --tile 2x2 --out thr.stl --quiet {more}");
+        let line = format!("export thr.toml --tile 2x2 --out thr.stl --overwrite --quiet {more}");
         let output = maille(folder, &line, b"");
         // miette folds lines.
         let said = String::from_utf8_lossy(&output.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
@@ -403,7 +403,8 @@ fn the_clearance_is_that_of_the_mesh_that_is_written() {
         let scale = said.split("--scale ").nth(1).unwrap().split(' ').next().unwrap();
         assert_eq!(export(&format!("{segments} --scale {scale} --min-clearance 0.33")).0, Some(0), "{scale}");
     }
-    let said = String::from_utf8(done(folder, "export thr.toml --tile 2x2 --out thr.stl --scale 2", b"")).unwrap();
+    let said =
+        String::from_utf8(done(folder, "export thr.toml --tile 2x2 --out thr.stl --overwrite --scale 2", b"")).unwrap();
     assert!(said.contains("clearance 0.650 mm between the meshes"), "{said}");
 }
 

@@ -60,6 +60,11 @@ impl DesignSource {
         }
     }
 
+    /// The name that errors show.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
     /// The text itself.
     pub fn text(&self) -> &str {
         &self.text

@@ -43,7 +43,10 @@ fn range([first, last, step]: [&str; 3]) -> Result<Vec<f64>, String> {
     let scaled = |d: Decimal| d.at(exponent).ok_or_else(wide);
     let (from, to, by) = (scaled(from)?, scaled(to)?, scaled(by)?);
     let way = to.checked_sub(from).ok_or_else(wide)?;
-    if by == 0 || way.signum() * by.signum() < 0 {
+    if by == 0 {
+        return Err(format!("a step of 0 never leads from {first} to {last}; give a step such as 15, or a list"));
+    }
+    if way.signum() * by.signum() < 0 {
         return Err(format!("a step of {step} never leads from {first} to {last}; turn its sign, or give a list"));
     }
     let count = way / by;

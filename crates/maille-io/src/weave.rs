@@ -248,6 +248,15 @@ impl Weave {
         }
     }
 
+    /// The aspect ratio (inner diameter / wire diameter) above which the weave assembles as it is placed here: where the wire
+    /// is as thick as the least distance of two core circles.
+    pub fn smallest_aspect_ratio(self) -> f64 {
+        let thin = Rings { major: 1.0, minor: 1e-3, unit: None };
+        let design = self.design(self.name(), &thin).expect("every weave takes thin wire");
+        let distance = self.clearance(&design).map_or(f64::NAN, |(distance, _)| distance);
+        2.0 / distance - 1.0
+    }
+
     /// Least distance of two core circles of the start, with their rings.
     fn clearance(self, design: &Design) -> Option<(f64, [String; 2])> {
         let tolerant = Design { allow_initial_overlap: true, ..design.clone() };
@@ -275,7 +284,7 @@ impl Weave {
         out += "# The placement is the one with the largest gaps; strains are relative to it.\n\n";
         for line in write_design(design).lines() {
             out += match line.split(' ').next().unwrap_or_default() {
-                "unit" => "# A label; nothing is scaled by it.\n",
+                "unit" => "# The unit of all lengths in this file.\n",
                 "minor_radius" => "# Half of the wire's diameter.\n",
                 "reference_radius" => {
                     "# R, from the centre of a ring to the middle of its wire; tolerances are relative to it.\n"

@@ -80,7 +80,8 @@ fn stl_vertices_lie_on_the_tori_of_the_state() {
                 for (index, ring) in model.rings.iter().enumerate() {
                     let circle = state.circle(&model, index, [i, j]);
                     let to_mm = model.unit * mm;
-                    let circle = Circle::new(circle.center * to_mm, circle.normal, circle.radius * to_mm);
+                    let center = circle.center * to_mm - scene.origin;
+                    let circle = Circle::new(center, circle.normal, circle.radius * to_mm);
                     let of_ring = of_rings.next().unwrap();
                     for point in of_ring.iter().flatten() {
                         let off = point_circle_distance(point, &circle).distance - ring.minor_radius * to_mm;
@@ -166,7 +167,7 @@ fn instances_of_3mf_are_the_baked_rings_in_the_positive_octant() {
     let scene = Scene::new(&model, &some_state(&model), tile, Fineness::Segments(8, Some(4)), 1.0).unwrap();
     let baked = stl_triangles(&bytes(&scene, MeshFile::Stl, WriteOptions::default()));
     let [least, largest] = scene.bounds();
-    let baked = sorted(baked.into_iter().flatten().map(|p| p - least).collect());
+    let baked = sorted(baked.into_iter().flatten().collect());
     let elements = model.elements.len();
     let rings = model.rings.len();
     for (objects, expected) in [(Objects::Element, 2 * elements), (Objects::Ring, 2 * rings), (Objects::Sheet, 1)] {
@@ -250,10 +251,89 @@ fn nodes_and_instances_of_glb_are_the_baked_rings() {
         for gpu_instancing in [false, true] {
             let options = WriteOptions { gpu_instancing, ..WriteOptions::default() };
             let (points, document) = glb_points(&bytes(&scene, MeshFile::Glb, options));
-            assert_same(sorted(points), baked.clone(), 1e-4);
+            // The root stands it on the floor y = 0, turned by -90° about x, in metres.
+            let moved = &document["nodes"][0]["translation"];
+            let to_file = |p: Vec3| {
+                p + Vec3::new(1.0, 0.0, 0.0) * 1000.0 * moved[0].as_f64().unwrap()
+                    - Vec3::y() * 1000.0 * moved[2].as_f64().unwrap()
+                    + Vec3::z() * 1000.0 * moved[1].as_f64().unwrap()
+            };
+            assert_same(sorted(points.into_iter().map(to_file).collect()), baked.clone(), 1e-4);
             assert_eq!(document["materials"].as_array().unwrap().len(), scene.kinds.len());
             assert_eq!(document["nodes"][0]["scale"][0], 0.001);
         }
+    }
+}
+
+/// What is printed stands on the bed: no vertex is below it or beyond its corner, and one touches each of the three planes.
+#[test]
+fn meshes_stand_on_the_bed() {
+    for name in ["1.1", "3.4", "european-4-in-1"] {
+        let model = model(name, "1x1");
+        let scene =
+            Scene::new(&model, &some_state(&model), Tile([3, 2]), Fineness::Segments(12, Some(5)), 2.0).unwrap();
+        let of = |file: MeshFile| bytes(&scene, file, WriteOptions::default());
+        let obj = String::from_utf8(of(MeshFile::Obj)).unwrap();
+        let vertex = |line: &str| line.strip_prefix("v ").map(|text| Vec3::from_vec(numbers(text)));
+        let ply = of(MeshFile::Ply);
+        let start = ply.windows(11).position(|w| w == b"end_header\n").unwrap() + 11;
+        let ply = ply[start..start + 15 * scene.triangle_count() / 2].chunks(15);
+        let ply = ply.map(|v| Vec3::new(single(&v[..4]), single(&v[4..8]), single(&v[8..12])));
+        let files = [
+            stl_triangles(&of(MeshFile::Stl)).into_iter().flatten().collect::<Vec<Vec3>>(),
+            obj.lines().filter_map(vertex).collect(),
+            ply.collect(),
+            three_mf_points(of(MeshFile::ThreeMf)).0,
+        ];
+        for points in files {
+            assert!(points.len() >= scene.triangle_count() / 2);
+            let corner = points.iter().fold(points[0], |least, p| least.inf(p));
+            assert!(corner.norm() < 1e-4, "{name}: {corner}");
+        }
+        // A torus is only just larger than its mesh.
+        assert!((scene.origin - scene.bounds()[0]).min() >= 0.0);
+    }
+}
+
+#[test]
+fn sizes_of_files_are_estimated_within_a_third() {
+    for (name, tile, fineness) in [
+        ("1.1", Tile([12, 12]), Fineness::Tolerance(0.01)),
+        ("3.4", Tile([5, 9]), Fineness::Tolerance(0.003)),
+        ("european-4-in-1", Tile([40, 40]), Fineness::Segments(16, Some(8))),
+    ] {
+        let model = model(name, "1x1");
+        let mut scene = Scene::new(&model, &model.start, tile, fineness, 1.0).unwrap();
+        scene.add_contacts(&model, &model.start, tile, &[contact(0, 1, [0, 0], 0.25)]);
+        for format in [Format::Stl, Format::ThreeMf, Format::Obj, Format::Glb, Format::Vtk, Format::Ply] {
+            for file in format.files(&scene) {
+                let written = bytes(&scene, file, WriteOptions::default()).len() as f64;
+                let ratio = file.estimated_bytes(&scene) as f64 / written;
+                assert!((0.75..1.34).contains(&ratio), "{name} {file:?}: {ratio} of {written}");
+            }
+        }
+    }
+}
+
+/// The cells nearest to a size are those whose box is nearest, found by trying them.
+#[test]
+fn the_nearest_tile_has_the_nearest_size() {
+    for (name, size) in [("european-4-in-1", [7.3, 11.9]), ("1.1", [9.0, 6.1]), ("kings-mail", [0.1, 30.0])] {
+        let model = model(name, "1x1");
+        let boxed = |tile: [u32; 2]| {
+            let scene = Scene::new(&model, &model.start, Tile(tile), Fineness::Segments(6, Some(3)), 1.0).unwrap();
+            let [least, largest] = scene.bounds();
+            [largest.x - least.x, largest.y - least.y].map(|length| length / model.unit)
+        };
+        let nearest = |k: usize| {
+            let length = |n: u32| boxed(if k == 0 { [n, 1] } else { [1, n] })[k];
+            (1..60).min_by(|m, n| (length(*m) - size[k]).abs().total_cmp(&(length(*n) - size[k]).abs())).unwrap()
+        };
+        let tile = Tile::nearest(&model, &model.start, size);
+        assert_eq!(tile.0, [nearest(0), nearest(1)], "{name}");
+        let told = tile.size(&model, &model.start);
+        let found = boxed(tile.0);
+        assert!((0..2).all(|k| (told[k] - found[k]).abs() < 1e-9), "{name}: {told:?} {found:?}");
     }
 }
 
@@ -267,9 +347,9 @@ fn loads_are_sums_of_forces_and_colour_the_elements() {
     let model = model("1.1", "1x1");
     let tile = Tile([2, 2]);
     let mut scene = Scene::new(&model, &model.start, tile, Fineness::Segments(8, Some(4)), 3.0).unwrap();
-    assert_eq!(Format::Vtk.files(&scene).len(), 2);
+    assert_eq!(Format::Vtk.files(&scene).count(), 2);
     scene.add_contacts(&model, &model.start, tile, &[contact(0, 1, [0, 0], 0.25), contact(0, 1, [-1, 0], 0.5)]);
-    assert_eq!(Format::Vtk.files(&scene).len(), 3);
+    assert_eq!(Format::Vtk.files(&scene).count(), 3);
     assert_eq!(scene.loads, Some(vec![0.75, 0.75, 0.0]));
     assert_eq!(scene.contacts.len(), 8);
     assert_eq!(scene.contacts.iter().filter(|c| c.inside).count(), 4 + 2);

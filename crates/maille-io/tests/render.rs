@@ -149,7 +149,8 @@ fn a_film_has_one_camera_and_all_frames() {
         .collect();
     let subjects: Vec<_> = states.iter().map(|state| Subject { state, ..subject(&model) }).collect();
     let mut pictures = Vec::new();
-    render_frames(&subjects, &plain(Extent::Cells([1, 1]), View::SIDE), |picture| pictures.push(picture)).unwrap();
+    render_frames(&subjects, &plain(Extent::Cells([1, 1]), View::SIDE), |_, _| {}, |picture| pictures.push(picture))
+        .unwrap();
     let area = 4.0 * 2.0 * 0.4 + PI * 0.4 * 0.4;
     for picture in &pictures {
         assert!((covered(picture) - area).abs() < 0.02 * area, "{} instead of {area}", covered(picture));
@@ -285,4 +286,29 @@ fn what_cannot_be_drawn_is_an_error() {
         assert_eq!(text.parse::<View>().unwrap_err(), problem);
     }
     assert_eq!("-30, 45".parse::<View>().unwrap(), View { azimuth_deg: -30.0, elevation_deg: 45.0 });
+}
+
+/// A sheet that is seen from its edge fills the picture, though it is a narrow band.
+#[test]
+fn a_side_view_uses_its_picture() {
+    let model = builtin("european-4-in-1");
+    let size = [160, 60];
+    let extent = Extent::filling(size, View::SIDE, model.unit);
+    let options = RenderOptions { size, scale_bar: false, ..plain(extent, View::SIDE) };
+    let picture = render(&subject(&model), &options).unwrap().rgba();
+    let inked = picture.chunks(160).filter(|row| row.iter().any(|pixel| pixel[3] > 100)).count();
+    assert!(inked > 24, "{inked} of 60 rows");
+}
+
+/// The part that is done grows to 1 for each frame.
+#[test]
+fn a_long_picture_tells_how_far_it_is() {
+    let model = builtin("1.1");
+    let subjects = [subject(&model), subject(&model)];
+    let heard = std::sync::Mutex::new(Vec::new());
+    let told = |frame: usize, part: f64| heard.lock().unwrap().push((frame, part));
+    render_frames(&subjects, &plain(Extent::Cells([1, 1]), View::TOP), told, |_| {}).unwrap();
+    let heard = heard.into_inner().unwrap();
+    let most = |frame: usize| heard.iter().filter(|h| h.0 == frame).map(|h| h.1).fold(0.0, f64::max);
+    assert!(heard.len() > 4 && most(0) == 1.0 && most(1) == 1.0, "{heard:?}");
 }

@@ -128,6 +128,27 @@ impl Design {
         out
     }
 
+    /// The same design with lattice, centres and offsets to 13 decimals of the reference radius and normals to 14: without
+    /// the last bits of what was computed, which are noise.
+    pub fn rounded(&self) -> Self {
+        let mut out = self.clone();
+        let decimals = (13.0 - self.reference_radius.log10().floor()).clamp(0.0, 300.0) as usize;
+        let round = |v: &mut [f64; 3], decimals: usize| {
+            // + 0.0 makes −0 equal to 0
+            v.iter_mut().for_each(|x| *x = format!("{x:.decimals$}").parse().unwrap_or(*x) + 0.0);
+        };
+        round(&mut out.lattice.a1, decimals);
+        round(&mut out.lattice.a2, decimals);
+        for element in &mut out.elements {
+            round(&mut element.center, decimals);
+            for ring in &mut element.rings {
+                round(&mut ring.normal, 14);
+                round(&mut ring.offset, decimals);
+            }
+        }
+        out
+    }
+
     /// Checks every field that can be judged without geometry between elements, and returns all that is wrong.
     ///
     /// Overlap and links need the compiled model: see `Model`.

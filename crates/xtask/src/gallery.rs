@@ -64,8 +64,8 @@ impl House {
         let file = |ending: &str| self.folder.join(format!("{name}{ending}")).to_string_lossy().into_owned();
         let solve = format!("characterize {name} {} --overwrite --json", self.pulls);
         let limits = parsed(&self.run(&solve, &["--out", &record])?, &solve)?;
-        self.run(&format!("render {name} {RENDER} --quiet"), &["--out", &file(".png")])?;
-        self.run(&format!("plot {PLOT}"), &[&record, "--output", &file("-polar.png")])?;
+        self.run(&format!("render {name} {RENDER} --quiet --overwrite"), &["--out", &file(".png")])?;
+        self.run(&format!("plot {PLOT} --overwrite"), &[&record, "--output", &file("-polar.png")])?;
         Ok(limits)
     }
 

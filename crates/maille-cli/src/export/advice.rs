@@ -1,16 +1,17 @@
-//! What is said about a mesh: rings that would fuse, sizes.
+//! What is said about a mesh: rings that would fuse, gaps, sizes.
 
+use super::destination::FormatArg;
 use crate::{
     exit::{self, wrong},
     output,
     source::Source,
 };
-use maille::{model::Model, state::State};
+use maille::{state::State, topology};
 use maille_io::{
     Tile,
-    mesh::{self, Scene},
+    mesh::{self, Format, Scene},
 };
-use miette::Report;
+use miette::{Report, Result};
 
 /// What would fuse, and what would help.
 pub fn fuse(close: &mesh::TooClose, clearance: f64, mm: f64, source: &Source) -> Report {
@@ -63,13 +64,42 @@ fn short(x: f64) -> String {
     if x < 0.1 && x > 0.0 { format!("{}", format!("{x:.3e}").parse().unwrap_or(x)) } else { format!("{x:.3}") }
 }
 
-/// The smallest distance of the meshes of two elements.
-pub fn clearance(scene: &Scene, model: &Model, state: &State, tile: Tile) {
+/// The smallest gap, in the design's unit and in the size that is written, and that between the meshes.
+pub fn gaps(scene: &Scene, source: &Source, state: &State, tile: Tile) {
+    let Source { design, model, .. } = source;
+    if let Some((gap, _)) = topology::smallest_gap(model, state) {
+        let gap = gap * model.unit;
+        let unit = design.unit.as_deref().unwrap_or("of the file's unit");
+        match scene.mm == 1.0 && unit == "mm" {
+            true => output::say!("smallest gap between rings: {gap:.6} mm"),
+            false => output::say!("smallest gap between rings: {gap:.6} {unit}, here {:.6} mm", gap * scene.mm),
+        }
+    }
     match mesh::smallest_clearance(scene, model, state, tile) {
         Some(0.0) => output::say!("clearance 0 mm: meshes of different elements touch or overlap"),
         Some(gap) => output::say!("clearance {} mm between the meshes of different elements", short(gap)),
         None => {}
     }
+}
+
+/// Bytes of an export above which it must be asked for.
+const LARGE: u64 = 1_000_000_000;
+
+/// Refuses files of more than [`LARGE`] in all.
+pub fn large(scene: &Scene, formats: &[FormatArg], frames: usize) -> Result<()> {
+    let bytes = |format: Format| format.files(scene).map(|f| f.estimated_bytes(scene)).sum::<u64>() * frames as u64;
+    let total: u64 = formats.iter().map(|f| bytes(f.format())).sum();
+    if total <= LARGE {
+        return Ok(());
+    }
+    let once = match formats.iter().all(|f| f.instanced()) {
+        true => String::new(),
+        false => format!("3mf stores each ring once: about {}\n", size(bytes(Format::ThreeMf))),
+    };
+    let help = format!(
+        "{once}a smaller --tile or --size, or a coarser --tolerance, takes less\n--allow-large writes it all the same"
+    );
+    Err(wrong(exit::USAGE, format!("this export would write about {}", size(total)), help))
 }
 
 /// Four digits, rounded so that the clearance stays.

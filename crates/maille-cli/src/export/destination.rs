@@ -71,6 +71,9 @@ pub fn destination(
     }
     let named = out.and_then(FormatArg::of_extension);
     let conflict = named.is_some_and(|named| !formats.is_empty() && !formats.contains(&named));
+    if let Some(out) = out.filter(|_| named.is_none()) {
+        known_ending(out)?;
+    }
     formats.extend(formats.is_empty().then_some(named.unwrap_or(FormatArg::ThreeMf)));
     let Some(out) = out else {
         let folder = format!("{}-export", file_name(&source.design.name));
@@ -98,6 +101,23 @@ pub fn destination(
             "leave --format out, or give a name without an ending",
         )),
     }
+}
+
+/// Refuses a name that ends as files of other programs do: `a.step`. An ending with a digit in front is part of a name, as in
+/// `wire-1.6mm`.
+fn known_ending(out: &Path) -> Result<()> {
+    let ending = out.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    let folder = out.as_os_str().to_string_lossy().ends_with(std::path::is_separator) || out.is_dir();
+    if folder || !ending.starts_with(|c: char| c.is_alphabetic()) {
+        return Ok(());
+    }
+    let known: Vec<String> = FormatArg::value_variants()
+        .iter()
+        .filter_map(|f| f.to_possible_value())
+        .map(|v| v.get_name().to_owned())
+        .collect();
+    let help = format!("the formats are {}; meshes are triangles, no solids of a CAD program", known.join(", "));
+    Err(wrong(exit::USAGE, format!("{} ends in .{ending}, which is no format of an export", out.display()), help))
 }
 
 /// `prefix` with `ending` added to its name.

@@ -4,11 +4,13 @@ mod advice;
 mod destination;
 
 use crate::{
+    exit::{self, wrong},
     numbers::positive,
     output,
+    piece::PieceArgs,
     source::{Frame, Source, SourceArgs, Wanted},
 };
-use advice::{clearance, fuse, size, summary};
+use advice::{fuse, gaps, large, size, summary};
 use destination::{Destination, FormatArg, destination, with_ending};
 use maille::topology;
 use maille_io::{
@@ -31,6 +33,7 @@ use std::{
 Examples:
   maille export 1.1 --tile 8x8                                    maille-out/1.1-export/1.1.3mf
   maille export 1.1 --tile 8x8 --format stl,glb --scale 5         R = 1 becomes 5 mm
+  maille export my-weave.toml --size 100x100mm --scale 1.5        as many cells as come nearest to that
   maille export my-weave.toml --out prints/ --min-clearance 0.3   refuses if rings would fuse
   maille export 1.1 --at direction=30,l2=-0.25 --out locked.glb   a limit of maille-out/1.1
   maille export 1.1 --at roomiest --tile 8x8                      the widest gaps, to print in place
@@ -44,6 +47,9 @@ Formats:
   glb  glTF for viewers: each ring stored once, coloured; see --color-by
   vtk  for ParaView: NAME.vtp (rings), NAME-poses.vtp, NAME-contacts.vtp; NAME.pvd for frames
 
+Meshes stand on the bed: their smallest x, y and z are 0 (glb: y is up; vtk keeps the coordinates of the state; frames \
+keep their places to the first).
+
 Elements of several rings are several closed bodies that overlap where they are joined. Slicers unite the \
 overlapping bodies of one object, so print such designs as 3mf with --objects element (the default) or sheet.
 
@@ -52,16 +58,15 @@ the change, no motion that the rings could make: they may overlap in between.")]
 pub struct Args {
     #[command(flatten)]
     source: SourceArgs,
-    /// Cells along a1 and a2
-    #[arg(long, default_value = "4x4")]
-    tile: Tile,
+    #[command(flatten)]
+    piece: PieceArgs,
     /// One or several, as stl,3mf [default: by the name of --out, or 3mf]
     #[arg(long, value_enum, value_delimiter = ',')]
     format: Vec<FormatArg>,
     /// Export N frames from the starting state to the record's state
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=10_000))]
     frames: Option<u32>,
-    /// A file, a folder (with a / at its end), how the files' names begin, or - for standard output [default: maille-out/DESIGN-export/DESIGN]
+    /// A file, a folder (with a / at its end), how the files' names begin (with --format), or - for standard output [default: maille-out/DESIGN-export/DESIGN]
     #[arg(long)]
     out: Option<PathBuf>,
     /// Most distance between mesh and torus, in the file's unit [default: a hundredth of the reference radius]
@@ -88,6 +93,11 @@ pub struct Args {
     /// Only warn of rings closer than --min-clearance
     #[arg(long, requires = "min_clearance")]
     warn: bool,
+    #[command(flatten)]
+    replace: output::Replace,
+    /// Write files of more than 1 GB in all
+    #[arg(long)]
+    allow_large: bool,
     /// No list of files and no notes
     #[arg(long, short)]
     quiet: bool,
@@ -121,9 +131,6 @@ fn parse_segments(text: &str) -> Result<Fineness, String> {
         Some((around, across)) => Fineness::Segments(count(around)?, Some(count(across)?)),
     })
 }
-
-/// Triangles that make large files where every ring has its own.
-const MANY: usize = 5_000_000;
 
 /// Millimetres in one unit of the file.
 fn millimetres(args: &Args, unit: Option<&str>, note: impl Fn(String)) -> f64 {
@@ -162,61 +169,97 @@ fn write_options(args: &Args) -> WriteOptions {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
     let source = args.source.read(Wanted { locked: args.frames.is_some(), overlaps: false, threads: None })?;
-    let Source { design, model, locked, .. } = &source;
-    // A simulated sheet is one cell, the whole of it.
-    let tile = if model.periodic { args.tile } else { Tile([1, 1]) };
     let (destination, formats) = destination(args.out.as_deref(), &args.format, args.frames.is_some(), &source)?;
+    let frames = source.frames(args.frames);
+    if let Destination::Files(prefix) = &destination {
+        refuse_existing(args, prefix, &formats, &frames)?;
+    }
     let note = |text: String| {
         if !args.quiet {
             eprintln!("note: {text}");
         }
     };
-    let mm = millimetres(args, design.unit.as_deref(), note);
+    let mm = millimetres(args, source.design.unit.as_deref(), note);
+    let tile = tile(args, &source, &frames, mm)?;
     source.caution().into_iter().for_each(note);
-    let tolerance = args.tolerance.unwrap_or(0.01 * design.reference_radius);
-    let fineness = args.segments.unwrap_or(Fineness::Tolerance(tolerance));
-    let options = write_options(args);
     if matches!(args.color_by, Some(ColorArg::Load)) && source.contacts().is_empty() {
         note("there are no contact forces in this state: colours show the kind of element".into());
     }
-
-    let frames = source.frames(args.frames);
     if args.frames.is_some() && source.simulated.is_none() {
         interpolation_note(&source, &frames, mm).into_iter().for_each(note);
     }
-
-    let mut series: Vec<(MeshFile, f64, PathBuf)> = Vec::new();
-    for frame in &frames {
-        let mut scene = Scene::new(model, &frame.state, tile, fineness, mm)?;
-        scene.description = format!(
-            "{}; {} cells; 1 file unit = {mm} mm",
-            frame.description,
-            if model.periodic { tile.to_string() } else { model.cell.to_string() }
-        );
-        if let Some((record, _)) = locked {
-            match frame.time < 1.0 {
-                true => scene.add_loads(model, &record.contacts),
-                false => scene.add_contacts(model, &frame.state, tile, &record.contacts),
-            }
+    let series = write_frames(args, &source, &frames, tile, mm, &destination, &formats)?;
+    match &destination {
+        Destination::Files(prefix) if args.frames.is_some() && formats.contains(&FormatArg::Vtk) => {
+            write_collections(prefix, &series, frames.len(), args.quiet)
         }
+        _ => Ok(()),
+    }
+}
+
+/// The cells that are exported; says which, if a size was asked for.
+fn tile(args: &Args, source: &Source, frames: &[Frame], mm: f64) -> Result<Tile> {
+    if !source.model.periodic {
+        if args.piece.is_size() {
+            let help = "leave --size out, or simulate a sheet of that size";
+            return Err(wrong(exit::USAGE, "a simulated sheet is exported as a whole", help));
+        }
+        return Ok(Tile([1, 1]));
+    }
+    let (tile, words) = args.piece.tile(&source.model, &frames[frames.len() - 1].state, mm);
+    if let Some(words) = words.filter(|_| !args.quiet) {
+        eprintln!("note: {words}");
+    }
+    Ok(tile)
+}
+
+/// Files that are there are replaced only with --overwrite; nothing is written if one of them is.
+fn refuse_existing(args: &Args, prefix: &Path, formats: &[FormatArg], frames: &[Frame]) -> Result<()> {
+    for frame in frames {
+        for file in formats.iter().flat_map(|f| f.format().all_files()) {
+            args.replace.check(&with_ending(prefix, &format!("{}{}", frame.suffix, file.ending())))?;
+        }
+    }
+    Ok(())
+}
+
+/// Writes the files of all frames; gives them with their times.
+fn write_frames(
+    args: &Args,
+    source: &Source,
+    frames: &[Frame],
+    tile: Tile,
+    mm: f64,
+    destination: &Destination,
+    formats: &[FormatArg],
+) -> Result<Vec<(MeshFile, f64, PathBuf)>> {
+    let Source { design, model, .. } = source;
+    let fineness =
+        args.segments.unwrap_or(Fineness::Tolerance(args.tolerance.unwrap_or(0.01 * design.reference_radius)));
+    let options = write_options(args);
+    let (mut series, mut origin) = (Vec::new(), None);
+    for (k, frame) in frames.iter().enumerate() {
+        let mut scene = scene(source, frame, tile, fineness, mm)?;
+        // Frames keep their places to each other.
+        scene.origin = *origin.get_or_insert(scene.origin);
         if let Some(wanted) = args.min_clearance
             && let Some(close) = mesh::too_close(&scene, model, &frame.state, tile, fineness, wanted)
         {
-            let problem = fuse(&close, wanted, mm, &source);
+            let problem = fuse(&close, wanted, mm, source);
             match args.warn {
                 false => return Err(problem),
                 true => eprintln!("{:?}", problem.wrap_err("warning: written all the same (--warn)")),
             }
         }
-        let triangles = scene.triangle_count();
-        if triangles > MANY && frame.time == frames[0].time && formats.iter().any(|f| !f.instanced()) {
-            note(format!("{triangles} triangles will be written; 3mf and glb store each ring once"));
+        if k == 0 && !args.allow_large {
+            large(&scene, formats, frames.len())?;
         }
         for file in formats.iter().flat_map(|f| f.format().files(&scene)) {
-            let Destination::Files(prefix) = &destination else {
+            let Destination::Files(prefix) = destination else {
                 let mut bytes = Cursor::new(Vec::new()); // 3MF goes back in its file
                 file.write(&scene, options, &mut bytes)?;
-                return output::print(bytes.get_ref());
+                output::print(bytes.get_ref())?;
+                return Ok(series);
             };
             let path = with_ending(prefix, &format!("{}{}", frame.suffix, file.ending()));
             let bytes = write(&path, &scene, file, options)?;
@@ -225,19 +268,32 @@ pub fn run(args: &Args) -> Result<()> {
             }
             series.push((file, frame.time, path));
         }
-        if !args.quiet && frame.time == frames[frames.len() - 1].time {
+        if !args.quiet && k + 1 == frames.len() {
             summary(&scene);
             if args.frames.is_none() {
-                clearance(&scene, model, &frame.state, tile);
+                gaps(&scene, source, &frame.state, tile);
             }
         }
     }
-    match &destination {
-        Destination::Files(prefix) if args.frames.is_some() && formats.contains(&FormatArg::Vtk) => {
-            write_collections(prefix, &series, frames.len(), args.quiet)
+    Ok(series)
+}
+
+/// The tile in the state of a frame.
+fn scene(source: &Source, frame: &Frame, tile: Tile, fineness: Fineness, mm: f64) -> Result<Scene> {
+    let Source { model, locked, .. } = source;
+    let mut scene = Scene::new(model, &frame.state, tile, fineness, mm)?;
+    scene.description = format!(
+        "{}; {} cells; 1 file unit = {mm} mm",
+        frame.description,
+        if model.periodic { tile.to_string() } else { model.cell.to_string() }
+    );
+    if let Some((record, _)) = locked {
+        match frame.time < 1.0 {
+            true => scene.add_loads(model, &record.contacts),
+            false => scene.add_contacts(model, &frame.state, tile, &record.contacts),
         }
-        _ => Ok(()),
     }
+    Ok(scene)
 }
 
 fn write_collections(prefix: &Path, series: &[(MeshFile, f64, PathBuf)], frames: usize, quiet: bool) -> Result<()> {

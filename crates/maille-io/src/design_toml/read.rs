@@ -215,9 +215,20 @@ impl Reader<'_> {
         let three = <[f64; 3]>::try_from(numbers);
         if let Err(found) = &three {
             let problem = format!("expected three numbers, found {}", found.len());
+            let help =
+                self.decimal_commas(&value.span()).map_or(help, |v| format!("decimals take a point: {key} = {v}"));
             self.problems.push(DesignProblem::new(path, problem, help, value.span()));
         }
         three.ok()
+    }
+
+    /// The vector that `[15,0, 0,0, 0,0]` means.
+    fn decimal_commas(&self, span: &Range<usize>) -> Option<String> {
+        let items: Vec<&str> = self.text.get(span.clone())?.strip_prefix('[')?.strip_suffix(']')?.split(", ").collect();
+        let commas = items.iter().any(|item| item.contains(','));
+        let numbers: Vec<String> = items.iter().map(|item| item.trim().replace(',', ".")).collect();
+        let three = numbers.len() == 3 && numbers.iter().all(|item| item.parse::<f64>().is_ok());
+        (commas && three).then(|| format!("[{}]", numbers.join(", ")))
     }
 
     fn number(&mut self, value: &Value<'_>, path: &str) -> Option<f64> {

@@ -42,17 +42,22 @@ impl Format {
         }
     }
 
-    /// The files that this format writes for `scene`.
-    pub fn files(self, scene: &Scene) -> Vec<MeshFile> {
+    /// The files that this format writes, the last of VTK only for a state with contacts.
+    pub fn all_files(self) -> &'static [MeshFile] {
         match self {
-            Format::Stl => vec![MeshFile::Stl],
-            Format::ThreeMf => vec![MeshFile::ThreeMf],
-            Format::Obj => vec![MeshFile::Obj],
-            Format::Glb => vec![MeshFile::Glb],
-            Format::Ply => vec![MeshFile::Ply],
-            Format::Vtk if scene.contacts.is_empty() => vec![MeshFile::VtkRings, MeshFile::VtkPoses],
-            Format::Vtk => vec![MeshFile::VtkRings, MeshFile::VtkPoses, MeshFile::VtkContacts],
+            Format::Stl => &[MeshFile::Stl],
+            Format::ThreeMf => &[MeshFile::ThreeMf],
+            Format::Obj => &[MeshFile::Obj],
+            Format::Glb => &[MeshFile::Glb],
+            Format::Ply => &[MeshFile::Ply],
+            Format::Vtk => &[MeshFile::VtkRings, MeshFile::VtkPoses, MeshFile::VtkContacts],
         }
+    }
+
+    /// The files that this format writes for `scene`.
+    pub fn files(self, scene: &Scene) -> impl Iterator<Item = MeshFile> {
+        let contacts = !scene.contacts.is_empty();
+        self.all_files().iter().copied().filter(move |file| contacts || *file != MeshFile::VtkContacts)
     }
 }
 
@@ -102,6 +107,30 @@ impl MeshFile {
             MeshFile::VtkPoses => "-poses.vtp",
             MeshFile::VtkContacts => "-contacts.vtp",
         }
+    }
+
+    /// About how many bytes the file of `scene` will have, within a third.
+    pub fn estimated_bytes(self, scene: &Scene) -> u64 {
+        let (rings, triangles) = (scene.ring_count() as u64, scene.triangle_count() as u64);
+        // A torus has half as many vertices, and as many quadrilaterals, as triangles.
+        let corners = triangles / 2;
+        let shapes = scene.shapes.iter().map(|shape| shape.triangle_count() as u64).sum::<u64>();
+        let fixed = 1_000;
+        fixed
+            + match self {
+                MeshFile::Stl => 50 * triangles,
+                MeshFile::Ply => 15 * corners + 13 * triangles,
+                MeshFile::Obj => {
+                    let index = u64::from(corners.max(1).ilog10()) + 2;
+                    32 * corners + (3 * index + 1) * triangles
+                }
+                // Deflated text: meshes once, a line for each ring.
+                MeshFile::ThreeMf => 10 * shapes + 4 * rings,
+                MeshFile::Glb => 18 * shapes + 130 * rings,
+                MeshFile::VtkRings => (24 + 20 + 20) * corners,
+                MeshFile::VtkPoses => 60 * rings,
+                MeshFile::VtkContacts => 56 * scene.contacts.len() as u64,
+            }
     }
 
     /// Writes `scene`. The same scene gives the same bytes.

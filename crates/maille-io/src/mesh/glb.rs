@@ -117,7 +117,14 @@ pub(super) fn write(scene: &Scene, colours: Colours, gpu_instancing: bool, out: 
     };
     // −90° about x, and millimetres to metres.
     let half = std::f32::consts::FRAC_1_SQRT_2;
-    nodes[0] = json!({ "name": scene.name, "rotation": [-half, 0.0, 0.0, half], "scale": [0.001, 0.001, 0.001], "children": children });
+    let [x, y, z] = singles(&(scene.origin * -0.001));
+    nodes[0] = json!({
+        "name": scene.name,
+        "translation": [x, z, -y],
+        "rotation": [-half, 0.0, 0.0, half],
+        "scale": [0.001, 0.001, 0.001],
+        "children": children,
+    });
 
     let mesh = |&[shape, material]: &[usize; 2]| {
         let [positions, normals, indices] = parts[shape];

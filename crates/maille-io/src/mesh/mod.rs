@@ -9,6 +9,9 @@
 //! | `glb` | as `3mf`; in metres, y up, a colour for each kind of element or its load | showing |
 //! | `vtk` | three files: rings, poses as points, contact points with forces | analysing (ParaView) |
 //!
+//! What is printed stands on the bed, in the corner of it: the smallest x, y and z of the meshes are 0 in every format but
+//! VTK, which keeps the coordinates of the state (in GLB y is up, and the sheet's y is −z).
+//!
 //! The rings of one element are closed bodies that may overlap where they are joined. The formats do not cut them to one
 //! surface: slicers unite overlapping bodies of one object, and most do so for bodies of one file.
 

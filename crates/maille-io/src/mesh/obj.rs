@@ -16,7 +16,7 @@ pub(super) fn write(scene: &Scene, out: &mut impl Write) -> io::Result<()> {
         }
         let shape = &scene.shapes[ring.shape];
         for vertex in &shape.vertices {
-            let [x, y, z] = singles(&(ring.pose.transform_vector(vertex) + ring.pose.translation.vector));
+            let [x, y, z] = singles(&scene.in_file(&ring, vertex));
             writeln!(out, "v {x} {y} {z}")?;
         }
         for corners in shape.triangles() {

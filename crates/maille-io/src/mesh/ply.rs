@@ -21,7 +21,7 @@ pub(super) fn write(scene: &Scene, colours: Colours, out: &mut impl Write) -> io
     let colours = colour::of_members(scene, colours);
     for ring in scene.rings() {
         for vertex in &scene.shapes[ring.shape].vertices {
-            for number in singles(&(ring.pose.transform_vector(vertex) + ring.pose.translation.vector)) {
+            for number in singles(&scene.in_file(&ring, vertex)) {
                 out.write_all(&number.to_le_bytes())?;
             }
             out.write_all(&colours[ring.placed.member].srgb)?;

@@ -111,6 +111,9 @@ pub struct Scene {
     pub contacts: Vec<PlacedContact>,
     /// Sum of the contact forces' magnitudes on each element of the solved cell, where a state has contacts.
     pub loads: Option<Vec<f64>>,
+    /// The point that becomes the origin of files for printing and showing: [`Scene::corner`] of a new scene, so that
+    /// what is printed stands on the bed. VTK files keep the coordinates of the state.
+    pub origin: Vec3,
     /// First ring of every element of the solved cell.
     first_ring: Vec<usize>,
 }
@@ -162,7 +165,7 @@ impl Scene {
                 }
             }
         }
-        Ok(Scene {
+        let mut scene = Scene {
             name: model.name.clone(),
             description: String::new(),
             mm,
@@ -171,8 +174,11 @@ impl Scene {
             elements,
             contacts: Vec::new(),
             loads: None,
+            origin: Vec3::zeros(),
             first_ring: model.elements.iter().map(|e| e.rings.start).collect(),
-        })
+        };
+        scene.origin = scene.corner();
+        Ok(scene)
     }
 
     /// Adds the contacts of a locked state to the tile, and the loads on its elements.
@@ -245,6 +251,30 @@ impl Scene {
     /// Largest bound of the distance between a mesh and its torus.
     pub fn chordal_error(&self) -> f64 {
         self.shapes.iter().map(TorusMesh::chordal_error).fold(0.0, f64::max)
+    }
+
+    /// The corner of the box around the meshes with the smallest x, y and z.
+    pub fn corner(&self) -> Vec3 {
+        // Copies of a ring in other cells are translated, not turned.
+        let mut reaches = vec![None; self.first_ring.last().map_or(0, |last| last + self.largest_kind())];
+        self.rings().fold(Vec3::repeat(f64::INFINITY), |corner, ring| {
+            let reach: &mut Option<Vec3> = &mut reaches[ring.ring];
+            let reach = reach.get_or_insert_with(|| {
+                let turned = self.shapes[ring.shape].vertices.iter().map(|v| ring.pose.rotation * v);
+                turned.fold(Vec3::repeat(f64::INFINITY), |least, v| least.inf(&v))
+            });
+            corner.inf(&(ring.pose.translation.vector + *reach))
+        })
+    }
+
+    /// Most rings of an element.
+    fn largest_kind(&self) -> usize {
+        self.kinds.iter().map(|kind| kind.rings.len()).max().unwrap_or(0)
+    }
+
+    /// A point of a ring's mesh, measured from the origin of a file.
+    pub(super) fn in_file(&self, ring: &PlacedRing<'_>, vertex: &Vec3) -> Vec3 {
+        ring.pose.rotation * vertex + (ring.pose.translation.vector - self.origin)
     }
 
     /// Least and largest corner of the box around the tori.

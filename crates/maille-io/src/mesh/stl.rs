@@ -12,8 +12,7 @@ pub(super) fn write(scene: &Scene, out: &mut impl Write) -> io::Result<()> {
     let mut facet = [0; 50];
     for ring in scene.rings() {
         let shape = &scene.shapes[ring.shape];
-        let points: Vec<_> =
-            shape.vertices.iter().map(|v| ring.pose.transform_vector(v) + ring.pose.translation.vector).collect();
+        let points: Vec<_> = shape.vertices.iter().map(|v| scene.in_file(&ring, v)).collect();
         for corners in shape.triangles() {
             let [a, b, c] = corners.map(|i| points[i]);
             let normal = (b - a).cross(&(c - a)).normalize();

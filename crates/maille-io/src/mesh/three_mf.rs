@@ -1,7 +1,7 @@
 //! 3MF: each torus stored once, placed by transforms, in millimetres.
 //!
 //! The package is the least that the core specification 1.3 asks for. Objects are placed from the origin into the positive
-//! octant, as the specification recommends; slicers then put them on the bed.
+//! octant, as the specification recommends.
 
 use super::{number::singles, scene::Scene};
 use nalgebra::{Isometry3, Translation3, Vector3};
@@ -100,7 +100,7 @@ fn write_model(scene: &Scene, objects: Objects, out: &mut impl Write) -> io::Res
         }
     }
     writeln!(out, "</resources>\n<build>")?;
-    let move_in = Translation3::from(-scene.bounds()[0]);
+    let move_in = Translation3::from(-scene.origin);
     match objects {
         Objects::Ring => {
             for ring in scene.rings() {

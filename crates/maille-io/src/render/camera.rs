@@ -23,6 +23,11 @@ impl View {
     pub const TILTED: View = View { azimuth_deg: 16.0, elevation_deg: 50.0 };
     /// Along the sheet.
     pub const SIDE: View = View { azimuth_deg: 0.0, elevation_deg: 0.0 };
+
+    /// Whether it looks along the sheet, which is then a narrow band.
+    pub fn is_low(self) -> bool {
+        self.elevation_deg.abs() < 15.0
+    }
 }
 
 impl FromStr for View {

@@ -12,9 +12,9 @@ pub enum Extent {
 }
 
 impl Extent {
-    /// A patch that about fills a picture of this size and view: 13 reference radii wide.
+    /// A patch that about fills a picture of this size and view: 13 reference radii wide, or 7 of a sheet seen from its edge.
     pub fn filling([width, height]: [u32; 2], view: View, reference_radius: f64) -> Self {
-        let across = 12.6 * reference_radius;
+        let across = if view.is_low() { 7.0 } else { 12.6 } * reference_radius;
         let foreshortened = view.elevation_deg.to_radians().sin().abs().max(0.5);
         let deep = across * f64::from(height.max(1)) / f64::from(width.max(1)) / foreshortened;
         Extent::Patch([across, deep.min(2.0 * across)])

@@ -48,19 +48,21 @@ impl Picture {
 pub fn render(subject: &Subject<'_>, options: &RenderOptions) -> Result<Picture, RenderError> {
     let scene = Scene::new(subject, options)?;
     let camera = camera(std::slice::from_ref(&scene), options)?;
-    draw(subject, &scene, &camera, options)
+    draw(subject, &scene, &camera, options, &|_| {})
 }
 
 /// Draws `subjects` as the frames of a film, seen by one camera that has all of them in view, and gives each to `each`.
+/// `told` hears which frame is drawn, from 0, and what part of it is done.
 pub fn render_frames(
     subjects: &[Subject<'_>],
     options: &RenderOptions,
+    told: impl Fn(usize, f64) + Sync,
     mut each: impl FnMut(Picture),
 ) -> Result<(), RenderError> {
     let scenes = subjects.iter().map(|subject| Scene::new(subject, options)).collect::<Result<Vec<_>, _>>()?;
     let camera = camera(&scenes, options)?;
-    for (subject, scene) in subjects.iter().zip(&scenes) {
-        each(draw(subject, scene, &camera, options)?);
+    for (frame, (subject, scene)) in subjects.iter().zip(&scenes).enumerate() {
+        each(draw(subject, scene, &camera, options, &|part| told(frame, part))?);
     }
     Ok(())
 }
@@ -84,10 +86,11 @@ fn draw(
     scene: &Scene,
     camera: &Camera,
     options: &RenderOptions,
+    told: &(dyn Fn(f64) + Sync),
 ) -> Result<Picture, RenderError> {
     let [width, height] = options.size;
     let stage = Stage::new(scene, camera, options.shadow);
-    let pixels = stage.draw(width as usize, height as usize);
+    let pixels = stage.draw(width as usize, height as usize, told);
 
     let mut pixmap = Pixmap::new(width, height).ok_or(RenderError::Size { width, height })?;
     for (to, from) in pixmap.pixels_mut().iter_mut().zip(&pixels) {

@@ -12,6 +12,7 @@ use super::{
 };
 use maille_geometry::Vec3;
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// What a pixel sees.
 #[derive(Clone, Copy, Debug, Default)]
@@ -103,14 +104,18 @@ impl<'a> Stage<'a> {
         }
     }
 
-    /// All pixels, row by row. Each is a function of the scene alone: threads share work, not numbers.
-    pub(super) fn draw(&self, width: usize, height: usize) -> Vec<Pixel> {
+    /// All pixels, row by row. Each is a function of the scene alone: threads share work, not numbers. `told` hears what part
+    /// is done.
+    pub(super) fn draw(&self, width: usize, height: usize, told: &(dyn Fn(f64) + Sync)) -> Vec<Pixel> {
         let columns = width.div_ceil(BLOCK);
         let blocks = columns * height.div_ceil(BLOCK);
-        let drawn: Vec<Vec<Pixel>> = (0..blocks)
-            .into_par_iter()
-            .map(|k| self.block([k % columns * BLOCK, k / columns * BLOCK], width, height))
-            .collect();
+        let done = AtomicUsize::new(0);
+        let block = |k: usize| {
+            let pixels = self.block([k % columns * BLOCK, k / columns * BLOCK], width, height);
+            told((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / blocks as f64);
+            pixels
+        };
+        let drawn: Vec<Vec<Pixel>> = (0..blocks).into_par_iter().map(block).collect();
         let mut out = vec![Pixel::default(); width * height];
         for (k, block) in drawn.iter().enumerate() {
             let (x, y) = (k % columns * BLOCK, k / columns * BLOCK);

@@ -147,7 +147,7 @@ test("a design from a weave, saved under its name", async ({ page, program }) =>
   await expect(page.locator("h1")).toHaveText("cuff");
   await page.getByRole("button", { name: "Save" }).click();
   await expect(page.locator(".editor .said")).toContainText("saved");
-  expect(program.run("check", "cuff.toml")).toContain("cuff.toml: right; 4 rings, 16 links");
+  expect(program.run("check", "cuff.toml")).toContain("cuff.toml: OK; 4 rings, 16 links");
   await page.getByRole("button", { name: "Save" }).click();
   await expect(page.getByRole("button", { name: "Replace it" })).toBeVisible();
 });

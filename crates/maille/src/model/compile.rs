@@ -189,29 +189,51 @@ impl Model {
         out
     }
 
-    /// Overlaps of the starting state that the design does not allow; core circles that meet are never allowed,
-    /// because then there is no topology to keep.
+    /// What keeps the starting state from use: core circles that meet, because then there is no topology to keep, and
+    /// overlaps that the design does not allow, as one entry at the deepest.
     fn overlaps(&self, pairs: &[topology::RingPair], design: &Design) -> Vec<InvalidInput> {
-        let mut out = Vec::new();
+        let (mut out, mut deep) = (Vec::new(), Vec::new());
+        let names = |pair: &topology::RingPair| {
+            format!("{} and {}", self.ring_label(pair.ring_a, [0, 0]), self.ring_label(pair.ring_b, pair.shift))
+        };
+        let field = |pair: &topology::RingPair| {
+            format!("elements[{}].center", self.rings[pair.ring_b].element % design.elements.len())
+        };
         for pair in pairs {
             let distance = topology::core_distance(self, &self.start, pair);
             let gap = (distance - self.contact_distance(pair.ring_a, pair.ring_b)) * self.unit;
-            let (a, b) = (self.ring_label(pair.ring_a, [0, 0]), self.ring_label(pair.ring_b, pair.shift));
-            let field = format!("elements[{}].center", self.rings[pair.ring_b].element % design.elements.len());
             if distance < 1e-9 {
                 out.push(InvalidInput::new(
-                    field,
-                    format!("the core circles of {a} and {b} meet in the starting state"),
+                    field(pair),
+                    format!("the core circles of {} meet in the starting state", names(pair)),
                     "move the elements apart: whether such rings are linked is undefined",
                 ));
             } else if gap < 0.0 && !design.allow_initial_overlap {
-                out.push(InvalidInput::new(
-                    field,
-                    format!("{a} and {b} overlap by {:.6} in the starting state", -gap),
-                    "move them apart, take a smaller minor_radius, or set allow_initial_overlap = true at the top of the file",
-                ));
+                deep.push((-gap, pair));
             }
+        }
+        deep.sort_by(|a, b| b.0.total_cmp(&a.0));
+        if let Some((depth, deepest)) = deep.first() {
+            let mut problem = format!("{} overlap by {} in the starting state", names(deepest), depth_words(*depth));
+            for (depth, pair) in deep.iter().take(MOST_NAMED).skip(1) {
+                problem += &format!(", {} by {}", names(pair), depth_words(*depth));
+            }
+            match deep.len().saturating_sub(MOST_NAMED) {
+                0 => {}
+                1 => problem += ", and 1 other pair overlaps",
+                more => problem += &format!(", and {more} other pairs overlap"),
+            }
+            let help = "move them apart or take a smaller minor_radius; or write allow_initial_overlap = true at the top of the file";
+            out.push(InvalidInput::new(field(deepest), problem, help));
         }
         out
     }
+}
+
+/// Overlapping pairs that an error names.
+const MOST_NAMED: usize = 3;
+
+/// Six decimals, or what is left of an overlap that they do not show.
+fn depth_words(depth: f64) -> String {
+    if depth < 5e-7 { format!("{depth:.1e}") } else { format!("{depth:.6}") }
 }

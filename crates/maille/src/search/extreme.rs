@@ -19,6 +19,7 @@ use super::{
 use crate::{
     answer::Answer,
     design::Design,
+    lattice::Cell,
     model::Model,
     program::{LatticeFamily, Parameter},
     question::Effort,
@@ -95,17 +96,22 @@ impl Extreme {
         answer.value.filter(|_| self == Extreme::LargestClearance).map(|gap| gap * model.unit)
     }
 
-    /// The state of the answer as a design.
+    /// The state of the answer as a design. It allows overlaps at the start only where the design did and some are left.
     pub fn design(self, answer: &Answer, design: &Design, model: &Model) -> Design {
-        let mut out = answer.state.design(design, model);
-        let (words, factor) = match self {
-            Extreme::ThickestWire => ("tightest", answer.value.unwrap_or(1.0) * (1.0 - SPARED)),
-            Extreme::LargestClearance => ("roomiest", 1.0),
+        let mut out = answer.state.design(design, model).rounded();
+        let (word, words, factor) = match self {
+            Extreme::ThickestWire => ("tightest", "thickest wire", answer.value.unwrap_or(1.0) * (1.0 - SPARED)),
+            Extreme::LargestClearance => ("roomiest", "widest gaps", 1.0),
         };
-        out.name = format!("{} {words}", out.name);
+        out.title = format!("{}, {words}", if out.title.is_empty() { &out.name } else { &out.title });
+        out.name = format!("{}-{word}", out.name);
         out.minor_radius = out.minor_radius.map(|r| r * factor);
         let rings = out.elements.iter_mut().flat_map(|element| &mut element.rings);
         rings.for_each(|ring| ring.minor_radius = ring.minor_radius.map(|r| r * factor));
+        if design.allow_initial_overlap {
+            out.allow_initial_overlap = false;
+            out.allow_initial_overlap = Model::compile(&out, Cell::PRIMITIVE).is_err();
+        }
         out
     }
 }

@@ -5,11 +5,13 @@ pub mod near_pairs;
 pub mod separation;
 pub mod side_signs;
 pub mod step_bound;
+mod warnings;
 
 pub use crate::model::{Link, RingPair};
 use crate::{lattice::Shift, model::Model, state::State};
 use maille_geometry::{circle_distance_minima, linking_number};
 use std::collections::{BTreeMap, BTreeSet};
+pub use warnings::warnings;
 
 /// All pairs of rings of different elements whose tori may be within `margin` of each other.
 ///

@@ -1,0 +1,70 @@
+//! How much of a sheet: cells, or the size of a piece.
+
+use crate::{
+    exit::{USAGE, wrong},
+    units::parse_size,
+};
+use maille::{model::Model, state::State};
+use maille_io::{Tile, mesh::millimetres};
+use miette::Result;
+
+/// Cells, or a size.
+#[derive(clap::Args)]
+pub struct PieceArgs {
+    /// Cells along a1 and a2
+    #[arg(long, value_name = "MxN", default_value = "4x4")]
+    tile: Tile,
+    /// In place of --tile, width along a1 and height across it, as 100x100mm, 10x10cm or 4x4in: the whole cells that come nearest,
+    /// measured with the wire
+    #[arg(long, value_name = "WxH", value_parser = parse_size, conflicts_with = "tile")]
+    size: Option<[f64; 2]>,
+}
+
+impl PieceArgs {
+    /// Whether a size is asked for.
+    pub fn is_size(&self) -> bool {
+        self.size.is_some()
+    }
+
+    /// The cells, in words where a size was asked for; `mm` is that of one unit of the file.
+    pub fn tile(&self, model: &Model, state: &State, mm: f64) -> (Tile, Option<String>) {
+        match self.size {
+            None => (self.tile, None),
+            Some(size) => {
+                let tile = nearest(model, state, mm, size);
+                (tile, Some(words(tile, model, state, mm)))
+            }
+        }
+    }
+}
+
+/// The tile whose size is nearest to this one, in millimetres.
+pub fn nearest(model: &Model, state: &State, mm: f64, size: [f64; 2]) -> Tile {
+    Tile::nearest(model, state, size.map(|length| length / (model.unit * mm)))
+}
+
+/// Its size in millimetres: width along a1 and height across it, with the wire.
+pub fn size_mm(tile: Tile, model: &Model, state: &State, mm: f64) -> [f64; 2] {
+    tile.size(model, state).map(|length| length * model.unit * mm)
+}
+
+/// `8x16 cells, 100.9 x 101.9 mm with the wire`.
+pub fn words(tile: Tile, model: &Model, state: &State, mm: f64) -> String {
+    let [width, height] = size_mm(tile, model, state, mm);
+    let lean = state.a1.dot(&state.a2).abs() > 1e-6 * state.a1.norm() * state.a2.norm();
+    let rows = if lean && tile.0[1] > 1 { "; each row stands a little beside the one below it" } else { "" };
+    format!("{tile} cells, {width:.1} x {height:.1} mm with the wire{rows}")
+}
+
+/// Millimetres of one unit of the file; `what` needs them because `option` was given.
+pub fn known_millimetres(unit: Option<&str>, what: &str, option: &str) -> Result<f64> {
+    if let Some(mm) = unit.and_then(millimetres) {
+        return Ok(mm);
+    }
+    let problem = match unit {
+        None => format!("{what} needs the design's unit of length, and the file names none"),
+        Some(unit) => format!("{what} needs a unit of length, and \"{unit}\" is not known"),
+    };
+    let help = format!("write unit = \"mm\" at the top of the file, or leave {option} out");
+    Err(wrong(USAGE, problem, help))
+}
