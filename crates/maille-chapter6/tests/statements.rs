@@ -29,7 +29,7 @@ fn limits_along(design: &Design, directions: &[f64], l2: &[f64], words: &str) ->
     let question = MapQuestion { method, cells, directions_deg: directions.to_vec(), l2: l2.to_vec() };
     let found = |finished: maille::survey::Finished| rows.lock().unwrap().push(finished.row);
     let cancel = AtomicBool::new(false);
-    characterize(&[model], design.minor_radius, &question, &|_| true, &cancel, &found);
+    characterize(&[model], design.minor_radius, &question, &|_| true, &cancel, &|_, _| (), &found);
     let mut rows = rows.into_inner().unwrap();
     rows.sort_by(|a, b| a.l2.total_cmp(&b.l2).then(a.direction_deg.total_cmp(&b.direction_deg)));
     let run = RunRecord {

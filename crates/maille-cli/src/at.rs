@@ -34,10 +34,10 @@ pub fn parse_place(text: &str) -> Result<Place, String> {
 pub fn parse_at(text: &str) -> Result<At, String> {
     let mut at = At::default();
     for part in text.split(',') {
-        let wrong = || format!("\"{part}\" is no place; give direction=30,l2=-0.125");
+        let wrong = || format!("\"{part}\" is not a place; give direction=30,l2=-0.125");
         let (key, value) = part.split_once('=').ok_or_else(wrong)?;
         if key.trim() == "frame" {
-            let frame = value.trim().parse().map_err(|_| format!("\"{part}\" is no frame; give frame=12"))?;
+            let frame = value.trim().parse().map_err(|_| format!("\"{part}\" is not a frame; give frame=12"))?;
             if at.frame.replace(frame).is_some() {
                 return Err("frame is given twice".into());
             }

@@ -7,7 +7,7 @@ use crate::{
     interrupt,
     map::{RunArgs, pool},
     numbers::{positive, read},
-    output::{self, say},
+    output::{self, counted, say},
     progress::Progress,
 };
 use maille::{
@@ -33,18 +33,18 @@ use std::{
 ///
 /// Rays from the written lattice in the space of Green strains (E_xx, E_yy, E_xy, the tensor shear), each to the farthest
 /// certified state, with the proven outer bound; more rays where the surface bends. Writes a folder with boundary.csv (one row
-/// a vertex: where the straight way is first stopped, and the farthest state), boundary.obj and boundary.ply (the mesh),
-/// boundary.svg and boundary.png (three sections and a view) and boundary.jsonl (every state). The same command again goes on
-/// where the last one stopped; with another --tolerance or more --vertices it keeps the rays that are there.
+/// for each vertex: where the straight way is first stopped, and the farthest state), boundary.obj and boundary.ply (the mesh),
+/// boundary.svg and boundary.png (three sections and a view) and boundary.jsonl (every state). If it is interrupted, the same command
+/// continues it; with another --tolerance or more --vertices it keeps the rays that are there.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   maille boundary european-4-in-1
-  maille boundary european-4-in-1 --tolerance 3e-4 --vertices 20000      finer, from the rays that are there
+  maille boundary european-4-in-1 --tolerance 3e-4 --vertices 20000   finer, from the rays that are there
   maille boundary 1.1 --tolerance 0.005 --vertices 500 --out results/surface-1.1
-  maille boundary european-4-in-1 --cell auto --out folded                with folds in larger cells, some minutes
+  maille boundary european-4-in-1 --cell auto --out folded   with folds in larger cells, takes minutes
 
-Exit codes: 0 every ray has a certified end, 5 some have none, 130 interrupted.")]
+Exit codes: 0 every ray has a certified end, 5 some have none (0 with --allow-incomplete), 130 interrupted.")]
 pub struct Args {
     /// A built-in design (see `maille designs`), a TOML file, or - for standard input
     design: String,
@@ -63,6 +63,9 @@ pub struct Args {
     minor_radius: Option<f64>,
     #[command(flatten)]
     search: SearchArgs,
+    /// Folder that is written [default: maille-out/NAME-boundary]
+    #[arg(long)]
+    out: Option<PathBuf>,
     #[command(flatten)]
     run: RunArgs,
     /// No progress and no summary
@@ -83,16 +86,16 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     };
     let model = input.compile(&input.design, options.cell())?;
     let usual = || PathBuf::from("maille-out").join(format!("{}-boundary", file_name(&input.design.name)));
-    let out = args.run.out.clone().unwrap_or_else(usual);
+    let out = args.out.clone().unwrap_or_else(usual);
     let head = BoundaryHead::new(&input.design, &options);
     output::folder(&out, "the surface is a folder")?;
     let (folder, known) = SurfaceFolder::open(&out, &head, args.run.overwrite)?;
     if !known.is_empty() && !args.quiet {
-        eprintln!("{} rays are in {} already", known.len(), out.display());
+        eprintln!("{} already in {}", counted(known.len(), "ray"), out.display());
     }
-    let cancel = interrupt::flag()?;
+    let cancel = interrupt::flag(args.quiet)?;
     let begun = Instant::now();
-    let progress = Progress::new(0, args.quiet);
+    let progress = Progress::growing("rays", known.len(), args.quiet);
     let kept = Mutex::new((folder, None, 0));
     let found = |vertex: &BoundaryVertex| {
         let mut kept = kept.lock().unwrap_or_else(|e| e.into_inner());
@@ -103,11 +106,10 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             kept.1 = Some(error);
             cancel.store(true, Ordering::Relaxed);
         }
-        let [x, y, z] = vertex.direction;
-        progress.step(format!("ray {x:.3}, {y:.3}, {z:.3}"));
+        progress.step();
     };
     let pool = pool(args.run.threads)?;
-    let mut planned = |rays: usize| progress.more(rays as u64);
+    let mut planned = |rays: usize| progress.more(rays);
     let surface = pool.install(|| boundary(&model, &options, &known, &cancel, &mut planned, &found));
     progress.finish();
     // The folder is this run's alone until all is written.
@@ -120,7 +122,8 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         summary(&out, &input, &surface, &options, now, begun.elapsed().as_secs_f64());
     }
     let certified = |v: &BoundaryVertex| matches!(v.status, Status::Global | Status::Local);
-    Ok(exit::ended(!surface.complete, !surface.vertices.iter().all(certified), args.quiet))
+    let incomplete = !surface.vertices.iter().all(certified);
+    Ok(exit::ended(!surface.complete, args.run.code(incomplete), args.quiet))
 }
 
 fn write(out: &Path, input: &Input, surface: &Boundary, options: &BoundaryOptions) -> Result<()> {
@@ -147,7 +150,7 @@ fn accuracy(surface: &Boundary, options: &BoundaryOptions) -> String {
     let asked = options.tolerance;
     let not =
         |why: String| format!("the tolerance of {asked:.1e} is not reached: {why}; worst expected distance {arch:.1e}");
-    let edges = |n: usize| if n == 1 { "1 edge".to_owned() } else { format!("{n} edges") };
+    let edges = |n: usize| counted(n, "edge");
     match (surface.complete, *open, *jumps) {
         (false, ..) => "the rays are not all solved".into(),
         (_, 0, 0) => format!("the surface is expected within {arch:.1e} of the triangles (asked: {asked:.1e})"),
@@ -174,18 +177,18 @@ fn summary(out: &Path, input: &Input, surface: &Boundary, options: &BoundaryOpti
     }
     let apart = |v: &&BoundaryVertex| v.distance.zip(v.first).is_some_and(|(far, first)| far - first > 1e-7);
     let count = vertices.iter().filter(apart).count();
-    say!("  {count} rays go further than where the straight way is first stopped");
+    say!("  on {count} rays the sheet gets past the point where a straight deformation path is first blocked");
     let unstable = vertices.iter().filter(|v| v.wave_curvature.is_some_and(|least| least < 0.0)).count();
     if unstable > 0 && options.cells != CellChoice::Auto {
-        say!("  {unstable} rays end where a wave through the sheet is unstable: --cell auto goes on in larger cells");
+        say!("  {unstable} rays end where a wave through the sheet is unstable: --cell auto continues in larger cells");
     }
     say!("  {}", accuracy(surface, options));
     if surface.complete && surface.open > 0 {
-        say!("  the same command with more --vertices goes on from here");
+        say!("  the same command with more --vertices continues from here");
     }
     let holes = vertices.iter().filter(|v| v.distance.is_none()).count();
     if holes > 0 {
         say!("  {holes} rays were not reached: holes in the mesh");
     }
-    say!("{now} rays in {wall_s:.1} s; look at {}", out.join("boundary.png").display());
+    say!("{} in {wall_s:.1} s; look at {}", counted(now, "ray"), out.join("boundary.png").display());
 }

@@ -1,12 +1,13 @@
 //! What an answer rests on, on the screen.
 
+use crate::output::counted;
 use maille::{answer::Answer, solver::certificate::Certificate};
 
 /// What the search came to.
 pub fn search(found: &Answer) -> String {
     let (starts, distinct) = (found.n_starts.unwrap_or(0), found.n_distinct.unwrap_or(0));
     let kept = if found.links_ok == Some(true) { "kept" } else { "LOST" };
-    format!("{starts} starts led to {distinct} certified values; links {kept}")
+    format!("{} led to {}; links {kept}", counted(starts as usize, "start"), counted(distinct as usize, "certified value"))
 }
 
 /// One line of what was checked.

@@ -3,6 +3,7 @@
 use crate::{
     effort::SearchArgs,
     exit::{self, refused},
+    help::ENERGY,
     input::{Input, file_name},
     map::{self, RunArgs, Solved, unanswered},
     numbers::{Numbers, one_of, parse, parse_l2, positive, read},
@@ -30,24 +31,26 @@ use std::{ops::RangeInclusive, path::PathBuf, process::ExitCode, time::Instant};
 
 /// How far a sheet stretches in each direction before it locks
 ///
-/// Writes a record, a folder with limits.csv (one row a limit), states.jsonl (the poses at every limit), polar.svg and
-/// polar.png (stretch against direction) and run.json (all that is needed to repeat the run). A rerun with the same
-/// inputs goes on where the last one stopped.
+/// Writes a record, which is a folder with limits.csv (one row for each limit), states.jsonl (the poses at each limit), polar.svg and
+/// polar.png (stretch against direction) and run.json (all that is needed to repeat the run). If it is interrupted, the
+/// same command continues it.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   maille characterize 1.1
   maille characterize 3.1 --directions 0:180:5 --l2 -0.25,-0.125,0
   maille characterize 1.2 --minor-radius 0.05 --quantity lambda1
-  maille characterize 3.1 --method energy --cell \"1,0;-1,2\" --protocol corners --tau 0.1 --out corners-3.1
   maille characterize my-weave.toml --out results/my-weave
   maille characterize 1.1 --lateral free --out maille-out/1.1-free
   maille characterize 1.1 --lateral free --compression --directions 0:180:15
   maille characterize my-weave.toml --directions 0,45,90 --l2 0 --watch
   maille characterize 1.1 --json | jq '.limits[] | .largest.l1'
 
-Exit codes: 0 every limit was found or proved not to be there, 5 the record is written but some were not found, \
-130 interrupted.")]
+The energy method of the thesis has options of its own:
+  maille characterize --method energy --help
+
+Exit codes: 0 every limit was found, or it was proved that there is none; 5 the record is written, but some limits were \
+not found (0 with --allow-incomplete); 130 interrupted.")]
 pub struct Args {
     /// A built-in design (see `maille designs`), a TOML file, or - for standard input
     design: String,
@@ -63,8 +66,8 @@ pub struct Args {
     /// The shear: held at 0, or left to the sheet (exact method)
     #[arg(long, value_enum, default_value_t = Held::Fixed)]
     shear: Held,
-    /// The least l1 in place of the largest: how far the sheet can be pushed together. All cells up to 3x3 are solved, and no
-    /// limit is global, as a larger cell can fold further (exact method)
+    /// The smallest l1 instead of the largest: how far the sheet can be compressed. All cells up to 3x3 are solved, and no
+    /// limit is global, because a larger cell can fold further (exact method)
     #[arg(long)]
     compression: bool,
     /// Minor radius of every ring that gives none, in the file's unit
@@ -80,9 +83,11 @@ pub struct Args {
     /// What polar.svg and polar.png show
     #[arg(long, value_enum, default_value_t = Shown::Stretch)]
     quantity: Shown,
+    /// Folder that is written [default: maille-out/NAME, or maille-out/NAME-compression with --compression]
+    #[arg(long)]
+    out: Option<PathBuf>,
     #[command(flatten)]
     run: RunArgs,
-    /// Seed of everything random
     #[command(flatten)]
     search: SearchArgs,
     /// Print the summary as one JSON document; docs/json.md has its keys
@@ -94,7 +99,7 @@ pub struct Args {
     /// No progress and no summary
     #[arg(long, short, conflicts_with = "json")]
     quiet: bool,
-    #[command(flatten, next_help_heading = "Energy method (lengths in units of the reference radius R)")]
+    #[command(flatten, next_help_heading = ENERGY)]
     energy: EnergyArgs,
 }
 
@@ -206,7 +211,7 @@ fn question(args: &Args) -> Result<MapQuestion, InvalidInput> {
 enum MethodArg {
     /// Maximises l1 under all gaps, with a certificate and a proven bound
     Exact,
-    /// The thesis's: an energy of contacts and targets, minimised
+    /// The method of the thesis: an energy of contacts and targets, minimised
     Energy,
 }
 
@@ -247,7 +252,7 @@ fn once(args: &Args) -> Result<ExitCode> {
     let question = question(args).map_err(|e| refused(&e))?;
     let input = Input::read(&args.design, args.minor_radius)?;
     let folder = file_name(&input.design.name) + if args.compression { "-compression" } else { "" };
-    let out = args.run.out.clone().unwrap_or_else(|| PathBuf::from("maille-out").join(folder));
+    let out = args.out.clone().unwrap_or_else(|| PathBuf::from("maille-out").join(folder));
     let overwrite = args.run.overwrite || args.watch;
     let map = Map { question, quantity: args.quantity.into(), out: Some(out.clone()), overwrite };
     let begun = Instant::now();
@@ -263,7 +268,7 @@ fn once(args: &Args) -> Result<ExitCode> {
     } else if !args.quiet {
         summary.print();
     }
-    Ok(exit::ended(interrupted, rows.iter().any(unanswered), args.quiet))
+    Ok(exit::ended(interrupted, args.run.code(rows.iter().any(unanswered)), args.quiet))
 }
 
 #[cfg(test)]

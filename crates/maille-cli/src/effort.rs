@@ -6,14 +6,14 @@ use maille::question::{Effort, Question};
 /// Effort, starts and seed of a search.
 #[derive(clap::Args, Clone, Copy)]
 pub struct SearchArgs {
-    /// How long to search where no proven bound is attained: low, normal, thorough, or a time for each cell, as 30s. The search stops when
+    /// How long to search where no proven bound is attained: low, normal, thorough, or a time for each cell, such as 30s. The search stops when
     /// the chance that another start finds more is estimated at 10, 5 or 0.5 %
     #[arg(long, default_value_t, value_parser = read::<Effort>)]
     pub effort: Effort,
-    /// So many starts in place of an effort
+    /// A number of starts, instead of an effort
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=10_000), conflicts_with = "effort")]
     starts: Option<u32>,
-    /// Seed of the starts that are drawn
+    /// Seed of the random starts
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
 }

@@ -16,7 +16,9 @@ pub const DESIGN: u8 = 3;
 pub const RECORD: u8 = 4;
 /// The record is written, but some limits were not found; in `replay`: some rows came out otherwise.
 pub const INCOMPLETE: u8 = 5;
-/// Stopped by Ctrl-C.
+/// The records of a study are written, but some of its designs could not be used.
+pub const LEFT_OUT: u8 = 6;
+/// Stopped by Ctrl-C or SIGTERM.
 pub const INTERRUPTED: u8 = 130;
 
 /// Something wrong that is no error of a library, with what to do next.
@@ -56,16 +58,12 @@ pub fn refused(problem: &InvalidInput) -> Report {
     wrong(USAGE, flags(&problem.problem), flags(&problem.help))
 }
 
-/// How a run ends with which the same command can go on.
-pub fn ended(interrupted: bool, incomplete: bool, quiet: bool) -> ExitCode {
+/// How a run ends that the same command continues; `code` is that of a run that was not interrupted.
+pub fn ended(interrupted: bool, code: u8, quiet: bool) -> ExitCode {
     if interrupted && !quiet {
-        eprintln!("interrupted; the same command goes on from here");
+        eprintln!("interrupted; the same command continues from here");
     }
-    ExitCode::from(match (interrupted, incomplete) {
-        (true, _) => INTERRUPTED,
-        (false, true) => INCOMPLETE,
-        (false, false) => DONE,
-    })
+    ExitCode::from(if interrupted { INTERRUPTED } else { code })
 }
 
 /// How a single question ends.

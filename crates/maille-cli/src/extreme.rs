@@ -140,7 +140,7 @@ pub fn search<'a>(
         Extreme::LargestClearance => Goal::Clearance { lattice_free },
     };
     let question = search.of(Question::new(goal, Sense::Largest));
-    let cancel = interrupt::flag()?;
+    let cancel = interrupt::flag(false)?;
     let found = pool(threads)?.install(|| sheet.answer_until(&question, &cancel)).map_err(|e| refused(&e))?;
     Ok(Found { input, sheet, what, lattice_free, found })
 }

@@ -44,7 +44,7 @@ impl Input {
                 Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Err(unknown(name)),
                 Err(e) if e.kind() == std::io::ErrorKind::InvalidData => {
                     let help = "a design is a TOML file, encoded in UTF-8";
-                    return Err(wrong(exit::DESIGN, format!("{name} is no text"), help));
+                    return Err(wrong(exit::DESIGN, format!("{name} is not a text file"), help));
                 }
                 Err(e) => return Err(e).into_diagnostic().wrap_err_with(|| format!("cannot read the design {name}")),
             },

@@ -1,4 +1,5 @@
-//! Ctrl-C: the first ends a run cleanly, the second at once.
+//! Ctrl-C and SIGTERM end a run cleanly; a second Ctrl-C ends it at once. Schedulers send SIGTERM again and again, so a second one of
+//! those does nothing.
 
 use crate::exit;
 use miette::{IntoDiagnostic, Result, WrapErr};
@@ -10,8 +11,8 @@ use std::sync::{
 /// The flag of the one handler that a program may have.
 static FLAG: Mutex<Option<Arc<AtomicBool>>> = Mutex::new(None);
 
-/// The flag that Ctrl-C sets; listens from the first call on.
-pub fn flag() -> Result<Arc<AtomicBool>> {
+/// The flag that Ctrl-C and SIGTERM set; listens from the first call on, which decides whether anything is said.
+pub fn flag(quiet: bool) -> Result<Arc<AtomicBool>> {
     let mut known = FLAG.lock().unwrap_or_else(|e| e.into_inner());
     if let Some(flag) = &*known {
         return Ok(Arc::clone(flag));
@@ -22,10 +23,15 @@ pub fn flag() -> Result<Arc<AtomicBool>> {
         if set.swap(true, Ordering::Relaxed) {
             std::process::exit(i32::from(exit::INTERRUPTED));
         }
-        eprintln!("\nstopping: what is finished is written (Ctrl-C again ends at once)");
+        if !quiet {
+            eprintln!("\nstopping: what is finished is written (Ctrl-C again ends at once)");
+        }
     })
     .into_diagnostic()
     .wrap_err("cannot listen for Ctrl-C")?;
+    signal_hook::flag::register(signal_hook::consts::SIGTERM, Arc::clone(&flag))
+        .into_diagnostic()
+        .wrap_err("cannot listen for SIGTERM")?;
     *known = Some(Arc::clone(&flag));
     Ok(flag)
 }

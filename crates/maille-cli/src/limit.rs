@@ -80,7 +80,7 @@ impl FromStr for Held {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let wrong = || format!("\"{text}\" is no strain with a value; write eyy=0.05");
+        let wrong = || format!("\"{text}\" is not a strain with a value; write eyy=0.05");
         let (name, value) = text.split_once('=').ok_or_else(wrong)?;
         let strain = Strain::ALL.into_iter().find(|strain| strain.name() == name.trim()).ok_or_else(wrong)?;
         let value = value.trim().parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(wrong)?;
@@ -114,7 +114,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     question.check().map_err(|e| refused(&e))?;
     let input = Input::read(&args.design, args.minor_radius)?;
     let sheet = input.sheet(args.cell.clone())?;
-    let cancel = interrupt::flag()?;
+    let cancel = interrupt::flag(false)?;
     let begun = Instant::now();
     let found = sheet.answer_until(&question, &cancel).map_err(|e| refused(&e))?;
     let model = sheet.model_of(&found);

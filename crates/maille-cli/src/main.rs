@@ -15,6 +15,7 @@ mod effort;
 mod exit;
 mod export;
 mod extreme;
+mod help;
 mod input;
 mod inspect;
 mod inspect_piece;
@@ -46,42 +47,40 @@ mod view;
 mod watch;
 mod weaves;
 
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use miette::Result;
 use std::process::ExitCode;
 
-/// How far does a chainmail weave stretch before it locks?
+/// maille computes how far a sheet of linked rings (chainmail) stretches before it locks.
+///
+/// Each limit has a certificate, and many have a proof that nothing stretches further.
 #[derive(Parser)]
-#[command(version, about, long_about = None, arg_required_else_help = true, after_help = "\
+#[command(name = "maille", version, arg_required_else_help = true, after_help = "\
 Examples:
-  maille designs                          the built-in designs
-  maille inspect 1.1                      rings, links and gaps of one
-  maille characterize 1.1                 its limits, as a table and a polar plot in maille-out/1.1/
+  maille characterize 1.1            the limits of a built-in design
   maille characterize my-weave.toml --directions 0:90:5 --l2 0
-  maille replay maille-out/1.3            solve the rows without a limit again
-  maille verify maille-out/1.3            derive each state of a record anew
-  maille prove 2 --direction 0            no state of the cell goes further: a proof
-  maille sweep radius.toml                many designs, radii and spacings
-  maille reproduce --quick                chapter 6 of the thesis, computed anew
-  maille limit 1.1 --maximize exx --free eyy,exy    one strain as large as can be
-  maille boundary european-4-in-1         all in-plane strains, as a surface
-  maille tightest european-4-in-1         the thickest wire
-  maille simulate 1.1 --fix left --pull right=5,0,0    a finite sheet
-  maille weaves --wire 16swg              which inner diameters suit which weave
+  maille table 1.1 --where l2=0      its rows
+  maille render 1.1 --at direction=45,l2=0
   maille new shirt --weave european-4-in-1 --wire 16swg --id 5/16in
-  maille check my-weave.toml              is the file correct, do rings overlap?
-  maille view 1.1                         see it lock, in the browser
+  maille inspect shirt.toml
+  maille sweep --example > radius.toml
+
+`maille COMMAND --help` has all options of a command, with examples.
 
 Exit codes:
     0  done
-    1  a file cannot be read or written, or maille is at fault
+    1  a file cannot be read or written, or the program has an error
     2  the arguments are wrong
-    3  a design file is wrong, or there is none of that name
-    4  a record is missing, damaged, of other inputs, or in use by another run; verify: something in it is false
-    5  done, but some limits were not found; replay: some rows came out otherwise; verify: not all could be proved
-  130  interrupted
+    3  a design file is wrong, or no design has that name
+    4  a record is missing, damaged, of other inputs, or in use;
+       verify: something in it is false
+    5  done, but some limits were not found (0 with --allow-incomplete);
+       replay: some rows differ; verify: not everything could be proved
+    6  sweep: some designs could not be used
+  130  interrupted by Ctrl-C or SIGTERM; the same command continues
 
-NO_COLOR=1 takes colours away; where standard error is no terminal, progress is plain lines.")]
+NO_COLOR=1 turns colours off. Where standard error is not a terminal, progress
+is plain lines.")]
 struct Args {
     #[command(subcommand)]
     command: Command,
@@ -119,7 +118,8 @@ fn main() -> ExitCode {
     // Lines of a help are commands to copy: they are not broken.
     let hook = miette::set_hook(Box::new(|_| Box::new(miette::MietteHandlerOpts::new().wrap_lines(false).build())));
     debug_assert!(hook.is_ok(), "the hook is set once");
-    let ended: Result<ExitCode> = match Args::parse().command {
+    let args = Args::from_arg_matches(&help::matches(Args::command())).unwrap_or_else(|e| e.exit());
+    let ended: Result<ExitCode> = match args.command {
         Command::Characterize(args) => characterize::run(&args),
         Command::Inspect(args) => inspect::run(&args),
         Command::Check(args) => check::run(&args),

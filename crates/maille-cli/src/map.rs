@@ -1,29 +1,45 @@
 //! Maps on the command line: from a design as read to the open record, and several side by side.
 
-use crate::{input::Input, interrupt, output, progress::Progress};
-use maille::record::{LimitRow, Status};
+use crate::{
+    exit,
+    input::Input,
+    interrupt,
+    output::{self, counted},
+    progress::Progress,
+};
+use maille::{
+    record::{LimitRow, Status},
+    survey::{Task, Work},
+};
 use maille_io::{
     record::Record,
     run::{Map, MapError, OpenMap, run_all},
 };
 use miette::{IntoDiagnostic, Report, Result, WrapErr};
 use std::{
-    path::{Path, PathBuf},
+    path::Path,
     sync::atomic::Ordering,
 };
 
-/// Where a run writes, and on how many threads.
+/// How a run writes and ends, and on how many threads.
 #[derive(clap::Args)]
 pub struct RunArgs {
-    /// Folder that is written [default: maille-out/NAME, with -boundary or -compression for those]
-    #[arg(long)]
-    pub out: Option<PathBuf>,
-    /// Replace what that folder holds of other inputs
+    /// Replace a result of other inputs in the folder
     #[arg(long)]
     pub overwrite: bool,
+    /// Exit code 0 instead of 5 if some limits are not found
+    #[arg(long)]
+    pub allow_incomplete: bool,
     /// Threads [default: all cores]; results do not depend on it
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
+}
+
+impl RunArgs {
+    /// The exit code of a run that was not interrupted.
+    pub fn code(&self, incomplete: bool) -> u8 {
+        if incomplete && !self.allow_incomplete { exit::INCOMPLETE } else { exit::DONE }
+    }
 }
 
 /// Compiles the design and opens the record, with what an earlier run has left there.
@@ -49,18 +65,24 @@ pub struct Solved {
 /// Finds the limits that are left in maps, each with its name, side by side. Says which are there already, and shows progress.
 pub fn solve(open: Vec<(&str, OpenMap)>, out: &Path, threads: Option<u16>, quiet: bool) -> Result<Solved> {
     let (left, total) = open.iter().fold((0, 0), |(l, t), (_, map)| (l + map.left(), t + map.total()));
-    if !quiet && left < total {
-        eprintln!("{} of {total} limits are in {} already", total - left, out.display());
+    let there = total - left;
+    if !quiet && there > 0 {
+        eprintln!("{there} of {} are in {} already", counted(total, "limit"), out.display());
     }
-    let (cancel, pool) = (interrupt::flag()?, pool(threads)?);
-    let progress = Progress::new(left as u64, quiet);
-    let found = |name: &str, row: &LimitRow| {
-        let name = if name.is_empty() { String::new() } else { format!("{name}: ") };
-        let free = row.lateral.as_deref() == Some("free");
-        let width = if free { "width free".into() } else { format!("l2 = {}", row.l2) };
-        progress.step(format!("{name}{}°, {width}", row.direction_deg));
+    let free: Vec<String> =
+        open.iter().filter(|(_, map)| map.is_lateral_free()).map(|(name, _)| (*name).to_owned()).collect();
+    let (cancel, pool) = (interrupt::flag(quiet)?, pool(threads)?);
+    let progress = Progress::new("limits", there, total, quiet);
+    let work = |name: &str, task: Task, work: Work| {
+        let width = if free.iter().any(|f| f == name) { "width free".into() } else { format!("l2 = {}", task.l2) };
+        let colon = if name.is_empty() { "" } else { ": " };
+        let limit = format!("{name}{colon}{}°, {width}", task.direction_deg);
+        match work {
+            Work::Begins => progress.begins(limit),
+            Work::Ends => progress.ends(&limit),
+        }
     };
-    let records = pool.install(|| run_all(open, &cancel, &found));
+    let records = pool.install(|| run_all(open, &cancel, &work, &|_, _| progress.step()));
     progress.finish();
     let records = records.map_err(|error| {
         let words = error.to_string();
@@ -69,7 +91,7 @@ pub fn solve(open: Vec<(&str, OpenMap)>, out: &Path, threads: Option<u16>, quiet
             MapError::Plot(error) => Report::from_err(error).wrap_err(words),
         }
     })?;
-    let tally = Tally::of(records.iter().flat_map(|record| &record.rows), total - left);
+    let tally = Tally::of(records.iter().flat_map(|record| &record.rows), there);
     Ok(Solved { records, tally, total, interrupted: cancel.load(Ordering::Relaxed) })
 }
 

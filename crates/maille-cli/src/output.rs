@@ -103,6 +103,11 @@ pub fn line(text: fmt::Arguments<'_>) {
     let _ = writeln!(std::io::stdout(), "{text}");
 }
 
+/// `1 limit`, `2 limits`.
+pub fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}
+
 /// A document with the time that it took.
 pub fn timed(mut document: serde_json::Value, wall_s: f64) -> serde_json::Value {
     document["wall_s"] = wall_s.into();

@@ -99,7 +99,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let question = args.search.of(Question::stretch_along(args.direction).with_lateral(args.l2));
     question.check().map_err(|e| refused(&e))?;
     asked(args.at_most.unwrap_or(0.0)).cell().map_err(&unusable)?;
-    let (cancel, pool) = (interrupt::flag()?, pool(args.threads)?);
+    let (cancel, pool) = (interrupt::flag(args.quiet)?, pool(args.threads)?);
     let found = match args.at_most {
         Some(_) => None,
         None => Some(pool.install(|| limit(&input, &question, &cancel))?),

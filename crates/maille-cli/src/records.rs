@@ -25,11 +25,23 @@ pub fn name(folder: &Path) -> String {
     folder.components().collect::<PathBuf>().display().to_string()
 }
 
-/// Reads records, each with its folder as a name.
+/// The records of a folder that `maille sweep` writes, in the order of their names; of any other, the folder itself.
+fn of_sweep(folder: PathBuf) -> Vec<PathBuf> {
+    let is_record = |folder: &Path| folder.join("run.json").is_file();
+    let inside = match is_record(&folder) {
+        true => None,
+        false => std::fs::read_dir(folder.join("records")).ok(),
+    };
+    let mut records: Vec<PathBuf> = inside.into_iter().flatten().flatten().map(|entry| entry.path()).collect();
+    records.retain(|path| is_record(path));
+    records.sort();
+    if records.is_empty() { vec![folder] } else { records }
+}
+
+/// Reads records, each with its folder as a name, and all those of a sweep.
 pub fn read(named: &[PathBuf]) -> Result<Vec<NamedRecord>> {
     let mut out: Vec<NamedRecord> = Vec::new();
-    for path in named {
-        let folder = folder(path);
+    for folder in named.iter().flat_map(|path| of_sweep(folder(path))) {
         let name = name(&folder);
         if out.iter().any(|known| known.name == name) {
             return Err(wrong(exit::USAGE, format!("the record {name} is given twice"), "name each record once"));

@@ -190,7 +190,7 @@ fn extent(args: &Args, source: &Source, pixels: [u32; 2], piece: Option<[f64; 2]
 fn parse_patch(text: &str) -> Result<[f64; 2], String> {
     match text.split_once('x').map(|(w, h)| (positive(w), positive(h))) {
         Some((Ok(w), Ok(h))) => Ok([w, h]),
-        _ => Err(format!("\"{text}\" is no patch; give width and height in the file's unit, as 12x9")),
+        _ => Err(format!("\"{text}\" is not a patch; give width and height in the file's unit, as 12x9")),
     }
 }
 
@@ -288,7 +288,7 @@ fn destination(out: Option<&Path>, source: &Source, kind: &str) -> Result<PathBu
         true => Ok(out.to_owned()),
         false => Err(wrong(
             exit::USAGE,
-            format!("{} is no name of a {}", out.display(), kind.to_uppercase()),
+            format!("{} is not a name for a {}", out.display(), kind.to_uppercase()),
             format!("give a name that ends in .{kind}, or - for standard output"),
         )),
     }

@@ -3,7 +3,7 @@
 use crate::{
     at::{At, parse_at},
     exit::{self, wrong},
-    output::say,
+    output::{counted, say},
     records,
     remedy::DAMAGED,
     source::read_record,
@@ -60,7 +60,8 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             say!("  note      {note}");
         }
     }
-    Ok(exit::ended(false, !replayed.iter().all(Replayed::agrees), true))
+    let agrees = replayed.iter().all(Replayed::agrees);
+    Ok(ExitCode::from(if agrees { exit::DONE } else { exit::INCOMPLETE }))
 }
 
 fn line(row: &LimitRow) -> String {
@@ -77,5 +78,6 @@ fn line(row: &LimitRow) -> String {
         ]
         .concat(),
     };
-    format!("{}{l1}{certificate}  {} iterations, {} starts", row.status.name(), row.iterations, row.runs)
+    let effort = [counted(row.iterations as usize, "iteration"), counted(row.runs as usize, "start")].join(", ");
+    format!("{}{l1}{certificate}  {effort}", row.status.name())
 }

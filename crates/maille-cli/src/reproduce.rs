@@ -20,7 +20,7 @@ use std::{
 ///
 /// Writes a folder with index.html (each statement beside what was measured), figures/, sheets/ (pictures of the designs),
 /// statements.json, and records/ with one record for each design, radius and method, as `maille characterize` writes
-/// them. A run that was stopped goes on where it was with the same command.
+/// them. If it is interrupted, the same command continues it.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -71,7 +71,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if interrupted {
         if !args.quiet {
             eprintln!("{there} of {total} limits are in the records, {now} of them now");
-            eprintln!("interrupted; the same command goes on from here");
+            eprintln!("interrupted; the same command continues from here");
         }
         return Ok(ExitCode::from(exit::INTERRUPTED));
     }
@@ -98,7 +98,7 @@ fn chosen(names: &[String], folder: Option<&Path>) -> Result<Vec<Chosen>> {
     if let Some(unknown) = names.iter().find(|name| !DESIGNS.contains(&name.as_str())) {
         return Err(wrong(
             exit::USAGE,
-            format!("\"{unknown}\" is no design of chapter 6"),
+            format!("\"{unknown}\" is not a design of chapter 6"),
             format!("there are {}", DESIGNS.join(", ")),
         ));
     }
@@ -133,13 +133,13 @@ fn given(folder: &Path) -> Result<Vec<PathBuf>> {
     let names =
         || format!("name its files as in the thesis: {}", DESIGNS.map(|name| format!("{name}.toml")).join(", "));
     let entries = std::fs::read_dir(folder)
-        .map_err(|e| wrong(exit::USAGE, format!("{} is no folder that can be read: {e}", folder.display()), names()))?;
+        .map_err(|e| wrong(exit::USAGE, format!("{} is not a folder that can be read: {e}", folder.display()), names()))?;
     let mut files = Vec::new();
     for entry in entries {
         let file = entry.into_diagnostic()?.path();
         if file.extension().is_some_and(|extension| extension == "toml") {
             if !file.file_stem().is_some_and(|stem| DESIGNS.iter().any(|name| stem == *name)) {
-                return Err(wrong(exit::USAGE, format!("{} is no design of chapter 6", file.display()), names()));
+                return Err(wrong(exit::USAGE, format!("{} is not a design of chapter 6", file.display()), names()));
             }
             files.push(file);
         }

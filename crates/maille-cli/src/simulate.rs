@@ -125,7 +125,7 @@ struct Places(Vec<String>);
 fn parse_number(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(x) if x.is_finite() => Ok(x),
-        _ => Err(format!("\"{}\" is no number", text.trim())),
+        _ => Err(format!("\"{}\" is not a number", text.trim())),
     }
 }
 
@@ -133,7 +133,7 @@ fn parse_vector(text: &str) -> Result<[f64; 3], String> {
     let parts = text.split(',').map(parse_number).collect::<Result<Vec<f64>, String>>();
     match parts.as_deref() {
         Ok(&[x, y, z]) => Ok([x, y, z]),
-        _ => Err(format!("\"{text}\" is no vector; give three numbers, as 0,0,-1")),
+        _ => Err(format!("\"{text}\" is not a vector; give three numbers, as 0,0,-1")),
     }
 }
 
@@ -151,13 +151,13 @@ fn parse_force(text: &str) -> Result<LoadedPlace, String> {
     let (place, forces) = at_place(text, "force")?;
     match forces[..] {
         [force] if force != [0.0; 3] => Ok(LoadedPlace { place, force }),
-        [_] => Err(format!("\"{text}\" is no force; leave it out")),
+        [_] => Err(format!("\"{text}\" is not a force; leave it out")),
         _ => Err(format!("\"{text}\" has {} forces; give one vector, as right=0.5,0,0", forces.len())),
     }
 }
 
 fn at_place(text: &str, what: &str) -> Result<(String, Vec<[f64; 3]>), String> {
-    let wrong = || format!("\"{text}\" is no {what}; give a place and a vector, as right=0.5,0,0");
+    let wrong = || format!("\"{text}\" is not a {what}; give a place and a vector, as right=0.5,0,0");
     let (place, vectors) = text.split_once('=').ok_or_else(wrong)?;
     let vectors = vectors.split('/').map(parse_vector).collect::<Result<_, _>>().map_err(|_| wrong())?;
     match place.trim() {
@@ -217,7 +217,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             all.push(FrameRecord { run: x.run, share: x.share, energy: x.energy, poses });
         }
     };
-    let cancel = interrupt::flag()?;
+    let cancel = interrupt::flag(args.quiet)?;
     let end = simulate(&model, &setup, &cancel, &mut watch).map_err(refused)?;
     progress.finish();
     let forces = ForceTable::new(&plan, &model, &setup, &end).map_err(refused)?;

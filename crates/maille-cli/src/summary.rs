@@ -1,6 +1,6 @@
 //! The summary of a record: least and largest limit of each l2, what has no limit, and where the files are.
 
-use crate::output;
+use crate::output::{self, counted};
 use maille::record::{LimitRow, Status};
 use serde::Serialize;
 use std::{
@@ -41,6 +41,27 @@ struct OfL2 {
 struct Extreme {
     l1: f64,
     direction_deg: f64,
+}
+
+/// Proofs that there is no limit.
+const PROVED: [Status; 2] = [Status::L2Unreachable, Status::Unbounded];
+
+/// What a status without a limit means for what to do next.
+fn advice(status: Status) -> Option<&'static str> {
+    Some(match status {
+        Status::L2Unreachable => "proved that no state has this l2",
+        Status::Unbounded => "proved that nothing stops the pull",
+        Status::L2NotReached => "nothing is proved; try l2 in smaller steps or --effort thorough, with --overwrite",
+        Status::Uncertified => {
+            "the certificate is incomplete; try --effort thorough with --overwrite, or a direction slightly to one side"
+        }
+        Status::InfeasibleStart => {
+            "the rings of the design overlap; `maille roomiest DESIGN --lattice free --save NEW.toml` looks for a state without overlap"
+        }
+        Status::NotConverged => "raise --max-iterations, or use --method exact",
+        Status::Interrupted => "the same command computes them",
+        Status::Global | Status::Local | Status::ThresholdReached => return None,
+    })
 }
 
 impl Summary {
@@ -100,10 +121,15 @@ impl Summary {
                 let more = match (status, self.below_bound) {
                     (Status::Global, _) => ": proved to be the largest".into(),
                     (Status::Local, Some(gap)) => format!(": up to {gap:.4} below a proven bound"),
-                    _ => String::new(),
+                    (status, _) => advice(status).map(|words| format!(": {words}")).unwrap_or_default(),
                 };
                 output::say!("{count} {}{more}", status.name());
             }
+        }
+        let not_found: usize = self.limits.iter().map(|of| of.asked - of.found).sum();
+        let proved: usize = PROVED.iter().filter_map(|status| self.statuses.get(status.name())).sum();
+        if not_found > proved {
+            output::say!("`maille table {} --where l1=none` shows the rows without a limit", self.record.display());
         }
         if let Some(chance) = self.better_chance {
             let percent = 100.0 * chance;
@@ -129,8 +155,8 @@ impl Summary {
             count => output::say!("{count} limits by symmetry, images of others; see image_of_deg"),
         }
         output::say!(
-            "{} limits in {:.1} s; {}, states.jsonl, run.json, polar.svg",
-            self.solved,
+            "{} in {:.1} s; {}, states.jsonl, run.json, polar.svg",
+            counted(self.solved, "limit"),
             self.wall_s,
             self.record.join("limits.csv").display()
         );

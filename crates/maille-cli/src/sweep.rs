@@ -4,7 +4,7 @@ use crate::{
     exit::{self, wrong},
     input::{Input, file_name},
     map::{self, RunArgs, Solved, Tally},
-    output::{self, say},
+    output::{self, counted, say},
     records, remedy,
 };
 use maille_io::{
@@ -14,7 +14,7 @@ use maille_io::{
     study::{Study, StudyDesign},
     table::{Field, Table},
 };
-use miette::{IntoDiagnostic, Result, WrapErr};
+use miette::{IntoDiagnostic, Report, Result, WrapErr};
 use std::{
     path::{Path, PathBuf},
     process::ExitCode,
@@ -23,35 +23,46 @@ use std::{
 
 /// Limits of many designs, radii, spacings, or any other numbers of a design
 ///
-/// Writes a folder: records/ with one record for each design and its parameters, as `maille characterize` writes
-/// them, and limits.csv with the rows of all. All cores work until the last limit. A run that was stopped goes on where it
-/// was with the same command.
+/// Writes a folder: records/ with one record for each design and its parameters, as `maille characterize` writes them, and
+/// limits.csv with the rows of all. What varies is in columns of limits.csv. All cores work until the last limit. The same command
+/// continues a run that was stopped (Ctrl-C, SIGTERM, or a crash).
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   maille sweep --example > radius.toml
   maille sweep radius.toml
-  maille plot maille-out/radius/records/* --quantity stretch -o radius.svg
-  maille table maille-out/radius/records/* --where direction=45
+  maille table radius --where direction=45
+  maille plot radius --where l2=0
 
 A study:
   directions = \"0:180:15\"       # or [0, 45]; so with l2, minor_radius and spacing
   l2 = [-0.125, 0]
-  cell = \"auto\"                 # as in `maille characterize`; effort, starts and seed, too
+  cell = \"auto\"                 # as in `maille characterize`; also effort, starts, seed
   [[designs]]
   design = \"1.1\"                # built in, or a file beside the study
   minor_radius = \"0.04:0.12:0.02\"
-  spacing = [0.95, 1]           # of the elements, in that of the design
+  spacing = [0.95, 1]           # factor of all distances between elements
   [designs.vary]                # any other number, by its place; * stands for anything
   \"elements.standing-*.rings.major_radius\" = [0.5, 0.75, 1]
   \"lattice.a1.x\" = \"2.3:2.6:0.1\"
+  [[designs]]
+  design = \"1.1\"
+  name = \"1.1-free\"             # of its records; needed where a design stands twice
+  lateral = \"free\"              # so with shear, compression = true, directions and l2:
+  directions = \"0:90:5\"         # a design's own, or, above, those of all designs
 
-Exit codes: 0 every limit was found or proved not to be there, 5 the records are written but some limits were not \
-found or some designs could not be used, 130 interrupted.")]
+Exit codes:
+    0  every limit was found, or it was proved that there is none
+    5  the records are written, but some limits were not found
+    6  some designs could not be used; the records of the others are written
+  130  interrupted")]
 pub struct Args {
     /// The study, a TOML file
     #[arg(required_unless_present = "example")]
     study: Option<PathBuf>,
+    /// Folder that is written [default: maille-out/STUDY]
+    #[arg(long)]
+    out: Option<PathBuf>,
     #[command(flatten)]
     run: RunArgs,
     /// Print a study to begin with
@@ -83,6 +94,12 @@ struct Planned {
     map: Map,
 }
 
+/// The maps of a study, and the designs that cannot be used, with the reason.
+struct Plan {
+    maps: Vec<Planned>,
+    unused: Vec<(String, Report)>,
+}
+
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let Some(path) = &args.study else {
@@ -91,16 +108,19 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     };
     let study = read(path)?;
     let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
-    let out = args.run.out.clone().unwrap_or_else(|| Path::new("maille-out").join(file_name(&stem)));
-    let plan = plan(&study, path.parent().unwrap_or(Path::new("")), &out, args.run.overwrite)?;
+    let out = args.out.clone().unwrap_or_else(|| Path::new("maille-out").join(file_name(&stem)));
+    let Plan { maps, mut unused } = plan(&study, path.parent().unwrap_or(Path::new("")), &out, args.run.overwrite)?;
+    if maps.is_empty() {
+        tell(unused);
+        return Ok(ExitCode::from(exit::LEFT_OUT));
+    }
     output::folder(&out, "a folder is written")?;
     let _lock = FolderLock::take(&out)?;
     let mut open: Vec<(&str, OpenMap)> = Vec::new();
-    let mut unused = Vec::new();
-    for planned in &plan {
+    for planned in &maps {
         match map::open(&planned.map, &planned.input) {
             Ok(map) => open.push((&planned.name, map)),
-            Err(report) if remedy::code(&report) == exit::DESIGN => unused.push((&planned.name, report)),
+            Err(report) if remedy::code(&report) == exit::DESIGN => unused.push((planned.name.clone(), report)),
             Err(report) => return Err(report),
         }
     }
@@ -110,23 +130,30 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if !used.is_empty() {
         let name = |(folder, record): (&PathBuf, _)| NamedRecord { name: records::name(folder), record };
         let named: Vec<NamedRecord> = used.iter().zip(records).map(name).collect();
-        let table = Table::new(&named, Field::all(true));
+        let table = Table::new(&named, Field::all(&named, true));
         output::write(&out.join("limits.csv"), table.csv().as_bytes())?;
     }
     let Tally { there, now, unanswered } = tally;
-    if !args.quiet {
-        for (name, report) in &unused {
-            eprintln!("{name} could not be used:\n{report:?}");
-        }
+    if !args.quiet && !used.is_empty() {
         let seconds = begun.elapsed().as_secs_f64();
-        let of_total = if there < total { format!(" of {total}") } else { String::new() };
-        say!(
-            "{there}{of_total} limits are in {} records, {now} of them now in {seconds:.1} s; {unanswered} were not found",
-            used.len()
-        );
+        let limits = if there < total { format!("{there} of {total} limits") } else { counted(there, "limit") };
+        say!("{limits} in {}, {now} of them now, in {seconds:.1} s", counted(used.len(), "record"));
         say!("all rows are in {}", out.join("limits.csv").display());
+        if unanswered > 0 {
+            let (limits, folder) = (counted(unanswered, "limit"), out.display());
+            say!("{limits} not found: `maille table {folder} --where l1=none` shows which, docs/guide/certificates.md what to try");
+        }
     }
-    Ok(exit::ended(interrupted, unanswered > 0 || !unused.is_empty(), args.quiet))
+    let code = if unused.is_empty() { args.run.code(unanswered > 0) } else { exit::LEFT_OUT };
+    tell(unused);
+    Ok(exit::ended(interrupted, code, args.quiet))
+}
+
+/// Designs that could not be used are errors: told even if nothing else is, and last.
+fn tell(unused: Vec<(String, Report)>) {
+    for (name, report) in unused {
+        eprintln!("{name} could not be used:\n{:?}", remedy::added(report));
+    }
 }
 
 fn read(path: &Path) -> Result<Study> {
@@ -145,22 +172,33 @@ fn read(path: &Path) -> Result<Study> {
     Ok(Study::read(&path.display().to_string(), &text)?)
 }
 
-/// Every map of the study.
-fn plan(study: &Study, folder: &Path, out: &Path, overwrite: bool) -> Result<Vec<Planned>> {
-    let mut plan: Vec<Planned> = Vec::new();
+/// Every map of the study. Designs that cannot be used stop nothing.
+fn plan(study: &Study, folder: &Path, out: &Path, overwrite: bool) -> Result<Plan> {
+    let mut plan = Plan { maps: Vec::new(), unused: Vec::new() };
     for of_study in &study.designs {
-        let StudyDesign { design, .. } = of_study;
+        let StudyDesign { design, name, .. } = of_study;
         let file = folder.join(design);
-        let design = if builtin(design).is_some() { design.clone() } else { file.display().to_string() };
-        let input = Input::read(&design, None)?;
+        let found = if builtin(design).is_some() { design.clone() } else { file.display().to_string() };
+        let input = match Input::read(&found, None) {
+            Ok(input) => input,
+            Err(report) => {
+                plan.unused.push((design.clone(), report));
+                continue;
+            }
+        };
         for variant in of_study.variants() {
-            let name = file_name(&input.design.name) + &variant.suffix;
-            if plan.iter().any(|known| known.name == name) {
-                let help = "name each design and value once";
+            let name = file_name(name.as_deref().unwrap_or(&input.design.name)) + &variant.suffix;
+            if plan.maps.iter().any(|known| known.name == name) {
+                let help = "name each design and value once, or give one of them another `name`";
                 return Err(wrong(exit::USAGE, format!("{name} is in the study twice"), help));
             }
-            let map = study.map(Some(out.join("records").join(&name)), overwrite);
-            plan.push(Planned { name, input: input.varied(&variant)?, map });
+            match input.varied(&variant) {
+                Ok(input) => {
+                    let map = of_study.map(Some(out.join("records").join(&name)), overwrite);
+                    plan.maps.push(Planned { name, input, map });
+                }
+                Err(report) => plan.unused.push((name, report)),
+            }
         }
     }
     Ok(plan)

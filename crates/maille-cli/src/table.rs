@@ -116,11 +116,10 @@ pub fn run(args: &Args) -> Result<()> {
 }
 
 fn written(args: &Args, records: &[NamedRecord], format: Format) -> Result<Vec<u8>> {
-    let several = records.len() > 1;
     let fields = match (&args.columns, format) {
         (Some(Columns::These(fields)), _) => fields.clone(),
-        (None, Format::Text) => Field::first_look(several),
-        _ => Field::all(several),
+        (None, Format::Text) => Field::first_look(records),
+        _ => Field::all(records, records.len() > 1),
     };
     let mut table = Table::new(records, fields);
     table.keep(&args.conditions.iter().flat_map(|c| c.0.clone()).collect::<Vec<_>>());

@@ -54,7 +54,7 @@ pub struct Length {
 
 /// Reads `1.6mm`, `0.064in`, `5/16in` or `5/16"`.
 pub fn parse_length(text: &str) -> Result<Length, String> {
-    let wrong = || format!("\"{text}\" is no length; give it with its unit, as 8mm, 0.3125in or 5/16in");
+    let wrong = || format!("\"{text}\" is not a length; give it with its unit, as 8mm, 0.3125in or 5/16in");
     let text = text.trim();
     let split = text.find(|c: char| !(c.is_ascii_digit() || "./".contains(c))).ok_or_else(wrong)?;
     let (value, unit) = text.split_at(split);
@@ -74,7 +74,7 @@ pub fn parse_wire(text: &str) -> Result<Length, String> {
         let Some(number) = lower.strip_suffix(gauge.name()) else { continue };
         let mm =
             number.trim().parse::<usize>().ok().and_then(|n| gauge.millimetres(n)).ok_or_else(|| {
-                format!("\"{text}\" is no gauge; {0} has the numbers 0 to 40, as 16{0}", gauge.name())
+                format!("\"{text}\" is not a gauge; {0} has the numbers 0 to 40, as 16{0}", gauge.name())
             })?;
         return Ok(Length { mm, gauge: Some(gauge) });
     }
@@ -87,7 +87,7 @@ pub fn parse_wire(text: &str) -> Result<Length, String> {
         ));
     }
     parse_length(text).map_err(|_| {
-        format!("\"{text}\" is no wire; give a diameter as 1.6mm or 0.064in, or a gauge as 16swg or 14awg")
+        format!("\"{text}\" is not a wire; give a diameter such as 1.6mm or 0.064in, or a gauge such as 16swg or 14awg")
     })
 }
 
@@ -135,7 +135,7 @@ pub fn parse_density(text: &str) -> Result<f64, String> {
     let found = units.iter().find_map(|(unit, factor)| Some(plain.strip_suffix(unit)?.parse::<f64>().ok()? * factor));
     found.filter(|x| x.is_finite() && *x > 0.0).ok_or_else(|| {
         let names: Vec<&str> = MATERIALS.iter().map(|(name, _)| *name).collect();
-        format!("\"{text}\" is no density; give it as 7.85g/cm3 or 7850kg/m3, or as one of {}", names.join(", "))
+        format!("\"{text}\" is not a density; give it as 7.85g/cm3 or 7850kg/m3, or as one of {}", names.join(", "))
     })
 }
 

@@ -103,10 +103,10 @@ fn verified(folder: &Path, pool: &rayon::ThreadPool, quiet: bool) -> Result<Veri
     let verifier = Verifier::new(&texts).map_err(|e| {
         wrong(exit::RECORD, format!("{}:{}: {}", folder.join(e.file).display(), e.line, e.problem), DAMAGED)
     })?;
-    let progress = Progress::new(verifier.len() as u64, quiet);
+    let progress = Progress::new("rows", 0, verifier.len(), quiet);
     let row = |k: usize| {
         let report = verifier.row(k);
-        progress.step(format!("{}°, l2 = {}", report.direction_deg, report.l2));
+        progress.step();
         report
     };
     let rows: Vec<RowReport> = pool.install(|| (0..verifier.len()).into_par_iter().with_max_len(1).map(row).collect());
@@ -136,7 +136,7 @@ fn text(folder: &Path, name: &str) -> Result<Option<String>> {
         Ok(text) => Ok(Some(text)),
         Err(e) if e.kind() == ErrorKind::NotFound => Ok(None),
         Err(e) if e.kind() == ErrorKind::InvalidData => {
-            Err(wrong(exit::RECORD, format!("{} is no text", path.display()), DAMAGED))
+            Err(wrong(exit::RECORD, format!("{} is not a text file", path.display()), DAMAGED))
         }
         Err(e) => Err(e).into_diagnostic().wrap_err_with(|| format!("cannot read {}", path.display())),
     }
@@ -157,9 +157,9 @@ impl Verified {
 
 fn tell(record: &Verified, all: bool) {
     output::say!(
-        "{}: {} rows, {} of {} certified ones proved",
+        "{}: {}, {} of {} certified ones proved",
         record.record,
-        record.rows.len(),
+        output::counted(record.rows.len(), "row"),
         record.proved,
         record.certified
     );

@@ -42,10 +42,10 @@ pub fn verified(path: &Path, pool: &rayon::ThreadPool, quiet: bool) -> Result<Ve
     let help = "the file is damaged, was edited, or proves nothing: write it again with `maille prove`";
     let proof =
         Proof::read(&text).map_err(|(line, problem)| wrong(exit::RECORD, format!("{name}:{line}: {problem}"), help))?;
-    let progress = Progress::of(proof.len() as u64, quiet, "boxes");
+    let progress = Progress::new("boxes", 0, proof.len(), quiet);
     let check = |k: usize| {
         let result = proof.check(k).err();
-        progress.step(String::new());
+        progress.step();
         result
     };
     let failed: Vec<usize> = pool.install(|| (0..proof.len()).into_par_iter().filter_map(check).collect());

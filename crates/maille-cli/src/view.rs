@@ -86,7 +86,7 @@ mod with_viewer {
         }
         let folder = std::env::current_dir().into_diagnostic().wrap_err("there is no current folder")?;
         let app = App::new(&opened, args.threads.map(usize::from), folder).map_err(report)?;
-        let stop = interrupt::flag()?;
+        let stop = interrupt::flag(false)?;
         let ready = |address| {
             let address = format!("http://{address}/");
             say!("{} is at {address}   (Ctrl-C ends it)", opened.name);
@@ -114,12 +114,11 @@ mod with_viewer {
             let input = Input::read(&args.design, None)?;
             input.compile(&input.design, maille::lattice::Cell::PRIMITIVE)?;
             let map = map_of_bundle(args.directions.0.clone(), args.l2.0.clone()).map_err(report)?;
-            let cancel = interrupt::flag()?;
+            let cancel = interrupt::flag(false)?;
             let total = map.question.tasks().len();
-            let progress = Progress::new(total as u64, false);
-            let found =
-                |row: &maille::record::LimitRow| progress.step(format!("{}°, l2 = {}", row.direction_deg, row.l2));
-            let record = pool(args.threads)?.install(|| solve_map(&opened, &map, &cancel, &found));
+            let progress = Progress::new("limits", 0, total, false);
+            let record =
+                pool(args.threads)?.install(|| solve_map(&opened, &map, &cancel, &|_| progress.step()));
             progress.finish();
             if cancel.load(Ordering::Relaxed) {
                 return Err(wrong(exit::INTERRUPTED, "interrupted", "nothing was written"));

@@ -35,7 +35,7 @@ pub fn watch(designs: &[String], mut command: impl FnMut() -> Result<ExitCode>) 
         }
     }
     let context = || "cannot watch the files; run the command without --watch".to_owned();
-    let stop = interrupt::flag()?;
+    let stop = interrupt::flag(false)?;
     let (changed, changes) = channel();
     let mut debouncer = new_debouncer(SETTLE, changed).into_diagnostic().wrap_err_with(context)?;
     for name in designs {

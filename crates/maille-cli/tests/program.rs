@@ -290,42 +290,6 @@ fn a_simulated_sheet_is_exported_and_drawn() {
     assert_eq!(text.lines().filter(|l| l.starts_with("g ") || l.starts_with("o ")).count(), 6, "{}", &text[..400]);
 }
 
-/// A study is many records and one table; a variant that cannot be used is named, and does not stop the others.
-#[test]
-fn a_sweep_goes_on_where_it_was() {
-    let folder = tempfile::tempdir().unwrap();
-    let folder = folder.path();
-    let study =
-        "directions = [0, 45]\nl2 = 0\ncell = \"1x1\"\n[[designs]]\ndesign = \"1.1\"\nminor_radius = [0.05, 0.1]\n";
-    fs::write(folder.join("wire.toml"), study).unwrap();
-    done(folder, "sweep wire.toml --quiet", b"");
-    let out = folder.join("maille-out/wire");
-    let table = fs::read_to_string(out.join("limits.csv")).unwrap();
-    assert_eq!(table.lines().count(), 5);
-    for (name, l1) in [("1.1-r0.05", "0.52"), ("1.1-r0.1", "0.44")] {
-        let row = table.lines().find(|line| line.contains(name)).unwrap();
-        let found: f64 = row.split(',').nth(8).unwrap().parse().unwrap();
-        assert!((found - l1.parse::<f64>().unwrap()).abs() < 1e-9, "{row}");
-    }
-    // One record is lost: its rows alone come anew, and the table is the same but for the times.
-    fs::remove_dir_all(out.join("records/1.1-r0.1")).unwrap();
-    let again = maille(folder, "sweep wire.toml --threads 1", b"");
-    assert!(String::from_utf8_lossy(&again.stderr).contains("2 of 4 limits are in maille-out/wire already"));
-    let timeless = |table: &str| -> Vec<String> {
-        let column = table.lines().next().unwrap().split(',').position(|name| name == "wall_s").unwrap();
-        let without = |line: &str| line.split(',').enumerate().filter(|(k, _)| *k != column).map(|c| c.1).collect();
-        table.lines().map(without).collect()
-    };
-    assert_eq!(timeless(&fs::read_to_string(out.join("limits.csv")).unwrap()), timeless(&table));
-
-    fs::write(folder.join("wire.toml"), format!("{study}spacing = [1, 0.7]\n").replace("0.1]\n", "0.4]\n")).unwrap();
-    let some = maille(folder, "sweep wire.toml --out other", b"");
-    assert_eq!(some.status.code(), Some(5), "{}", String::from_utf8_lossy(&some.stderr));
-    let said = String::from_utf8_lossy(&some.stderr).into_owned();
-    assert!(said.contains("1.1-r0.4-s1 could not be used") && said.contains("minor_radius = 0.4"), "{said}");
-    assert!(fs::read_to_string(folder.join("other/limits.csv")).unwrap().contains("1.1-r0.05-s1"));
-}
-
 /// The thickest wire is a design again, and there is no room left in it.
 #[test]
 fn the_tightest_state_is_saved_as_a_design() {

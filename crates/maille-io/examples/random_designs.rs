@@ -165,6 +165,7 @@ fn attempt(name: &str, kind: Kind, rng: &mut ChaCha8Rng) -> Option<Design> {
         allow_initial_overlap: false,
         lattice: lattice(groups, kind, &style, rng),
         elements: Vec::new(),
+        varied: std::collections::BTreeMap::new(),
     };
     for _ in 0..groups {
         grow(&mut design, kind, &style, rng)?;

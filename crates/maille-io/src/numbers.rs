@@ -16,7 +16,7 @@ const MOST: usize = 100_000;
 pub fn parse(text: &str) -> Result<Numbers, String> {
     let number = |t: &str| match t.trim().parse::<f64>() {
         Ok(x) if x.is_finite() => Ok(x + 0.0), // −0 is 0
-        _ => Err(format!("\"{}\" is no number; give a list as 0,15,30 or a range as 0:180:15", t.trim())),
+        _ => Err(format!("\"{}\" is not a number; give a list such as 0,15,30 or a range such as 0:180:15", t.trim())),
     };
     let parts: Vec<&str> = text.split(':').collect();
     let values = match parts[..] {

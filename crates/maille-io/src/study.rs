@@ -9,6 +9,7 @@ use crate::{
 use maille::{
     design::Design,
     error::InvalidInput,
+    lattice::Across,
     question::Effort,
     search::ExactOptions,
     survey::{CellChoice, MapQuestion, Method},
@@ -22,18 +23,6 @@ use toml::Spanned;
 /// What `maille sweep` computes: each design, at each of its radii and spacings, over all directions and l2.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Study {
-    /// Directions of the pull, degrees counter-clockwise from x.
-    pub directions_deg: Vec<f64>,
-    /// Stretch − 1 held across it.
-    pub l2: Vec<f64>,
-    /// The cells to solve.
-    pub cell: CellChoice,
-    /// How long a limit is searched whose bound is not attained.
-    pub effort: Effort,
-    /// So many starts in place of an effort.
-    pub starts: Option<usize>,
-    /// Seed of everything random.
-    pub seed: u64,
     /// The designs.
     pub designs: Vec<StudyDesign>,
 }
@@ -43,6 +32,10 @@ pub struct Study {
 pub struct StudyDesign {
     /// A built-in design, or a file, relative to the study's folder.
     pub design: String,
+    /// Name of its records, before the parameters; `None`: that of the design.
+    pub name: Option<String>,
+    /// What is asked of it.
+    pub question: MapQuestion,
     /// Minor radii in the design's unit; empty: the design's own.
     pub minor_radius: Vec<f64>,
     /// Factors of all distances between elements; empty: as designed.
@@ -84,6 +77,11 @@ impl Variant {
 }
 
 impl StudyDesign {
+    /// The map of each of its variants, with the record in `out`.
+    pub fn map(&self, out: Option<PathBuf>, overwrite: bool) -> Map {
+        Map { question: self.question.clone(), quantity: Quantity::Stretch, out, overwrite }
+    }
+
     /// Every radius with every value of the other numbers and every spacing; a design without values of a parameter keeps its own.
     pub fn variants(&self) -> Vec<Variant> {
         let some = |values: &[f64]| match values {
@@ -123,6 +121,9 @@ impl StudyDesign {
 struct RawStudy {
     directions: Option<Spanned<List>>,
     l2: Option<Spanned<List>>,
+    lateral: Option<Spanned<Held>>,
+    shear: Option<Spanned<Held>>,
+    compression: Option<Spanned<bool>>,
     cell: Option<Spanned<String>>,
     effort: Option<Spanned<String>>,
     starts: Option<Spanned<i64>>,
@@ -134,14 +135,28 @@ struct RawStudy {
 #[serde(deny_unknown_fields)]
 struct RawDesign {
     design: Spanned<String>,
+    name: Option<String>,
+    directions: Option<Spanned<List>>,
+    l2: Option<Spanned<List>>,
+    lateral: Option<Spanned<Held>>,
+    shear: Option<Spanned<Held>>,
+    compression: Option<Spanned<bool>>,
     minor_radius: Option<Spanned<List>>,
     spacing: Option<Spanned<List>>,
     #[serde(default)]
     vary: BTreeMap<String, Spanned<List>>,
 }
 
+/// Whether a strain is held.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Held {
+    Fixed,
+    Free,
+}
+
 #[derive(Deserialize)]
-#[serde(untagged, expecting = "this is no number, no list as [0.05, 0.1] and no range as \"0:180:15\"")]
+#[serde(untagged, expecting = "this is neither a number, nor a list such as [0.05, 0.1], nor a range such as \"0:180:15\"")]
 enum List {
     One(f64),
     Several(Vec<f64>),
@@ -159,8 +174,8 @@ impl List {
     }
 }
 
-const HELP: &str = "a study has directions, l2, cell, effort, starts, seed, and [[designs]] with design, minor_radius, spacing, vary; \
-                    `maille sweep --example` prints one";
+const HELP: &str = "a study has cell, effort, starts, seed, and [[designs]] with design, name, minor_radius, spacing, vary; directions, l2, \
+                    lateral, shear and compression stand in either; `maille sweep --example` prints one";
 
 impl Study {
     /// Reads a study; `source_name` is what errors show.
@@ -179,23 +194,6 @@ impl Study {
         })
     }
 
-    /// What is asked of each design: effort, starts and seed of the study, the rest as usual.
-    pub fn question(&self) -> MapQuestion {
-        let usual = ExactOptions::default();
-        let Study { effort, starts, seed, .. } = *self;
-        MapQuestion {
-            method: Method::Exact(ExactOptions { effort, starts, seed, ..usual }),
-            cells: self.cell.clone(),
-            directions_deg: self.directions_deg.clone(),
-            l2: self.l2.clone(),
-        }
-    }
-
-    /// The map that each design gets, with its record in `out`.
-    pub fn map(&self, out: Option<PathBuf>, overwrite: bool) -> Map {
-        Map { question: self.question(), quantity: Quantity::Stretch, out, overwrite }
-    }
-
     fn parsed(text: &str) -> Result<Study, Wrong> {
         let raw: RawStudy = toml::from_str(text).map_err(|error| Wrong {
             problem: error.message().to_owned(),
@@ -205,33 +203,79 @@ impl Study {
         if raw.designs.get_ref().is_empty() {
             return Err(wrong(&raw.designs, "the study has no design", "add [[designs]] with design = \"1.1\""));
         }
-        let cell = match &raw.cell {
+        let base = raw.options()?;
+        let designs = raw.designs.get_ref().iter().map(|design| design.read(&raw, &base));
+        Ok(Study { designs: designs.collect::<Result<_, _>>()? })
+    }
+}
+
+impl RawStudy {
+    /// What all designs share: cells, effort, starts and seed.
+    fn options(&self) -> Result<(CellChoice, ExactOptions), Wrong> {
+        let cell = match &self.cell {
             Some(cell) => cell.get_ref().parse().map_err(|e: InvalidInput| wrong(cell, e.problem, e.help))?,
             None => CellChoice::Auto,
         };
-        let mut designs = Vec::new();
-        for RawDesign { design, minor_radius, spacing, vary } in raw.designs.get_ref() {
-            let mut varied = Vec::new();
-            for (path, values) in vary {
-                let path = path.parse::<NumberPath>().map_err(|e| wrong(values, e.problem, e.help))?;
-                varied.push((path, numbers(values, parse)?));
-            }
-            designs.push(StudyDesign {
-                design: design.get_ref().clone(),
-                minor_radius: minor_radius.as_ref().map(positive).transpose()?.unwrap_or_default(),
-                spacing: spacing.as_ref().map(positive).transpose()?.unwrap_or_default(),
-                vary: varied,
-            });
+        let options = ExactOptions {
+            effort: self.effort.as_ref().map(effort).transpose()?.unwrap_or_default(),
+            starts: self.starts.as_ref().map(|n| whole(n, 1)).transpose()?.map(|n| n as usize),
+            seed: self.seed.as_ref().map(|n| whole(n, 0)).transpose()?.unwrap_or(1),
+            ..ExactOptions::default()
+        };
+        if let (Some(lateral), Some(l2)) = (&self.lateral, &self.l2) {
+            held_and_free(lateral, l2)?;
         }
-        let directions_deg = raw.directions.map(|list| numbers(&list, parse)).transpose()?;
-        Ok(Study {
+        Ok((cell, options))
+    }
+}
+
+/// Refuses l2 beside a width that is left to the sheet.
+fn held_and_free(lateral: &Spanned<Held>, l2: &Spanned<List>) -> Result<(), Wrong> {
+    match lateral.get_ref() {
+        Held::Free => Err(wrong(l2, "l2 holds the width that lateral = \"free\" leaves to the sheet", "leave one of them out")),
+        Held::Fixed => Ok(()),
+    }
+}
+
+impl RawDesign {
+    /// The design with what is asked of it: what it does not say itself is that of the study.
+    fn read(&self, study: &RawStudy, (cell, options): &(CellChoice, ExactOptions)) -> Result<StudyDesign, Wrong> {
+        let mut vary = Vec::new();
+        for (path, values) in &self.vary {
+            let path = path.parse::<NumberPath>().map_err(|e| wrong(values, e.problem, e.help))?;
+            vary.push((path, numbers(values, parse)?));
+        }
+        Ok(StudyDesign {
+            design: self.design.get_ref().clone(),
+            name: self.name.clone(),
+            question: self.question(study, cell, options)?,
+            minor_radius: self.minor_radius.as_ref().map(positive).transpose()?.unwrap_or_default(),
+            spacing: self.spacing.as_ref().map(positive).transpose()?.unwrap_or_default(),
+            vary,
+        })
+    }
+
+    fn question(&self, study: &RawStudy, cell: &CellChoice, options: &ExactOptions) -> Result<MapQuestion, Wrong> {
+        let free = |own: &Option<Spanned<Held>>, of_study: &Option<Spanned<Held>>| {
+            own.as_ref().or(of_study.as_ref()).is_some_and(|held| *held.get_ref() == Held::Free)
+        };
+        let across = Across {
+            lateral_free: free(&self.lateral, &study.lateral),
+            shear_free: free(&self.shear, &study.shear),
+        };
+        if let (Some(lateral), Some(l2)) = (self.lateral.as_ref().or(study.lateral.as_ref()), &self.l2) {
+            held_and_free(lateral, l2)?;
+        }
+        let compression = self.compression.as_ref().or(study.compression.as_ref()).is_some_and(|own| *own.get_ref());
+        let directions = self.directions.as_ref().or(study.directions.as_ref());
+        let directions_deg = directions.map(|list| numbers(list, parse)).transpose()?;
+        let l2 = self.l2.as_ref().or(study.l2.as_ref()).filter(|_| !across.lateral_free);
+        let l2 = l2.map(|list| numbers(list, parse_l2)).transpose()?;
+        Ok(MapQuestion {
+            method: Method::Exact(ExactOptions { across, compression, ..options.clone() }),
+            cells: cell.clone(),
             directions_deg: directions_deg.unwrap_or_else(|| (0..=180).step_by(15).map(f64::from).collect()),
-            l2: raw.l2.map(|list| numbers(&list, parse_l2)).transpose()?.unwrap_or_else(|| vec![0.0]),
-            cell,
-            effort: raw.effort.as_ref().map(effort).transpose()?.unwrap_or_default(),
-            starts: raw.starts.map(|n| whole(&n, 1)).transpose()?.map(|n| n as usize),
-            seed: raw.seed.map(|n| whole(&n, 0)).transpose()?.unwrap_or(1),
-            designs,
+            l2: l2.unwrap_or_else(|| vec![0.0]),
         })
     }
 }
@@ -303,9 +347,32 @@ mod tests {
         let text =
             "l2 = \"-0.25:0:0.125\"\n[[designs]]\ndesign = \"1.1\"\nspacing = 1\n[[designs]]\ndesign = \"a.toml\"\n";
         let study = Study::read("s", text).unwrap();
-        assert_eq!((study.directions_deg.len(), study.l2.len(), study.cell, study.seed), (13, 3, CellChoice::Auto, 1));
+        let MapQuestion { method, cells, directions_deg, l2 } = &study.designs[0].question;
+        assert_eq!((directions_deg.len(), l2.len(), cells), (13, 3, &CellChoice::Auto));
+        assert_eq!(*method, Method::Exact(ExactOptions::default()));
         assert_eq!(study.designs[0].spacing, [1.0]);
         assert!(study.designs[1].minor_radius.is_empty());
+    }
+
+    /// What a design says itself holds for it alone; a width that is left to the sheet needs no l2.
+    #[test]
+    fn designs_may_be_asked_different_things() {
+        let text = "directions = [0, 45]\nl2 = [-0.1, 0]\nshear = \"free\"\nstarts = 3\n\
+                    [[designs]]\ndesign = \"1.1\"\n\
+                    [[designs]]\ndesign = \"1.1\"\nname = \"free\"\nlateral = \"free\"\ndirections = 30\n\
+                    [[designs]]\ndesign = \"1.1\"\nname = \"pushed\"\ncompression = true\nshear = \"fixed\"\nl2 = 0.1\n";
+        let found = Study::read("s", text).unwrap().designs;
+        let asked = |k: usize| {
+            let MapQuestion { method, directions_deg, l2, .. } = &found[k].question;
+            let Method::Exact(options) = method else { panic!("studies use the exact method") };
+            let Across { lateral_free, shear_free } = options.across;
+            assert_eq!(options.starts, Some(3));
+            (directions_deg.clone(), l2.clone(), [lateral_free, shear_free, options.compression])
+        };
+        assert_eq!(asked(0), (vec![0.0, 45.0], vec![-0.1, 0.0], [false, true, false]));
+        assert_eq!(asked(1), (vec![30.0], vec![0.0], [true, true, false]));
+        assert_eq!(asked(2), (vec![0.0, 45.0], vec![0.1], [false, false, true]));
+        assert_eq!(found[1].name.as_deref(), Some("free"));
     }
 
     /// The radius of the standing rings, as in Figure 6.11, and a height: every value with every other.
@@ -332,10 +399,13 @@ mod tests {
             ("designs = []", "no design", Some("[]")),
             ("angle = 3\n[[designs]]\ndesign = \"1.1\"", "unknown field `angle`", Some("angle")),
             ("l2 = -1\n[[designs]]\ndesign = \"1.1\"", "press the sheet to nothing", Some("-1")),
+            ("lateral = \"free\"\nl2 = 0\n[[designs]]\ndesign = \"1.1\"", "leaves to the sheet", Some("0")),
+            ("lateral = \"free\"\n[[designs]]\ndesign = \"1.1\"\nl2 = 3", "leaves to the sheet", Some("3")),
+            ("[[designs]]\ndesign = \"1.1\"\nshear = \"none\"", "unknown variant `none`", Some("\"none\"")),
             ("cell = \"0x1\"\n[[designs]]\ndesign = \"1.1\"", "", Some("\"0x1\"")),
             ("starts = 0\n[[designs]]\ndesign = \"1.1\"", "too small", Some("0")),
             ("[[designs]]\ndesign = \"1.1\"\nspacing = [1.0, -2.0]", "-2 is not positive", Some("[1.0, -2.0]")),
-            ("[[designs]]\ndesign = \"1.1\"\nminor_radius = true", "no range", Some("true")),
+            ("[[designs]]\ndesign = \"1.1\"\nminor_radius = true", "nor a range", Some("true")),
             ("[[designs]]\ndesign = \"1.1\"\nvary = { radius = 3 }", "names no number", Some("3")),
         ];
         for (text, problem, place) in cases {

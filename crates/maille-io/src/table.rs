@@ -35,7 +35,10 @@ pub struct Table<'a> {
 impl<'a> Table<'a> {
     /// All rows of the records, one after the other, with these columns.
     pub fn new(records: &'a [NamedRecord], fields: Vec<Field>) -> Self {
-        let rows = |named: &'a NamedRecord| named.record.rows.iter().map(|limit| Row { record: &named.name, limit });
+        let rows = |named: &'a NamedRecord| {
+            let (record, design) = (named.name.as_str(), &named.record.run.design);
+            named.record.rows.iter().map(move |limit| Row { record, design, limit })
+        };
         let rows: Vec<Row<'a>> = records.iter().flat_map(rows).collect();
         Self { records, total: rows.len(), rows, fields }
     }
@@ -56,7 +59,7 @@ impl<'a> Table<'a> {
     }
 
     /// The unit of a column's numbers; `mixed` where the records have lengths in different units.
-    fn unit(&self, field: Field) -> Option<&'a str> {
+    fn unit(&self, field: &Field) -> Option<&'a str> {
         let mut units = self.records.iter().map(|named| field.unit().name(named.record.run.design.unit.as_deref()));
         let first = units.next().flatten();
         if units.all(|unit| unit == first) { first } else { Some("mixed") }

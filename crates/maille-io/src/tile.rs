@@ -15,7 +15,7 @@ impl FromStr for Tile {
         let count = |t: &str| t.parse::<u32>().ok().filter(|n| (1..=MOST).contains(n));
         match text.split_once('x').map(|(m, n)| (count(m), count(n))) {
             Some((Some(m), Some(n))) => Ok(Tile([m, n])),
-            _ => Err(format!("\"{text}\" is no tile; give the cells along a1 and a2, as 8x8")),
+            _ => Err(format!("\"{text}\" is not a tile; give the cells along a1 and a2, as 8x8")),
         }
     }
 }

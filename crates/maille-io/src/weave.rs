@@ -12,6 +12,7 @@ use maille::{
     topology,
 };
 use miette::Diagnostic;
+use std::collections::BTreeMap;
 use thiserror::Error;
 
 /// A weave with a name.
@@ -233,6 +234,7 @@ impl Weave {
             allow_initial_overlap: false,
             lattice: LatticeSpec { a1: lattice[0].map(length), a2: lattice[1].map(length) },
             elements: placed.into_iter().map(element).collect(),
+            varied: BTreeMap::new(),
         };
         match self.clearance(&design) {
             Some((distance, pair)) if distance <= 2.0 * minor => Err(WeaveError::TooThick {

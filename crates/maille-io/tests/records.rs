@@ -6,7 +6,7 @@ use maille::{
     lattice::Cell,
     model::Model,
     search::ExactOptions,
-    survey::{MapQuestion, Method},
+    survey::{MapQuestion, Method, Task, Work},
 };
 use maille_io::record::{
     Counters, ForceTable, Record, RecordError, RecordFolder, input_hash, read_forces, read_limits, read_run,
@@ -19,7 +19,10 @@ use maille_io::{
 use serde_json::{Value, json};
 use std::fs;
 use std::path::Path;
-use std::sync::{Mutex, atomic::AtomicBool};
+use std::sync::{
+    Mutex,
+    atomic::{AtomicBool, AtomicUsize, Ordering},
+};
 
 fn design() -> Design {
     maille_io::read_design("1.1", maille_io::builtin("1.1").unwrap()).unwrap()
@@ -130,7 +133,7 @@ fn a_damaged_table_is_named_by_line_column_and_value() {
     let broken = |from: &str, to: &str| message(read_limits("out/limits.csv", &text.replacen(from, to, 1)));
     assert_eq!(broken("0.30000000000000004", "0.3o"), "out/limits.csv:2: column l1: \"0.3o\" is not a number");
     assert_eq!(broken(",15.0,", ",NaN,"), "out/limits.csv:3: column direction_deg: \"NaN\" is not finite");
-    assert_eq!(broken("l2-not-reached", "lost"), "out/limits.csv:3: column status: \"lost\" is no status");
+    assert_eq!(broken("l2-not-reached", "lost"), "out/limits.csv:3: column status: \"lost\" is not a status");
     assert_eq!(broken(",123,", ",1.5,"), "out/limits.csv:2: column iterations: \"1.5\" is not a whole number");
     assert_eq!(
         broken("lambda1,lambda2", "lambda2,lambda1"),
@@ -350,8 +353,8 @@ fn tables_of_forces_are_read_as_they_were_written() {
         ("force_right_z", "force_right_z,more", 1, "column 17 is \"more\", expected no more"),
         ("\n0,", "\n7,", 2, "column frame: \"7\" is not 0"),
         ("\n1,0.30000000000000004", "\n1,", 3, "column share is empty"),
-        ("12.0", "wide", 2, "column floor_force: \"wide\" is no finite number"),
-        ("12.0", "inf", 2, "column floor_force: \"inf\" is no finite number"),
+        ("12.0", "wide", 2, "column floor_force: \"wide\" is not a finite number"),
+        ("12.0", "inf", 2, "column floor_force: \"inf\" is not a finite number"),
         ("1.44", "", 2, "some are empty and some are not"),
         (",6.0\n1,", "\n1,", 2, "15 columns, expected 16"),
         (",6.0\n1,", ",\n1,", 2, "column force_right_z is empty"),
@@ -378,20 +381,37 @@ fn maps_run_side_by_side_as_each_by_itself() {
     let heard = Mutex::new(Vec::new());
     let found = |name: &str, row: &LimitRow| heard.lock().unwrap().push((name.to_owned(), row.direction_deg, row.l2));
     let cancel = AtomicBool::new(false);
-    let records = run_all(vec![("a", open_map(&[0.0, 25.0])), ("b", open_map(&[45.0]))], &cancel, &found).unwrap();
+    let (at_work, begun) = (Mutex::new(Vec::new()), AtomicUsize::new(0));
+    let work = |name: &str, task: Task, what| {
+        let limit = (name.to_owned(), task.direction_deg.to_bits(), task.l2.to_bits());
+        let mut at_work = at_work.lock().unwrap();
+        match what {
+            Work::Begins => {
+                begun.fetch_add(1, Ordering::Relaxed);
+                at_work.push(limit);
+            }
+            Work::Ends => {
+                let at = at_work.iter().position(|begun| *begun == limit).expect("what ends was begun");
+                at_work.swap_remove(at);
+            }
+        }
+    };
+    let open = vec![("a", open_map(&[0.0, 25.0])), ("b", open_map(&[45.0]))];
+    let records = run_all(open, &cancel, &work, &found).unwrap();
+    assert_eq!((at_work.into_inner().unwrap().len(), begun.into_inner()), (0, 6));
     let mut heard = heard.into_inner().unwrap();
     heard.sort_by(|a, b| a.partial_cmp(b).unwrap());
     let of = |name: &str, direction_deg, l2| (name.to_owned(), direction_deg, l2);
     let all = [("a", 0.0), ("a", 25.0), ("b", 45.0)].map(|(name, d)| [of(name, d, -0.125), of(name, d, 0.0)]).concat();
     assert_eq!(heard, all);
-    let alone = open_map(&[45.0]).run(&cancel, &|_, _| ()).unwrap();
+    let alone = open_map(&[45.0]).run(&cancel, &|_, _| (), &|_, _| ()).unwrap();
     assert_eq!((records.len(), &records[1].states, &records[1].run), (2, &alone.states, &alone.run));
 }
 
 #[test]
 fn rows_of_a_record_come_out_again_and_an_edited_one_does_not() {
     let cancel = AtomicBool::new(false);
-    let mut record = open_map(&[0.0, 25.0]).run(&cancel, &|_, _| ()).unwrap();
+    let mut record = open_map(&[0.0, 25.0]).run(&cancel, &|_, _| (), &|_, _| ()).unwrap();
     let l1 = record.rows[1].l1.as_mut().unwrap();
     *l1 += 1e-8;
     record.rows[3].status = Status::Uncertified;

@@ -279,8 +279,8 @@ fn what_cannot_be_drawn_is_an_error() {
         assert!(matches!(error(RenderOptions { extent, ..options.clone() }), RenderError::TooManyRings { .. }));
     }
     for (text, problem) in [
-        ("above", "\"above\" is no view: give top, tilted, side, or azimuth,elevation in degrees as 30,45"),
-        ("30,x", "\"30,x\" is no view: give top, tilted, side, or azimuth,elevation in degrees as 30,45"),
+        ("above", "\"above\" is not a view: give top, tilted, side, or azimuth,elevation in degrees as 30,45"),
+        ("30,x", "\"30,x\" is not a view: give top, tilted, side, or azimuth,elevation in degrees as 30,45"),
         ("30,91", "an elevation of 91 is not between -90 and 90 degrees"),
     ] {
         assert_eq!(text.parse::<View>().unwrap_err(), problem);

@@ -64,7 +64,7 @@ fn other_programs_read_rows_types_and_units() {
 
     let folder = tempfile::tempdir().unwrap();
     let file = std::fs::File::create(folder.path().join("table.parquet")).unwrap();
-    Table::new(&records, Field::all(false)).parquet(file).unwrap();
+    Table::new(&records, Field::all(&records, false)).parquet(file).unwrap();
     std::fs::write(folder.path().join("expected.json"), expected.to_string()).unwrap();
     run(Command::new(python()).arg(checkers().join("check_table.py")).arg(folder.path()));
 }

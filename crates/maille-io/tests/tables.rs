@@ -4,6 +4,7 @@
 mod rows;
 
 use maille::record::{Column, LIMIT_COLUMNS, RECORD_SCHEMA, Status};
+use maille_io::NumberPath;
 use maille_io::record::{FORCE_COLUMNS, NamedRecord, PLACE_COLUMNS, read_limits, write_limits};
 use maille_io::table::{Condition, Extent, Field, SortKey, Table};
 use rows::{design, record, row};
@@ -40,7 +41,7 @@ design  direction_deg      l2    l1   min_gap  iterations  status
 3 rows
 "
     );
-    let mut chosen = Table::new(&records, Field::first_look(true));
+    let mut chosen = Table::new(&records, Field::first_look(&records));
     chosen.keep(&Condition::parse_list("l1!=none").unwrap());
     chosen.sort(&SortKey::parse_list("-l1").unwrap());
     assert_eq!(
@@ -55,7 +56,7 @@ columns that do not fit: l1, status, bound_l1, grows_with_cell, image_of_deg, it
 "
     );
     assert_eq!(table(&[], "l2"), "l2\n\n0 rows\n");
-    let narrow = Table::new(&records, Field::all(false)).text(Extent { width: Some(1), rows: Some(0) });
+    let narrow = Table::new(&records, Field::all(&records, false)).text(Extent { width: Some(1), rows: Some(0) });
     assert!(narrow.starts_with("design\n\nfirst 0 of 4 rows\ncolumns that do not fit: minor_radius, "), "{narrow}");
 }
 
@@ -63,8 +64,8 @@ columns that do not fit: l1, status, bound_l1, grows_with_cell, image_of_deg, it
 fn a_table_of_everything_is_the_records_own() {
     let records = two();
     let own = write_limits(&records[0].record.rows).unwrap();
-    assert_eq!(Table::new(&records[..1], Field::all(false)).csv(), own);
-    let both = Table::new(&records, Field::all(true)).csv();
+    assert_eq!(Table::new(&records[..1], Field::all(&records[..1], false)).csv(), own);
+    let both = Table::new(&records, Field::all(&records, true)).csv();
     assert!(both.starts_with("record,design,minor_radius,") && both.contains("\nout/b,\"1.1\",0.1,"));
     let without: String = both.lines().map(|line| format!("{}\n", line.split_once(',').unwrap().1)).collect();
     assert_eq!(read_limits("", &without).unwrap().len(), 4);
@@ -73,7 +74,7 @@ fn a_table_of_everything_is_the_records_own() {
 #[test]
 fn json_has_columns_with_units_inputs_and_rows() {
     let records = two();
-    let json: Value = serde_json::from_str(&Table::new(&records, Field::all(true)).json()).unwrap();
+    let json: Value = serde_json::from_str(&Table::new(&records, Field::all(&records, true)).json()).unwrap();
     let rows = json["rows"].as_array().unwrap();
     assert_eq!(rows.len(), 4);
     assert_eq!(rows[0]["l1"], 0.44000000000000017);
@@ -84,8 +85,31 @@ fn json_has_columns_with_units_inputs_and_rows() {
     assert_eq!(column("min_gap")["unit"], "mixed");
     assert_eq!(column("design")["unit"], Value::Null);
     assert_eq!(json["records"][1]["design"]["unit"], "mm");
-    let none: Value = serde_json::from_str(&Table::new(&[], Field::all(false)).json()).unwrap();
+    let none: Value = serde_json::from_str(&Table::new(&[], Field::all(&[], false)).json()).unwrap();
     assert_eq!(none["rows"], Value::Array(Vec::new()));
+}
+
+/// What a study has set is known of each record, stands in columns after the others, and can be asked for.
+#[test]
+fn what_a_study_varies_is_a_column() {
+    let mut records = two();
+    let place: NumberPath = "elements.standing-*.rings.major_radius".parse().unwrap();
+    let varied = place.set(&records[1].record.run.design, 0.75).unwrap().spaced(0.5).spaced(1.5);
+    records[1].record.run.design = varied;
+    let csv = Table::new(&records, Field::all(&records, true)).csv();
+    let mut lines = csv.lines();
+    assert!(lines.next().unwrap().ends_with(",wave_q2,elements.standing-*.rings.major_radius,spacing"));
+    let ends: Vec<bool> = lines.map(|line| line.ends_with(",0.75,0.75")).collect();
+    assert_eq!(ends, [false, false, false, true]);
+    assert!(csv.lines().nth(1).unwrap().ends_with(",,"));
+    let mut chosen = Table::new(&records, Field::parse_list("record,spacing,l2").unwrap());
+    chosen.keep(&Condition::parse_list("spacing=0.75").unwrap());
+    assert_eq!(chosen.csv(), "record,spacing,l2\nout/b,0.75,0.25\n");
+    let json: Value = serde_json::from_str(&Table::new(&records[1..], Field::all(&records[1..], false)).json()).unwrap();
+    let units: Vec<&Value> = json["columns"].as_array().unwrap().iter().rev().take(2).map(|c| &c["unit"]).collect();
+    assert_eq!(units, ["1", "mm"]);
+    let shown = Table::new(&records, Field::first_look(&records)).text(Extent::default());
+    assert!(shown.contains("spacing  direction_deg"), "{shown}");
 }
 
 #[test]
@@ -93,7 +117,7 @@ fn columns_are_named_once_and_known() {
     let message = |text: &str| Field::parse_list(text).unwrap_err().to_string();
     assert_eq!(message("l1,lambda3"), "there is no column \"lambda3\"; did you mean lambda1?");
     assert_eq!(message("direction,l1,direction_deg"), "column direction_deg is named twice; name each column once");
-    assert!(message("xyz").ends_with("wave_q2, record"));
+    assert!(message("xyz").ends_with("wave_q2, record, spacing"));
 }
 
 fn document(name: &str) -> String {

@@ -115,5 +115,5 @@ pub fn joint_csv(names: Vec<String>, records: Vec<PyRef<'_, Record>>) -> String 
     let named = names.into_iter().zip(&records);
     let named: Vec<NamedRecord> =
         named.map(|(name, record)| NamedRecord { name, record: record.record.clone() }).collect();
-    Table::new(&named, Field::all(true)).csv()
+    Table::new(&named, Field::all(&named, true)).csv()
 }

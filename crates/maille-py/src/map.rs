@@ -153,7 +153,7 @@ pub fn characterize(
     let open = open(design, question, quantity_name, out, overwrite)?;
     let run = wait(py, threads, progress.as_ref(), |cancel, tell| {
         tell(Step::More(open.left()));
-        open.run(cancel, &|_, _| tell(Step::Done))
+        open.run(cancel, &|_, _| (), &|_, _| tell(Step::Done))
     })?;
     let record = run.map_err(|e| error::map(&e))?;
     Ok(Record { name: design.design.name.clone(), record })
@@ -193,7 +193,9 @@ impl Record {
     /// The table as Parquet, as `maille table` writes it; with `states`, each row with the line of its state.
     fn parquet<'py>(&self, py: Python<'py>, states: bool) -> PyResult<Bound<'py, PyBytes>> {
         let named = [NamedRecord { name: self.name.clone(), record: self.record.clone() }];
-        let (table, mut out) = (Table::new(&named, Field::all(false)), Vec::new());
+        // With states it is a file of a dataset, all of whose files have the same columns.
+        let fields = Field::all(if states { &[] } else { &named }, false);
+        let (table, mut out) = (Table::new(&named, fields), Vec::new());
         let done = match states {
             true => table.parquet_with_states(&self.record.states, &mut out),
             false => table.parquet(&mut out),

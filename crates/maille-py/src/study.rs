@@ -5,8 +5,7 @@ use maille_io::{record::file_name, study::Study};
 use pyo3::prelude::*;
 use serde_json::json;
 
-/// What a study asks for, as JSON: what is asked of each design, and the designs with the values that they take. `name` is
-/// what errors show.
+/// The designs of a study, as JSON: what is asked of each, and the values that it takes. `name` is what errors show.
 #[pyfunction]
 pub fn study(name: &str, text: &str) -> PyResult<String> {
     let study = Study::read(name, text).map_err(|e| error::study(name, &e))?;
@@ -16,13 +15,14 @@ pub fn study(name: &str, text: &str) -> PyResult<String> {
             let numbers: Vec<_> = v.numbers.iter().map(|(path, value)| json!([path.to_string(), value])).collect();
             json!([v.suffix, v.minor_radius, numbers, v.spacing])
         });
-        json!({ "design": design.design, "variants": variants.collect::<Vec<_>>() })
+        json!({
+            "design": design.design,
+            "name": design.name,
+            "question": design.question,
+            "variants": variants.collect::<Vec<_>>(),
+        })
     });
-    Ok(json!({
-        "question": study.question(),
-        "designs": designs.collect::<Vec<_>>(),
-    })
-    .to_string())
+    Ok(json!(designs.collect::<Vec<_>>()).to_string())
 }
 
 /// A design's name as a file or folder.

@@ -273,7 +273,7 @@ def test_ctrl_c_leaves_what_was_found_and_the_same_command_goes_on(study, by_pro
     os.killpg(child.pid, signal.SIGINT)  # as from a terminal: to the workers, too
     _, stderr = child.communicate()
     assert child.returncode == 130, stderr
-    assert stderr.strip().splitlines()[-1] == "interrupted; the same command goes on from here" and "Traceback" not in stderr
+    assert stderr.strip().splitlines()[-1] == "interrupted; the same command continues from here" and "Traceback" not in stderr
     found = len(list(out.glob("chains/*/*.parquet")))
     assert 0 < found < 8
     done = run(*arguments[3:])

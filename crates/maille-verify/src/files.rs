@@ -130,7 +130,7 @@ fn rows_and_states(run: &Run, rows: &[Row], states: &[State]) -> Vec<Finding> {
             wrong.push(format!("{at}: {}°, l2 = {} a second time", row.direction_deg, row.l2));
         }
         if !STATUSES.contains(&row.status.as_str()) {
-            wrong.push(format!("{at}: \"{}\" is no status", row.status));
+            wrong.push(format!("{at}: \"{}\" is not a status", row.status));
         }
         let design = &run.design;
         if row.design != design.name || row.minor_radius != design.minor_radius {

@@ -42,7 +42,7 @@ impl Verifier {
             let Some(state) = states.get(&files::key(row.direction_deg, row.l2)) else { continue };
             starts.entry(row.cell.clone()).or_insert_with(|| match sheet::cell(&row.cell) {
                 Some(cell) => start(&run, &cell, &names(state)),
-                None => Err(format!("\"{}\" is no cell", row.cell)),
+                None => Err(format!("\"{}\" is not a cell", row.cell)),
             });
         }
         let first = run.parameters["cells"][0].as_str().unwrap_or_default();
@@ -102,7 +102,7 @@ impl Verifier {
             Ok(start) => start,
             Err(words) => return refused(words.clone()),
         };
-        let Some(cell) = sheet::cell(&row.cell) else { return refused(format!("\"{}\" is no cell", row.cell)) };
+        let Some(cell) = sheet::cell(&row.cell) else { return refused(format!("\"{}\" is not a cell", row.cell)) };
         // The same elements in the same order as in the state that the start was made for.
         let here = match Sheet::start(&self.run.design, &cell, &names(state)).and_then(|own| own.at(state, unit)) {
             Ok(here) if same_rings(&here, &start.sheet) => here,

@@ -80,7 +80,7 @@ pub fn solve_map(
 ) -> Result<Record, ViewError> {
     let subject = Subject { name: opened.name.clone(), text: opened.text.clone(), minor_radius: None, spacing: None };
     let (.., open) = solve::open(map, &subject)?;
-    Ok(open.run(cancel, &|row, _| found(row)).map_err(Refusal::fault)?)
+    Ok(open.run(cancel, &|_, _| (), &|row, _| found(row)).map_err(Refusal::fault)?)
 }
 
 /// The page with the design and its record inside, as one file that needs no server.

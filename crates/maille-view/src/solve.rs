@@ -146,6 +146,6 @@ fn solve(map: &Map, request: &Solve, cancel: &AtomicBool, send: &UnboundedSender
         }
         say(SolveEvent::Limit(Box::new(limit)));
     };
-    open.run(cancel, &found).map_err(Refusal::fault)?;
+    open.run(cancel, &|_, _| (), &found).map_err(Refusal::fault)?;
     Ok(())
 }

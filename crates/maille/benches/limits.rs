@@ -48,7 +48,7 @@ fn medians() {
             let mut best = [f64::INFINITY; L2.len()];
             for _ in 0..5 {
                 let mut begun = Instant::now();
-                method.limits(Direction::of_degrees(direction), &L2, &AtomicBool::new(false), &mut |k, limit| {
+                method.limits(Direction::of_degrees(direction), &L2, &AtomicBool::new(false), &|_| (), &mut |k, limit| {
                     best[k] = best[k].min(begun.elapsed().as_secs_f64());
                     drop(divan::black_box(limit));
                     begun = Instant::now();
@@ -79,7 +79,7 @@ fn scaling() {
         let mut global = 0;
         for direction in [0.0, 15.0, 30.0, 75.0, 100.0, 140.0] {
             let begun = Instant::now();
-            method.limits(Direction::of_degrees(direction), &[0.0], &AtomicBool::new(false), &mut |_, limit| {
+            method.limits(Direction::of_degrees(direction), &[0.0], &AtomicBool::new(false), &|_| (), &mut |_, limit| {
                 found.push((begun.elapsed().as_secs_f64(), limit.iterations));
                 global += usize::from(limit.status == Status::Global);
             });
@@ -115,7 +115,7 @@ fn exact_map(bencher: Bencher<'_, '_>, name: &str) {
     bencher.counter(ItemsCount::new(24 * L2.len())).bench_local(|| {
         let method = ExactMethod::new(&models, ExactOptions::default(), &AtomicBool::new(false));
         for direction in directions() {
-            method.limits(Direction::of_degrees(direction), &L2, &AtomicBool::new(false), &mut |_, limit| {
+            method.limits(Direction::of_degrees(direction), &L2, &AtomicBool::new(false), &|_| (), &mut |_, limit| {
                 drop(divan::black_box(limit))
             });
         }
@@ -143,7 +143,7 @@ fn one_limit(bencher: Bencher<'_, '_>, what: &str) {
             ExactOptions { starts: Some(1), ..ExactOptions::default() },
             &AtomicBool::new(false),
         );
-        method.limits(Direction::of_degrees(15.0), &[0.0], &AtomicBool::new(false), &mut |_, limit| {
+        method.limits(Direction::of_degrees(15.0), &[0.0], &AtomicBool::new(false), &|_| (), &mut |_, limit| {
             drop(divan::black_box(limit))
         });
     });

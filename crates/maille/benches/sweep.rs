@@ -24,6 +24,6 @@ fn map(bencher: Bencher<'_, '_>, threads: usize) {
     let question = MapQuestion::new(method, CellChoice::Auto, None, None).expect("the usual map");
     bencher.counter(ItemsCount::new(question.tasks().len())).bench_local(|| {
         let (all, cancel) = (|_| true, AtomicBool::new(false));
-        pool.install(|| characterize(&models, None, &question, &all, &cancel, &|found| drop(found)));
+        pool.install(|| characterize(&models, None, &question, &all, &cancel, &|_, _| (), &|found| drop(found)));
     });
 }

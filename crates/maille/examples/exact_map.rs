@@ -53,7 +53,7 @@ fn main() {
             let map = MapQuestion::new(method, CellChoice::Auto, Some(directions.clone()), Some(L2.to_vec()));
             let question = map.expect("a map that can be asked");
             let started = Instant::now();
-            characterize(&models, Some(radius), &question, &|_| true, &AtomicBool::new(false), &|row| {
+            characterize(&models, Some(radius), &question, &|_| true, &AtomicBool::new(false), &|_, _| (), &|row| {
                 rows.lock().expect("no panic").push(row);
             });
             let took = started.elapsed().as_secs_f64();

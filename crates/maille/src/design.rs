@@ -2,6 +2,10 @@
 
 use crate::error::InvalidInput;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Name in [`Design::varied`] of the factor by which distances between elements were multiplied.
+pub const SPACING: &str = "spacing";
 
 /// Version of the design file that this program reads.
 pub const DESIGN_SCHEMA: u32 = 1;
@@ -51,6 +55,9 @@ pub struct Design {
     pub lattice: LatticeSpec,
     /// The rigid elements of one cell.
     pub elements: Vec<ElementSpec>,
+    /// Numbers that a study has set, by their names: columns of its tables. No part of a design file.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub varied: BTreeMap<String, f64>,
 }
 
 fn default_schema() -> u32 {
@@ -106,6 +113,7 @@ impl Design {
         let mut out = self.clone();
         let centers = out.elements.iter_mut().map(|element| &mut element.center);
         centers.chain([&mut out.lattice.a1, &mut out.lattice.a2]).flatten().for_each(|x| *x *= factor);
+        *out.varied.entry(SPACING.into()).or_insert(1.0) *= factor;
         out
     }
 
@@ -113,6 +121,7 @@ impl Design {
     pub fn scaled(&self, factor: f64) -> Self {
         let mut out = self.clone();
         let scale = |v: &mut [f64; 3]| v.iter_mut().for_each(|x| *x *= factor);
+        out.varied.retain(|name, _| name == SPACING);
         out.minor_radius = out.minor_radius.map(|r| r * factor);
         out.reference_radius *= factor;
         scale(&mut out.lattice.a1);

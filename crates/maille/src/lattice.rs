@@ -175,7 +175,7 @@ impl FromStr for Cell {
         let wrong = || {
             InvalidInput::new(
                 "cell",
-                format!("\"{text}\" is no cell"),
+                format!("\"{text}\" is not a cell"),
                 "give 2x1, or an integer matrix as \"1,0;-1,2\"",
             )
         };

@@ -71,7 +71,7 @@ impl FromStr for Effort {
                 }
                 None => {
                     let right = "give low, normal, thorough, or a time in seconds, as 30s";
-                    Err(InvalidInput::new("effort", format!("`{text}` is no effort"), right))
+                    Err(InvalidInput::new("effort", format!("`{text}` is not an effort"), right))
                 }
             },
         }
@@ -218,7 +218,7 @@ impl Question {
         }
         let finite = |field: &str, x: f64| match x.is_finite() {
             true => Ok(()),
-            false => Err(InvalidInput::new(field, format!("{x} is no number"), "give a finite number")),
+            false => Err(InvalidInput::new(field, format!("{x} is not a number"), "give a finite number")),
         };
         // Beyond, a float has too few digits left for a direction, or for a width to be held.
         let within = |field: &str, what: &str, x: f64| match x.abs() <= MOST {

@@ -33,6 +33,7 @@ fn a_thousand_limits_leave_nothing_behind() {
                 Direction::of_degrees(7.5 * f64::from(k)),
                 &[-0.125, 0.0, 0.125],
                 &AtomicBool::new(false),
+                &|_| (),
                 &mut count,
             );
         }

@@ -124,7 +124,7 @@ enum ColorArg {
 fn parse_segments(text: &str) -> Result<Fineness, String> {
     let count = |t: &str| match t.parse::<usize>() {
         Ok(n) if n >= 3 => Ok(n),
-        _ => Err(format!("\"{t}\" is no number of segments; give 3 or more, as 48 or 48x16")),
+        _ => Err(format!("\"{t}\" is not a number of segments; give 3 or more, as 48 or 48x16")),
     };
     Ok(match text.split_once('x') {
         None => Fineness::Segments(count(text)?, None),

@@ -97,7 +97,15 @@ impl NumberPath {
             return Err(InvalidInput::new("vary", problem, format!("its elements are {}", elements.join(", "))));
         }
         numbers.into_iter().for_each(|number| *number = value);
+        if self.place != Place::MinorRadius {
+            out.varied.insert(self.text.clone(), value);
+        }
         Ok(out)
+    }
+
+    /// Whether it is a length: components of a normal are none.
+    pub fn is_length(&self) -> bool {
+        !matches!(self.place, Place::Ring(_, _, OfRing::Normal(_)))
     }
 
     /// The numbers of a design at this place.

@@ -5,6 +5,7 @@ use super::index::Index;
 use super::problem::DesignProblem;
 use crate::nearest::nearest;
 use maille::design::{DESIGN_SCHEMA, Design, ElementSpec, LatticeSpec, RingSpec, Source};
+use std::collections::BTreeMap;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -105,6 +106,7 @@ impl Reader<'_> {
             allow_initial_overlap: allow_initial_overlap?.unwrap_or_default(),
             lattice: lattice?,
             elements: elements?,
+            varied: BTreeMap::new(),
         })
     }
 
@@ -278,7 +280,7 @@ impl Reader<'_> {
             if let Some(near) = nearest(&name, &known) {
                 help = format!("did you mean \"{near}\"? {help}");
             }
-            let problem = format!("\"{name}\" is no source");
+            let problem = format!("\"{name}\" is not a source");
             self.problems.push(DesignProblem::new(path, problem, help, value.span()));
         }
         found

@@ -99,7 +99,7 @@ fn row(columns: &[String], record: &StringRecord, frame: usize) -> Result<ForceR
     let cells = columns.iter().zip(record).skip(1).map(|(name, text)| match (text, text.parse::<f64>()) {
         ("", _) => Ok(None),
         (_, Ok(x)) if x.is_finite() => Ok(Some(x)),
-        _ => Err(format!("column {name}: \"{text}\" is no finite number")),
+        _ => Err(format!("column {name}: \"{text}\" is not a finite number")),
     });
     let cells = cells.collect::<Result<Vec<Option<f64>>, String>>()?;
     let there = |k: usize| cells[k].ok_or_else(|| format!("column {} is empty", columns[k + 1]));

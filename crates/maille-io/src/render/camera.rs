@@ -41,7 +41,7 @@ impl FromStr for View {
             _ => {}
         }
         let wrong =
-            || format!("\"{text}\" is no view: give top, tilted, side, or azimuth,elevation in degrees as 30,45");
+            || format!("\"{text}\" is not a view: give top, tilted, side, or azimuth,elevation in degrees as 30,45");
         let (azimuth, elevation) = text.split_once(',').ok_or_else(wrong)?;
         let number = |t: &str| t.trim().parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(wrong);
         let view = View { azimuth_deg: number(azimuth)?, elevation_deg: number(elevation)? };

@@ -6,7 +6,7 @@ use maille::design::Design;
 use maille::lattice::Cell;
 use maille::model::Model;
 use maille::record::{LimitRow, StateRecord};
-use maille::survey::{CellChoice, Finished, MapQuestion, Method, Task, chains, characterize};
+use maille::survey::{CellChoice, Finished, MapQuestion, Method, Task, Work, chains, characterize};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -100,6 +100,11 @@ impl OpenMap {
         self.all.iter().zip(&self.collected.rows).filter(|(_, row)| row.is_none()).map(|(task, _)| *task)
     }
 
+    /// Whether the width across the pull is left to the sheet.
+    pub fn is_lateral_free(&self) -> bool {
+        matches!(&self.map.question.method, Method::Exact(options) if options.across.lateral_free)
+    }
+
     /// Whether no chain of links joins the cells of the design.
     pub fn is_unlinked(&self) -> bool {
         maille::topology::binding_vectors(&self.models[0]).is_empty()
@@ -148,10 +153,11 @@ impl OpenMap {
     }
 
     /// Asks for the limits that are left, on the current thread pool, writes the record, and gives it. `found` is shown
-    /// each limit with its state; after `cancel` what is finished is written.
+    /// each limit with its state, `work` hears when one is begun and ended; after `cancel` what is finished is written.
     pub fn run(
         mut self,
         cancel: &AtomicBool,
+        work: &(dyn Fn(Task, Work) + Sync),
         found: &(dyn Fn(&LimitRow, &StateRecord) + Sync),
     ) -> Result<Record, MapError> {
         let open: Vec<Task> = self.open().collect();
@@ -167,7 +173,7 @@ impl OpenMap {
         };
         let wanted = |task: Task| open.contains(&task);
         let radius = self.design.minor_radius;
-        characterize(&self.models, radius, &self.map.question, &wanted, cancel, &receive);
+        characterize(&self.models, radius, &self.map.question, &wanted, cancel, work, &receive);
         self.finish()
     }
 

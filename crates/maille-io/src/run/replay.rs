@@ -61,7 +61,7 @@ pub fn replay<'a>(
     let question = MapQuestion { directions_deg, ..asked };
     let wanted = |task: Task| rows.iter().any(|row| (row.direction_deg, row.l2) == (task.direction_deg, task.l2));
     let found = Mutex::new(Vec::<Finished>::new());
-    characterize(&models, design.minor_radius, &question, &wanted, cancel, &|row| {
+    characterize(&models, design.minor_radius, &question, &wanted, cancel, &|_, _| (), &|row| {
         found.lock().unwrap_or_else(|e| e.into_inner()).push(row);
     });
     let found = found.into_inner().unwrap_or_else(|e| e.into_inner());

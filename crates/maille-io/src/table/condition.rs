@@ -3,7 +3,7 @@
 use super::{Field, Row, TableError};
 use crate::nearest::nearest;
 use crate::record::NamedRecord;
-use maille::record::{Entry, Kind, Status};
+use maille::record::{Entry, Kind, LimitRow, Status};
 use std::cmp::Ordering;
 
 /// One condition on the rows of a table.
@@ -62,13 +62,13 @@ impl Condition {
             TableError { problem, help }
         };
         let Some(at) = text.find(['=', '!', '<', '>']) else {
-            return Err(wrong(format!("\"{text}\" is no condition")));
+            return Err(wrong(format!("\"{text}\" is not a condition")));
         };
         let (name, rest) = text.split_at(at);
         let sign_end = rest.find(|c: char| !"=!<>~".contains(c)).unwrap_or(rest.len());
         let (sign, value) = rest.split_at(sign_end);
         let Some((sign, holds)) = OPERATORS.into_iter().find(|(known, _)| *known == sign) else {
-            let error = wrong(format!("\"{sign}\" in \"{text}\" is no comparison"));
+            let error = wrong(format!("\"{sign}\" in \"{text}\" is not a comparison"));
             return Err(with_nearest(sign, &OPERATORS.map(|(known, _)| known), error));
         };
         if name.trim().is_empty() {
@@ -77,7 +77,7 @@ impl Condition {
         let field = Field::parse(name)?;
         let either = [UNEQUAL, "==", "="].contains(&sign);
         let values = if either { value.split('|').collect() } else { vec![value] };
-        let values = values.into_iter().map(|value| read(field, value)).collect::<Result<Vec<_>, _>>()?;
+        let values = values.into_iter().map(|value| read(&field, value)).collect::<Result<Vec<_>, _>>()?;
         let ordered = values.iter().all(|value| matches!(value, Value::Number(_)));
         if !either && !ordered {
             let help = format!("compare {} with = or !=", field.name());
@@ -99,8 +99,9 @@ impl Condition {
 impl NamedRecord {
     /// Keeps the rows that meet every condition; the states stay.
     pub fn keep(&mut self, conditions: &[Condition]) {
-        let record = &self.name;
-        self.record.rows.retain(|limit| conditions.iter().all(|condition| condition.holds(&Row { record, limit })));
+        let (record, design) = (&self.name, &self.record.run.design);
+        let all = |limit: &LimitRow| conditions.iter().all(|condition| condition.holds(&Row { record, design, limit }));
+        self.record.rows.retain(all);
     }
 }
 
@@ -125,7 +126,7 @@ fn same(x: f64, wanted: f64) -> bool {
     (x - wanted).abs() <= 1e-9 * x.abs().max(wanted.abs()) + 1e-14
 }
 
-fn read(field: Field, text: &str) -> Result<Value, TableError> {
+fn read(field: &Field, text: &str) -> Result<Value, TableError> {
     let text = text.trim();
     let bare = text.strip_prefix('"').and_then(|t| t.strip_suffix('"'));
     if bare.is_none() && text.contains('"') {
@@ -138,7 +139,7 @@ fn read(field: Field, text: &str) -> Result<Value, TableError> {
     let text = bare.unwrap_or(text);
     let wrong = |expected: &str| {
         let help = format!("{} is {expected}, or none where it is empty", field.name());
-        TableError { problem: format!("\"{text}\" is no value of {}", field.name()), help }
+        TableError { problem: format!("\"{text}\" is not a value of {}", field.name()), help }
     };
     let word = |known: &[&str]| match known.contains(&text) {
         true => Ok(Value::Text(text.to_owned())),
@@ -172,7 +173,8 @@ mod tests {
 
     fn holds(text: &str, limit: &LimitRow) -> bool {
         let conditions = Condition::parse_list(text).unwrap_or_else(|e| panic!("{text}: {e}"));
-        conditions.iter().all(|condition| condition.holds(&Row { record: "a/b", limit }))
+        let design = crate::read_design("1.1", crate::builtin("1.1").unwrap()).unwrap();
+        conditions.iter().all(|condition| condition.holds(&Row { record: "a/b", design: &design, limit }))
     }
 
     #[test]
@@ -231,19 +233,19 @@ mod tests {
         assert_eq!(message("lamda1>0"), "there is no column \"lamda1\"; did you mean lambda1?");
         assert_eq!(
             message("status=globl"),
-            "\"globl\" is no value of status; did you mean global? status is one of global, local, threshold-reached, \
+            "\"globl\" is not a value of status; did you mean global? status is one of global, local, threshold-reached, \
              uncertified, l2-unreachable, l2-not-reached, unbounded, not-converged, infeasible-start, interrupted, or none \
              where it is empty"
         );
-        assert_eq!(message("l2=abc"), "\"abc\" is no value of l2; l2 is a number, or none where it is empty");
+        assert_eq!(message("l2=abc"), "\"abc\" is not a value of l2; l2 is a number, or none where it is empty");
         let shape = "give a column, one of = != < <= > >=, and a value, as l2<0 or status=local";
-        assert_eq!(message("l2"), format!("\"l2\" is no condition; {shape}"));
-        assert_eq!(message("l2=>0"), format!("\"=>\" in \"l2=>0\" is no comparison; did you mean >=? {shape}"));
+        assert_eq!(message("l2"), format!("\"l2\" is not a condition; {shape}"));
+        assert_eq!(message("l2=>0"), format!("\"=>\" in \"l2=>0\" is not a comparison; did you mean >=? {shape}"));
         assert_eq!(message("=3"), format!("\"=3\" names no column; {shape}"));
-        assert_eq!(message("l2=0,"), format!("\"\" is no condition; {shape}"));
+        assert_eq!(message("l2=0,"), format!("\"\" is not a condition; {shape}"));
         assert_eq!(message("status<local"), "\"status<local\" has no order; compare status with = or !=");
         assert_eq!(message("l1>none"), "\"l1>none\" has no order; compare l1 with = or !=");
         assert!(message("cell=\"1,0").contains("not closed"));
-        assert!(message("l2=").starts_with("\"\" is no value of l2"));
+        assert!(message("l2=").starts_with("\"\" is not a value of l2"));
     }
 }

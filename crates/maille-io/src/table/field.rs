@@ -1,7 +1,9 @@
 //! Columns and rows of a table.
 
-use crate::nearest::nearest;
+use crate::{design_toml::NumberPath, nearest::nearest, record::NamedRecord};
+use maille::design::{Design, SPACING};
 use maille::record::{Column, Entry, Kind, LIMIT_COLUMNS, LimitRow, Unit};
+use std::collections::BTreeSet;
 use thiserror::Error;
 
 /// A column, condition or order that no table has.
@@ -14,13 +16,15 @@ pub struct TableError {
     pub help: String,
 }
 
-/// A column of a table: the record that a row comes from, or a column of `limits.csv`.
-#[derive(Clone, Copy, Debug)]
+/// A column of a table: the record that a row comes from, a column of `limits.csv`, or a number that a study has varied.
+#[derive(Clone, Debug)]
 pub enum Field {
     /// Name of the record.
     Record,
     /// A column of `limits.csv`.
     Limit(&'static Column),
+    /// A number of [`Design::varied`], by its name and with its unit.
+    Varied(String, Unit),
 }
 
 /// Name of [`Field::Record`].
@@ -36,8 +40,9 @@ impl Field {
         if long == RECORD {
             return Ok(Field::Record);
         }
-        LIMIT_COLUMNS.iter().find(|column| column.name == long).map(Field::Limit).ok_or_else(|| {
-            let known: Vec<&str> = LIMIT_COLUMNS.iter().map(|column| column.name).chain([RECORD]).collect();
+        let column = LIMIT_COLUMNS.iter().find(|column| column.name == long).map(Field::Limit);
+        column.or_else(|| Self::varied(name)).ok_or_else(|| {
+            let known: Vec<&str> = LIMIT_COLUMNS.iter().map(|column| column.name).chain([RECORD, SPACING]).collect();
             let help = match nearest(name, &known) {
                 Some(near) => format!("did you mean {near}?"),
                 None => format!("columns are {}", known.join(", ")),
@@ -60,53 +65,79 @@ impl Field {
         Ok(out)
     }
 
-    /// All columns; with `record`, the name of the record comes first.
-    pub fn all(record: bool) -> Vec<Self> {
-        record.then_some(Field::Record).into_iter().chain(LIMIT_COLUMNS.iter().map(Field::Limit)).collect()
+    /// The number that studies vary under this name, if it is one.
+    fn varied(name: &str) -> Option<Self> {
+        let length = || name.parse::<NumberPath>().ok().map(|path| path.is_length());
+        let unit = match name == SPACING || !length()? {
+            true => Unit::One,
+            false => Unit::Length,
+        };
+        Some(Field::Varied(name.to_owned(), unit))
+    }
+
+    /// All columns; with `record`, the name of the record comes first. The numbers that studies have varied in `records` come last.
+    pub fn all(records: &[NamedRecord], record: bool) -> Vec<Self> {
+        let first = record.then_some(Field::Record);
+        first.into_iter().chain(LIMIT_COLUMNS.iter().map(Field::Limit)).chain(Self::varied_in(records)).collect()
+    }
+
+    /// The numbers that studies have varied in some of the records.
+    pub(super) fn varied_in(records: &[NamedRecord]) -> Vec<Self> {
+        let names = records.iter().flat_map(|named| named.record.run.design.varied.keys());
+        let names: BTreeSet<&String> = names.collect();
+        names.into_iter().filter_map(|name| Self::varied(name)).collect()
     }
 
     /// Name in the header.
-    pub fn name(self) -> &'static str {
+    pub fn name(&self) -> &str {
         match self {
             Field::Record => RECORD,
             Field::Limit(column) => column.name,
+            Field::Varied(name, _) => name,
         }
     }
 
-    pub(super) fn unit(self) -> Unit {
+    pub(super) fn unit(&self) -> Unit {
         match self {
             Field::Record => Unit::None,
             Field::Limit(column) => column.unit,
+            Field::Varied(_, unit) => *unit,
         }
     }
 
-    pub(super) fn kind(self) -> Kind {
+    pub(super) fn kind(&self) -> Kind {
         match self {
             Field::Record => Kind::Text,
             Field::Limit(column) => column.kind,
+            Field::Varied(..) => Kind::Number,
         }
     }
 
-    pub(super) fn meaning(self) -> &'static str {
+    pub(super) fn meaning(&self) -> &'static str {
         match self {
             Field::Record => "the record that the row comes from",
             Field::Limit(column) => column.meaning,
+            Field::Varied(name, _) if name == SPACING => "factor of all distances between elements, set by a study",
+            Field::Varied(..) => "number of the design, set by a study, before the spacing",
         }
     }
 
-    pub(super) fn of<'a>(self, row: &Row<'a>) -> Entry<'a> {
+    pub(super) fn of<'a>(&self, row: &Row<'a>) -> Entry<'a> {
         match self {
             Field::Record => Entry::Text(row.record),
             Field::Limit(column) => (column.get)(row.limit),
+            Field::Varied(name, _) => row.design.varied.get(name).map_or(Entry::Empty, |x| Entry::Number(*x)),
         }
     }
 }
 
-/// A row with the name of its record.
+/// A row with the name of its record and the design.
 #[derive(Clone, Copy, Debug)]
 pub struct Row<'a> {
     /// Name of the record.
     pub record: &'a str,
+    /// The design of the record.
+    pub design: &'a Design,
     /// The row.
     pub limit: &'a LimitRow,
 }

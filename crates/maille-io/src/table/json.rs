@@ -11,7 +11,7 @@ impl Table<'_> {
             json!({
                 "name": field.name(),
                 "type": field.kind().name(),
-                "unit": self.unit(*field),
+                "unit": self.unit(field),
                 "meaning": field.meaning(),
             })
         };

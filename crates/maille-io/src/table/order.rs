@@ -5,7 +5,7 @@ use maille::record::Entry;
 use std::cmp::Ordering;
 
 /// A column to sort by.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct SortKey {
     field: Field,
     /// Largest first.
@@ -60,8 +60,9 @@ mod tests {
         let sorted = |text: &str| {
             let keys = SortKey::parse_list(text).unwrap();
             let mut order = [0, 1, 2, 3];
+            let design = crate::read_design("1.1", crate::builtin("1.1").unwrap()).unwrap();
             order.sort_by(|&a, &b| {
-                let row = |i: usize| Row { record: "", limit: &rows[i] };
+                let row = |i: usize| Row { record: "", design: &design, limit: &rows[i] };
                 compare(&keys, &row(a), &row(b))
             });
             order

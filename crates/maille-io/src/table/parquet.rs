@@ -49,7 +49,7 @@ impl Table<'_> {
         out: impl Write + Send,
         more: Vec<(arrow_schema::Field, ArrayRef)>,
     ) -> Result<(), ParquetError> {
-        let column = |&field: &Field| {
+        let column = |field: &Field| {
             let array = self.array(field)?;
             Ok((self.arrow_field(field, array.data_type().clone()), array))
         };
@@ -74,14 +74,14 @@ impl Table<'_> {
         Ok(())
     }
 
-    fn arrow_field(&self, field: Field, kind: DataType) -> arrow_schema::Field {
+    fn arrow_field(&self, field: &Field, kind: DataType) -> arrow_schema::Field {
         let mut metadata = HashMap::from([("meaning".to_owned(), field.meaning().to_owned())]);
         metadata.extend(self.unit(field).map(|unit| ("unit".to_owned(), unit.to_owned())));
         arrow_schema::Field::new(field.name(), kind, true).with_metadata(metadata)
     }
 
     /// The values of a column. A count is a signed integer, so that the difference of two is right in every reader.
-    fn array(&self, field: Field) -> Result<ArrayRef, ArrowError> {
+    fn array(&self, field: &Field) -> Result<ArrayRef, ArrowError> {
         let cells = self.rows.iter().map(|row| field.of(row));
         Ok(match field.kind() {
             Kind::Text => Arc::new(cells.map(Entry::text).collect::<StringArray>()),

@@ -1,6 +1,7 @@
 //! A table for the terminal: aligned, rounded, as wide as the terminal.
 
 use super::{Field, Table};
+use crate::record::NamedRecord;
 use maille::record::{Entry, Kind};
 use std::fmt::Write;
 
@@ -37,16 +38,20 @@ const GAP: &str = "  ";
 const EMPTY: &str = "-";
 
 impl Field {
-    /// The columns of a first look; with `record`, the name of the record comes first.
-    pub fn first_look(record: bool) -> Vec<Self> {
-        let all = Self::all(record);
-        FIRST_LOOK.iter().filter_map(|name| all.iter().copied().find(|field| field.name() == *name)).collect()
+    /// The columns of a first look at records; the numbers that studies have varied stand before the direction.
+    pub fn first_look(records: &[NamedRecord]) -> Vec<Self> {
+        let all = Self::all(records, records.len() > 1);
+        let named = |name: &&str| all.iter().find(|field| field.name() == *name).cloned();
+        let mut fields: Vec<Self> = FIRST_LOOK.iter().filter_map(named).collect();
+        let at = fields.iter().position(|field| field.name() == "direction_deg").unwrap_or(0);
+        fields.splice(at..at, Self::varied_in(records));
+        fields
     }
 }
 
 /// A column, drawn.
 struct Drawn {
-    name: &'static str,
+    name: String,
     unit: String,
     cells: Vec<String>,
     left: bool,
@@ -58,7 +63,7 @@ impl Table<'_> {
     /// digits.
     pub fn text(&self, extent: Extent) -> String {
         let shown = extent.rows.unwrap_or(usize::MAX).min(self.rows.len());
-        let columns: Vec<Drawn> = self.fields.iter().map(|field| self.drawn(*field, shown)).collect();
+        let columns: Vec<Drawn> = self.fields.iter().map(|field| self.drawn(field, shown)).collect();
         let mut room = extent.width.unwrap_or(usize::MAX);
         let fits = |column: &&Drawn| {
             let fits = column.width <= room;
@@ -77,14 +82,14 @@ impl Table<'_> {
             let text = padded.collect::<Vec<_>>().join(GAP);
             let _ = writeln!(out, "{}", text.trim_end());
         };
-        line(&|column| column.name.to_owned());
+        line(&|column| column.name.clone());
         line(&|column| column.unit.clone());
         for row in 0..shown {
             line(&|column| column.cells[row].clone());
         }
         out.push_str(&self.count(shown));
         if !outside.is_empty() {
-            let names: Vec<&str> = outside.iter().map(|column| column.name).collect();
+            let names: Vec<&str> = outside.iter().map(|column| column.name.as_str()).collect();
             let _ = writeln!(out, "columns that do not fit: {}", names.join(", "));
         }
         out
@@ -102,7 +107,7 @@ impl Table<'_> {
         }
     }
 
-    fn drawn(&self, field: Field, shown: usize) -> Drawn {
+    fn drawn(&self, field: &Field, shown: usize) -> Drawn {
         let values: Vec<Entry<'_>> = self.rows[..shown].iter().map(|row| field.of(row)).collect();
         let numbers = || values.iter().filter_map(|cell| cell.number());
         let largest = numbers().fold(0.0, |most: f64, x| most.max(x.abs()));
@@ -125,7 +130,7 @@ impl Table<'_> {
         let unit = self.unit(field).filter(|unit| *unit != "1").map(|unit| format!("[{unit}]")).unwrap_or_default();
         let lengths = cells.iter().map(String::as_str).chain([field.name(), &unit]).map(|text| text.chars().count());
         let width = lengths.max().unwrap_or(0);
-        Drawn { name: field.name(), unit, cells, left: field.kind() == Kind::Text, width }
+        Drawn { name: field.name().to_owned(), unit, cells, left: field.kind() == Kind::Text, width }
     }
 }
 

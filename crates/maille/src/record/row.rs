@@ -170,7 +170,7 @@ impl Value for Status {
         Entry::Text(self.name())
     }
     fn read(text: &str) -> Result<Self, &'static str> {
-        Status::ALL.into_iter().find(|status| status.name() == text).ok_or("no status")
+        Status::ALL.into_iter().find(|status| status.name() == text).ok_or("not a status")
     }
 }
 

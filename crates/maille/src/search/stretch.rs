@@ -121,12 +121,13 @@ impl<'a> ExactMethod<'a> {
     ///
     /// Where an element presses on its own image, or a lateral compression is not reached, and of every least l1, larger cells
     /// are solved, too, from the smaller cell's state, and unstable waves are followed; the best limit counts, and the answer says which cell gave it.
-    /// `finished` gets each limit with its index in `l2`; after `cancel` the rest comes back as interrupted.
+    /// `begins` hears of each limit before it is solved, and `finished` gets it, with its index in `l2`; after `cancel` the rest comes back as interrupted.
     pub fn limits(
         &self,
         direction: Direction,
         l2: &[f64],
         cancel: &AtomicBool,
+        begins: &dyn Fn(usize),
         finished: &mut dyn FnMut(usize, Answer),
     ) {
         let ExactOptions { across, compression, .. } = self.options;
@@ -139,6 +140,7 @@ impl<'a> ExactMethod<'a> {
             sides = [at_zero.clone(), at_zero];
         }
         for k in order {
+            begins(k);
             let (answer, found) = self.limit(&stretch(l2[k]), &sides[usize::from(l2[k] > 0.0)], cancel);
             for (side, _) in sides.iter_mut().zip([l2[k] <= 0.0, l2[k] >= 0.0]).filter(|(_, belongs)| *belongs) {
                 side.retain(|(cell, _)| found.iter().all(|(new, _)| new != cell));

@@ -2,7 +2,7 @@
 
 use super::{
     image::image,
-    request::{Finished, MapQuestion, Method, Task},
+    request::{Finished, MapQuestion, Method, Task, Work},
     row::Asked,
 };
 use crate::{
@@ -52,13 +52,15 @@ fn symmetric_chains(model: &Model, method: &Method, directions_deg: &[f64]) -> (
 /// `wanted` tells which tasks are still open. The energy method starts every limit from the design's state alone; the
 /// exact one goes along one direction of each of the [`chains`] outwards from l2 = 0, and repeats all of it where one of the limits
 /// is open. So rows do not depend on the number of threads, nor on where an earlier run was stopped, nor on which images of a
-/// direction are asked for. After `cancel` the limits under way come back as interrupted or not at all.
+/// direction are asked for. After `cancel` the limits under way come back as interrupted or not at all. `work` hears when
+/// a limit is begun and when it is ended, with the direction that is solved.
 pub fn characterize(
     models: &[Model],
     minor_radius: Option<f64>,
     question: &MapQuestion,
     wanted: &(dyn Fn(Task) -> bool + Sync),
     cancel: &AtomicBool,
+    work: &(dyn Fn(Task, Work) + Sync),
     finished: &(dyn Fn(Finished) + Sync),
 ) {
     let MapQuestion { method, directions_deg, l2, .. } = question;
@@ -69,9 +71,11 @@ pub fn characterize(
             open.par_iter().with_max_len(1).for_each(|task| {
                 if !cancel.load(Ordering::Relaxed) {
                     let begun = Instant::now();
+                    work(*task, Work::Begins);
                     let answer = energy.limit(Direction::of_degrees(task.direction_deg), task.l2, cancel);
                     let asked = Asked { task, method, minor_radius, image_of_deg: None };
                     finished(asked.finished(&models[0], &answer, begun.elapsed().as_secs_f64()));
+                    work(*task, Work::Ends);
                 }
             });
         }
@@ -88,7 +92,9 @@ pub fn characterize(
                     return;
                 }
                 let mut begun = Instant::now();
-                exact.limits(Direction::of_degrees(solved_deg), l2, cancel, &mut |k, answer| {
+                let solved = |k: usize| Task { direction_deg: solved_deg, l2: l2[k] };
+                let begins = |k| work(solved(k), Work::Begins);
+                exact.limits(Direction::of_degrees(solved_deg), l2, cancel, &begins, &mut |k, answer| {
                     let answer = both_shears(answer, &operations, solved_deg);
                     for task in open(k) {
                         let image_of_deg = (task.direction_deg != solved_deg).then_some(solved_deg);
@@ -104,6 +110,7 @@ pub fn characterize(
                         });
                         begun = Instant::now();
                     }
+                    work(solved(k), Work::Ends);
                 });
             });
         }
@@ -133,7 +140,8 @@ pub(crate) fn one<'a>(
     let solved_deg = chains[0].representative_deg;
     let mut answer = Answer::new(&models[0], Status::Interrupted);
     let solved = Direction::of_degrees(solved_deg);
-    ExactMethod::new(models, options.clone(), cancel).limits(solved, &[l2], cancel, &mut |_, found| answer = found);
+    let mut finished = |_, found| answer = found;
+    ExactMethod::new(models, options.clone(), cancel).limits(solved, &[l2], cancel, &|_| (), &mut finished);
     let answer = both_shears(answer, &operations, solved_deg);
     if solved_deg != direction_deg {
         return image(&operations, models, &answer, solved_deg, direction_deg);

@@ -9,4 +9,4 @@ pub mod surface;
 
 pub(crate) use map::one;
 pub use map::{chains, characterize};
-pub use request::{CellChoice, Finished, MapQuestion, Method, Task};
+pub use request::{CellChoice, Finished, MapQuestion, Method, Task, Work};

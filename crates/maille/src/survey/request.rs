@@ -212,6 +212,15 @@ pub struct Task {
     pub l2: f64,
 }
 
+/// What happens to a limit on a thread.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Work {
+    /// It is begun.
+    Begins,
+    /// It is ended.
+    Ends,
+}
+
 /// A finished row with its state.
 #[derive(Clone, Debug)]
 pub struct Finished {

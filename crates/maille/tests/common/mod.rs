@@ -47,7 +47,8 @@ pub fn map(models: &[Model], directions: &[f64], l2: &[f64], options: &ExactOpti
 /// The rows of a map, in the order of its table.
 pub fn rows(models: &[Model], question: &MapQuestion) -> Vec<Finished> {
     let out = Mutex::new(Vec::new());
-    characterize(models, None, question, &|_| true, &AtomicBool::new(false), &|row| out.lock().unwrap().push(row));
+    let (cancel, finished) = (AtomicBool::new(false), |row| out.lock().unwrap().push(row));
+    characterize(models, None, question, &|_| true, &cancel, &|_, _| (), &finished);
     let order = question.tasks();
     let mut out: Vec<Finished> = out.into_inner().unwrap();
     out.sort_by_key(|f| order.iter().position(|t| (t.direction_deg, t.l2) == (f.row.direction_deg, f.row.l2)));

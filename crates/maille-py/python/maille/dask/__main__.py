@@ -18,7 +18,7 @@ from . import Results, sweep
 from ._client import engine
 
 # As the program's.
-DONE, FAILED, USAGE, RECORD, INCOMPLETE, INTERRUPTED = 0, 1, 2, 4, 5, 130
+DONE, FAILED, USAGE, RECORD, INCOMPLETE, LEFT_OUT, INTERRUPTED = 0, 1, 2, 4, 5, 6, 130
 #: Statuses of a row without an answer.
 UNANSWERED = {"uncertified", "l2-not-reached", "not-converged", "infeasible-start", "interrupted"}
 
@@ -27,11 +27,11 @@ Examples:
   maille sweep --example > radius.toml
   python -m maille.dask radius.toml --workers 4
   python -m maille.dask radius.toml --scheduler tcp://10.0.0.1:8786 --out results/radius
-  maille table results/radius/records/* --where direction=45
+  maille table results/radius --where direction=45
 
 Exit codes: 0 every limit was found or proved not to be there, 1 files or the cluster failed, 2 wrong arguments or study,
-4 a record is damaged or another one, 5 the records are written but some limits were not found or some designs could not
-be used, 130 interrupted: the same command goes on from there."""
+4 a record is damaged or another one, 5 the records are written but some limits were not found, 6 some designs could not
+be used, 130 interrupted: the same command continues from there."""
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -53,7 +53,7 @@ def main(arguments: list[str] | None = None) -> int:
             )
     except KeyboardInterrupt:
         says.end()
-        print("interrupted; the same command goes on from here", file=sys.stderr)
+        print("interrupted; the same command continues from here", file=sys.stderr)
         return INTERRUPTED
     except MailleError as error:
         says.end()
@@ -62,7 +62,7 @@ def main(arguments: list[str] | None = None) -> int:
         says.end()
         return _failed(error, FAILED)
     says.end()
-    return _summary(done, args.quiet, time.monotonic() - begun)
+    return _summary(done, args.quiet, args.allow_incomplete, time.monotonic() - begun)
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -80,6 +80,7 @@ def _parser() -> argparse.ArgumentParser:
     where.add_argument("--workers", type=_count, metavar="N", help="processes on this machine [default: one a core]")
     parser.add_argument("--out", type=Path, metavar="FOLDER", help="folder that is written [default: maille-out/STUDY]")
     parser.add_argument("--overwrite", action="store_true", help="replace what that folder holds of other inputs")
+    parser.add_argument("--allow-incomplete", action="store_true", help="exit code 0 instead of 5 if some limits are not found")
     parser.add_argument("--retries", type=_whole, default=2, metavar="N", help="so often a chain that raised is tried again [default: 2]")
     parser.add_argument("--quiet", "-q", action="store_true", help="no progress and no summary")
     parser.add_argument("--version", action="version", version=f"maille {__version__}, distributed {engine.__version__}")
@@ -134,7 +135,7 @@ def _failed(error: Exception, code: int) -> int:
     return code
 
 
-def _summary(done: Results, quiet: bool, wall_s: float) -> int:
+def _summary(done: Results, quiet: bool, allow_incomplete: bool, wall_s: float) -> int:
     statuses = [str(status) for record in done.records.values() for status in record.to_numpy()["status"]]
     total = sum(len(record.run["parameters"]["directions_deg"]) * len(record.run["parameters"]["l2"]) for record in done.records.values())
     without = total - len(statuses) + sum(status in UNANSWERED for status in statuses)
@@ -147,7 +148,9 @@ def _summary(done: Results, quiet: bool, wall_s: float) -> int:
         )
         if done.records:
             print(f"all rows are in {done.out / 'limits.csv'} and, as Parquet, in {done.out / 'chains'}")
-    return INCOMPLETE if without or done.failures else DONE
+    if done.failures:
+        return LEFT_OUT
+    return INCOMPLETE if without and not allow_incomplete else DONE
 
 
 class _Lines:

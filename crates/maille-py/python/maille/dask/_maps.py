@@ -66,14 +66,12 @@ def characterize(
         seed=seed,
         energy=energy,
     )
-    return run(
-        named(designs), question, out, client, quantity=quantity, overwrite=overwrite, retries=retries, progress=progress
-    )
+    asked = {name: (design, question) for name, design in named(designs).items()}
+    return run(asked, out, client, quantity=quantity, overwrite=overwrite, retries=retries, progress=progress)
 
 
 def run(
-    designs: Mapping[str, Design | MailleError],
-    question: str,
+    asked: Mapping[str, tuple[Design | MailleError, str]],
     out: str | os.PathLike[str],
     client: distributed.Client | None,
     *,
@@ -82,13 +80,13 @@ def run(
     retries: int,
     progress: Progress,
 ) -> Results:
-    """The map of each design; an error in place of one is listed at the end."""
+    """The map of each design, with what is asked of it; an error in place of a design is listed at the end."""
     client = client_of(client)
     retries = _whole("retries", retries, 0)
     folder = Path(out)
     maps: dict[str, _Map] = {}
     failures: list[Failure] = []
-    for name, design in designs.items():
+    for name, (design, question) in asked.items():
         try:
             if isinstance(design, MailleError):
                 raise design
@@ -112,7 +110,7 @@ def run(
             for chain in map.left.values():
                 key = f"maille-{chain.hash[:32]}"
                 tasks.setdefault(key, []).append((map, chain))
-                calls[key] = (map.design, question, chain.directions_deg, _native.__VERSION__)
+                calls[key] = (map.design, asked[map.name][1], chain.directions_deg, _native.__VERSION__)
         try:
             with closing(results(client, solve, calls, retries)) as found:
                 for key, value in found:

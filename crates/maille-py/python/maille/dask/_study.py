@@ -40,19 +40,15 @@ def sweep(
     except FileNotFoundError:
         raise ArgumentError("study", f"there is no study {file}", "`maille sweep --example` prints one") from None
     except UnicodeDecodeError:
-        raise ArgumentError("study", f"{file} is no text", "give a TOML file, encoded in UTF-8") from None
-    read: dict[str, Any] = json.loads(_native.study(str(file), text))
-    question = json.dumps(read["question"])
+        raise ArgumentError("study", f"{file} is not a text file", "give a TOML file, encoded in UTF-8") from None
+    plan = _plan(json.loads(_native.study(str(file), text)), file.parent)
     if out is None:
         out = Path("maille-out") / _native.folder_name(file.stem)
-    plan = _plan(read["designs"], file.parent)
-    return run(
-        plan, question, out, client, quantity="stretch", overwrite=overwrite, retries=retries, progress=progress
-    )
+    return run(plan, out, client, quantity="stretch", overwrite=overwrite, retries=retries, progress=progress)
 
 
-def _plan(of_study: list[dict[str, Any]], folder: Path) -> dict[str, Design | MailleError]:
-    plan: dict[str, Design | MailleError] = {}
+def _plan(of_study: list[dict[str, Any]], folder: Path) -> dict[str, tuple[Design | MailleError, str]]:
+    plan: dict[str, tuple[Design | MailleError, str]] = {}
     for item in of_study:
         named = item["design"]
         design: Design | MailleError
@@ -62,10 +58,11 @@ def _plan(of_study: list[dict[str, Any]], folder: Path) -> dict[str, Design | Ma
         except MailleError as error:
             design, stem = error, named
         for suffix, minor_radius, numbers, spacing in item["variants"]:
-            name = _native.folder_name(stem) + suffix
+            name = _native.folder_name(item["name"] or stem) + suffix
             if name in plan:
-                raise ArgumentError("study", f"{name} is in the study twice", "name each design and value once")
-            plan[name] = _varied(design, minor_radius, numbers, spacing)
+                help = "name each design and value once, or give one of them another `name`"
+                raise ArgumentError("study", f"{name} is in the study twice", help)
+            plan[name] = (_varied(design, minor_radius, numbers, spacing), json.dumps(item["question"]))
     return plan
 
 
