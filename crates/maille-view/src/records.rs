@@ -20,7 +20,7 @@ pub enum Recorded {
     /// Limits with their states.
     Limits(Record),
     /// States of a finite sheet.
-    Simulation(SimulationFiles),
+    Simulation(Box<SimulationFiles>),
 }
 
 impl Opened {
@@ -30,7 +30,7 @@ impl Opened {
         let Some((name, path)) = within(name.to_owned(), path.to_owned()).into_iter().next() else { return Ok(None) };
         let recorded = match holds(&path) {
             Some("limits") => Recorded::Limits(Record::read(&path)?),
-            _ => Recorded::Simulation(open_simulation(&path)?),
+            _ => Recorded::Simulation(Box::new(open_simulation(&path)?)),
         };
         let text = match &recorded {
             Recorded::Limits(record) => write_design(&record.run.design),

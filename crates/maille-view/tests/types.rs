@@ -3,7 +3,8 @@
 use maille::record::StateRecord;
 use maille_io::{builtin, read_design};
 use maille_view::api::{
-    Activity, Edit, Export, Judged, Measure, New, OpenRecord, Refused, Save, Solve, SolveEvent, Start, Subject, Text};
+    Activity, Edit, Export, Judged, Measure, New, OpenRecord, Refused, Save, Solve, SolveEvent, Start, Subject, Text,
+};
 use serde_reflection::{ContainerFormat, Format, Named, Registry, Tracer, TracerConfig, VariantFormat};
 use std::{collections::BTreeMap, fmt::Write, fs, path::Path};
 
@@ -16,7 +17,10 @@ fn registry() -> Registry {
         };
     }
     trace!(maille::record::Status, maille::design::Source, maille::relaxation::simulate::End);
-    trace!(Start, OpenRecord, Measure, Subject, Judged, Solve, SolveEvent, Export, Edit, New, Save, Text, Activity, Refused);
+    trace!(
+        Start,
+        OpenRecord, Measure, Subject, Judged, Solve, SolveEvent, Export, Edit, New, Save, Text, Activity, Refused
+    );
     tracer.registry().unwrap()
 }
 

@@ -13,6 +13,8 @@ export type Both = "both" | "a" | "b";
 export const RECORD = "record:";
 
 const MOVE_MS = 900;
+/** Time of one state of a simulation that is played. */
+const FRAME_MS = 80;
 const calmly = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
 
 export class ViewState {
@@ -89,7 +91,8 @@ export class ViewState {
       this.compared = true;
       void this.compareSame();
     }
-    this.move(!writes && this.a.locked ? 1 : 0, false);
+    const end = this.a.frames ? this.t : Number(this.a.locked !== null);
+    this.move(writes ? 0 : end, false);
   }
 
   /** Whether the design is being changed. */
@@ -195,10 +198,12 @@ export class ViewState {
     if (!slowly || calmly) return this.scrub(to);
     cancelAnimationFrame(this.moving);
     const from = this.t;
+    const frames = this.a.frames?.simulation.frames.length ?? 0;
+    const whole = Math.max(MOVE_MS, FRAME_MS * frames);
     const begun = performance.now();
     const step = (now: number) => {
       // The limit is waited for.
-      const x = Math.min(1, (now - begun) / (MOVE_MS * Math.max(0.2, Math.abs(to - from))));
+      const x = Math.min(1, (now - begun) / (whole * Math.max(0.2, Math.abs(to - from))));
       this.t = x === 1 ? to : from + (to - from) * x * x * (3 - 2 * x);
       this.show();
       if (x < 1) this.moving = requestAnimationFrame(step);
