@@ -127,7 +127,7 @@ mod with_viewer {
                 return Err(wrong(exit::INTERRUPTED, "interrupted", "nothing was written"));
             }
             let source = format!("maille {} of {}", env!("CARGO_PKG_VERSION"), opened.name);
-            opened.record = Some((source, Recorded::Limits(record.map_err(report)?)));
+            opened.record = Some((source, Recorded::Limits(Box::new(record.map_err(report)?))));
         }
         let page = bundle_file(&opened).map_err(report)?;
         output::write(out, page.as_bytes())?;

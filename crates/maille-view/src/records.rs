@@ -18,7 +18,7 @@ const RUN: &str = "run.json";
 #[derive(Clone, Debug)]
 pub enum Recorded {
     /// Limits with their states.
-    Limits(Record),
+    Limits(Box<Record>),
     /// States of a finite sheet.
     Simulation(Box<SimulationFiles>),
 }
@@ -29,7 +29,7 @@ impl Opened {
     pub fn folder(name: &str, path: &Path) -> Result<Option<Self>, RecordError> {
         let Some((name, path)) = within(name.to_owned(), path.to_owned()).into_iter().next() else { return Ok(None) };
         let recorded = match holds(&path) {
-            Some("limits") => Recorded::Limits(Record::read(&path)?),
+            Some("limits") => Recorded::Limits(Box::new(Record::read(&path)?)),
             _ => Recorded::Simulation(Box::new(open_simulation(&path)?)),
         };
         let text = match &recorded {
