@@ -6,7 +6,8 @@ use std::path::PathBuf;
 /// See it lock: the sheet, its limits and its locked states in the browser
 ///
 /// Starts a server that only this machine can reach, and opens its page: the sheet in 3D beside its limit map. Wire,
-/// spacing and width are dragged and solved anew as `characterize` does; designs are edited, checked and exported.
+/// spacing and width are dragged and solved anew as `characterize` does; designs are drawn, edited, checked and exported.
+/// Records, simulations and sweeps are opened without solving; the page lists those in maille-out, and compares any two.
 /// Ctrl-C ends it.
 #[derive(clap::Args)]
 #[command(after_help = "\
@@ -14,13 +15,16 @@ Examples:
   maille view                              the built-in design 1.1, and a list of the others
   maille view my-weave.toml                a design of your own; the page can save it
   maille view maille-out/1.1               a record: its limits, with nothing solved
+  maille view maille-out/1.1-simulate      a simulation: its states and its forces
+  maille view maille-out/radius            a sweep: its first record, and a list of the others
   maille view 3.1 --no-open --port 8080    prints the address alone
   maille view 1.1 --bundle 1.1.html        one file that opens without a server, to send or to publish
   maille view 1.1 --bundle 1.1.html --directions 0:180:5 --l2 -0.125,0,0.125
 
 The viewer is built with the program by `cargo xtask view`, which needs Node.js.")]
 pub struct Args {
-    /// A built-in design (see `maille designs`), a TOML file, - for standard input, or the folder of a record
+    /// A built-in design (see `maille designs`), a TOML file, - for standard input, or the folder of a record, a
+    /// simulation or a sweep
     #[arg(default_value = "1.1")]
     design: String,
     /// Port to listen on [default: a free one]
@@ -66,10 +70,8 @@ mod with_viewer {
         map::pool,
         output::{self, say},
         progress::Progress,
-        source::read_record,
     };
-    use maille_io::write_design;
-    use maille_view::{App, Opened, ViewError, bundle_file, map_of_bundle, serve, solve_map};
+    use maille_view::{App, Opened, Recorded, ViewError, bundle_file, map_of_bundle, serve, solve_map};
     use miette::{IntoDiagnostic, Report, Result, WrapErr};
     use std::{
         path::Path,
@@ -85,7 +87,8 @@ mod with_viewer {
             return bundle(args, opened, out);
         }
         let folder = std::env::current_dir().into_diagnostic().wrap_err("there is no current folder")?;
-        let app = App::new(&opened, args.threads.map(usize::from), folder).map_err(report)?;
+        let named = Path::new(&args.design).is_dir().then_some(args.design.as_str());
+        let app = App::new(&opened, args.threads.map(usize::from), folder, named).map_err(report)?;
         let stop = interrupt::flag(false)?;
         let ready = |address| {
             let address = format!("http://{address}/");
@@ -100,9 +103,11 @@ mod with_viewer {
     fn open(what: &str) -> Result<Opened> {
         let path = Path::new(what);
         if path.is_dir() {
-            let record = read_record(path)?;
-            let text = write_design(&record.run.design);
-            return Ok(Opened { name: what.to_owned(), file: None, text, record: Some((what.to_owned(), record)) });
+            let none = || {
+                let help = "give a folder that `maille characterize`, `maille simulate` or `maille sweep` wrote";
+                wrong(exit::RECORD, format!("{what} holds no record, no simulation and no sweep"), help)
+            };
+            return Opened::folder(what, path)?.ok_or_else(none);
         }
         let input = Input::read(what, None)?;
         let file = path.is_file().then(|| path.to_owned());
@@ -117,14 +122,13 @@ mod with_viewer {
             let cancel = interrupt::flag(false)?;
             let total = map.question.tasks().len();
             let progress = Progress::new("limits", 0, total, false);
-            let record =
-                pool(args.threads)?.install(|| solve_map(&opened, &map, &cancel, &|_| progress.step()));
+            let record = pool(args.threads)?.install(|| solve_map(&opened, &map, &cancel, &|_| progress.step()));
             progress.finish();
             if cancel.load(Ordering::Relaxed) {
                 return Err(wrong(exit::INTERRUPTED, "interrupted", "nothing was written"));
             }
-            opened.record =
-                Some((format!("maille {} of {}", env!("CARGO_PKG_VERSION"), opened.name), record.map_err(report)?));
+            let source = format!("maille {} of {}", env!("CARGO_PKG_VERSION"), opened.name);
+            opened.record = Some((source, Recorded::Limits(Box::new(record.map_err(report)?))));
         }
         let page = bundle_file(&opened).map_err(report)?;
         output::write(out, page.as_bytes())?;

@@ -70,8 +70,9 @@ impl DesignSource {
         &self.text
     }
 
-    /// The text with the value of `field` replaced by `value`, which is TOML; all else, comments too, stays as it is. None
-    /// where the file does not contain the field.
+    /// The text with the value of `field` replaced by `value`, which is TOML; all else, comments too, stays as it is. The
+    /// optional fields of a ring, `offset` and `minor_radius`, are added where they are absent. None where the file does not
+    /// contain another field.
     ///
     /// ```
     /// let source = maille_io::DesignSource::new("a", "name = \"a\" # mine\nminor_radius = 0.1");
@@ -79,8 +80,16 @@ impl DesignSource {
     /// ```
     pub fn with_value(&self, field: &str, value: &str) -> Option<String> {
         let table = DeTable::parse(&self.text).ok()?;
-        let span = Index::new(table.get_ref(), &self.text).exact(field)?;
-        Some([&self.text[..span.start], value, &self.text[span.end..]].concat())
+        let index = Index::new(table.get_ref(), &self.text);
+        if let Some(span) = index.exact(field) {
+            return Some([&self.text[..span.start], value, &self.text[span.end..]].concat());
+        }
+        let (ring, key) = field.rsplit_once('.').filter(|(_, key)| ["offset", "minor_radius"].contains(key))?;
+        let after = index.exact(&format!("{ring}.normal"))?.end;
+        let inline = self.text[index.exact(ring)?.start..].starts_with('{');
+        let line_end = || self.text[after..].find('\n').map_or(self.text.len(), |at| after + at);
+        let (at, before) = if inline { (after, ", ") } else { (line_end(), "\n") };
+        Some(format!("{}{before}{key} = {value}{}", &self.text[..at], &self.text[at..]))
     }
 
     /// Attaches problems that were found later, as an overlap in the starting state, to their places in the file.

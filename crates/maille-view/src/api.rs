@@ -4,6 +4,7 @@ use maille::{
     design::Design,
     lattice::Shift,
     record::{LimitRow, PoseRecord, StateRecord},
+    relaxation::simulate::End,
 };
 use maille_io::ListedProblem;
 use serde::{Deserialize, Serialize};
@@ -15,6 +16,8 @@ pub struct Start {
     pub version: String,
     /// The built-in designs.
     pub designs: Vec<Listed>,
+    /// Records that can be opened, by their folders.
+    pub records: Vec<Listed>,
     /// Names of the weaves that `/api/new` makes.
     pub weaves: Vec<String>,
     /// What the page opens with.
@@ -25,12 +28,12 @@ pub struct Start {
     pub bundle: bool,
 }
 
-/// A built-in design.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+/// A built-in design, or a record.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Listed {
-    /// Its name.
+    /// Its name, or its folder.
     pub name: String,
-    /// A line on it.
+    /// A line on it; of a record, what it holds.
     pub title: String,
 }
 
@@ -58,6 +61,68 @@ pub struct Shown {
     pub text: String,
     /// The limits of a record.
     pub map: Option<ShownMap>,
+    /// The states of a simulation.
+    pub simulation: Option<ShownSimulation>,
+}
+
+/// A finite sheet that was simulated.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct ShownSimulation {
+    /// Its folder.
+    pub source: String,
+    /// The whole sheet; its cell is the tile.
+    pub sheet: Sheet,
+    /// States, in the order of the pull.
+    pub frames: Vec<Frame>,
+    /// States in the file: more than `frames` where they are too many to show.
+    pub total: usize,
+    /// How it ended.
+    pub end: End,
+    /// What happened, where `end` does not say it.
+    pub note: Option<String>,
+}
+
+/// A state of a simulated sheet.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Frame {
+    /// Its number in the file, from 0.
+    pub number: usize,
+    /// Share of the pull.
+    pub share: f64,
+    /// Energy, in β R².
+    pub energy: f64,
+    /// Distance between the pulled place and the one opposite to it, relative to the start.
+    pub stretch: Option<f64>,
+    /// Mean force along the pull, in the unit of weights.
+    pub mean_force: Option<f64>,
+    /// Poses of the elements.
+    pub poses: Vec<PoseRecord>,
+}
+
+/// A record to open, by its folder as it was listed.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OpenRecord {
+    /// The folder.
+    pub name: String,
+}
+
+/// A state of which the pairs of rings are asked for.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Measure {
+    /// Of what.
+    pub subject: Subject,
+    /// The cell, or the tile of a finite sheet.
+    pub cell: String,
+    /// Whether the sheet is finite.
+    pub finite: bool,
+    /// First lattice vector.
+    pub a1: [f64; 3],
+    /// Second lattice vector.
+    pub a2: [f64; 3],
+    /// Poses of the elements.
+    pub poses: Vec<PoseRecord>,
 }
 
 /// Limits that need no solving.
@@ -219,31 +284,42 @@ pub struct Export {
     /// Its cell.
     #[serde(default)]
     pub cell: Option<String>,
+    /// Whether the cell is a finite sheet.
+    #[serde(default)]
+    pub finite: bool,
     /// `csv` and `svg`: the rows.
     #[serde(default)]
     pub rows: Vec<LimitRow>,
 }
 
-/// A value of a design file to replace.
+/// Values of a design file to replace.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Edit {
     /// The design file.
     pub text: String,
+    /// The values, in turn.
+    pub changes: Vec<Change>,
+}
+
+/// A value of a design file to replace.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Change {
     /// Path of the value, as in problems.
     pub field: String,
     /// The new value, as TOML.
     pub value: String,
 }
 
-/// A weave to make a design of.
+/// A design to make, of a weave or of one ring.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct New {
     /// Name of the design.
     pub name: String,
-    /// Name of the weave.
-    pub weave: String,
+    /// Name of the weave; without one, the design is a single ring to go on from.
+    pub weave: Option<String>,
     /// Major radius.
     pub major: f64,
     /// Minor radius.

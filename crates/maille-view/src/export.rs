@@ -45,7 +45,7 @@ pub fn export(request: &Export) -> Result<File, Refusal> {
         None => Cell::PRIMITIVE,
     };
     let design = if request.state.is_some() { &tolerant(&read.design) } else { &read.design };
-    let model = read.compile(design, cell)?;
+    let model = read.compile_for(design, cell, request.finite)?;
     let state = match &request.state {
         Some(record) => mesh::state_of(&model, record).map_err(|e| unusable(e.to_string()))?,
         None => model.start.clone(),
@@ -90,7 +90,11 @@ fn scene(
     let fineness = Fineness::Tolerance(0.01 * design.reference_radius);
     let wrong = |e: mesh::MeshError| Refusal::wrong(e.to_string(), "take a smaller tile");
     let mut scene = Scene::new(model, state, Tile(request.tile), fineness, mm).map_err(wrong)?;
-    let (words, tile) = (mesh::state_words(request.state.as_ref()), Tile(request.tile));
+    let words = match request.finite {
+        true => "a state of a simulated sheet".to_owned(),
+        false => mesh::state_words(request.state.as_ref()),
+    };
+    let tile = Tile(request.tile);
     scene.description = format!("{} {}; {words}; {tile} cells; 1 file unit = {mm} mm", design.name, design.title);
     if !contacts.is_empty() {
         scene.add_contacts(model, state, Tile(request.tile), contacts);

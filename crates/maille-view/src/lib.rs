@@ -10,15 +10,19 @@ mod bundle;
 mod error;
 mod export;
 mod guard;
+mod new_design;
+mod records;
 mod refusal;
 mod routes;
 mod save;
 mod sheet;
+mod simulated;
 mod solve;
 mod work;
 
 pub use app::{App, Opened};
 pub use error::ViewError;
+pub use records::Recorded;
 pub use refusal::Refusal;
 pub use routes::router;
 

@@ -1,15 +1,16 @@
 //! What the server answers.
 
 use crate::{
-    api::{Activity, Edit, Export, Judged, New, Refused, Save, Solve, Subject, Text},
+    api::{Activity, Change, Edit, Export, Judged, Measure, New, OpenRecord, Refused, Save, Solve, Subject, Text},
     app::App,
     assets::asset,
     export,
     guard::guard,
+    new_design,
     refusal::{Refusal, json_response},
     save,
     sheet::{sheet, tolerant},
-    solve,
+    simulated, solve,
 };
 use axum::{
     Router,
@@ -21,10 +22,7 @@ use axum::{
     routing::{get, post},
 };
 use maille::{lattice::Cell, model::Model};
-use maille_io::{
-    DesignSource, ListedProblem, builtin,
-    weave::{Rings, Weave, WeaveError},
-};
+use maille_io::{DesignSource, ListedProblem, builtin};
 use serde::de::DeserializeOwned;
 use std::sync::Arc;
 
@@ -44,6 +42,8 @@ pub fn router(app: Arc<App>, port: u16) -> Router {
         .route("/api/start", get(start))
         .route("/api/activity", get(activity))
         .route("/api/builtin/{name}", get(of_builtin))
+        .route("/api/open", post(open))
+        .route("/api/measure", post(measure))
         .route("/api/judge", post(judge))
         .route("/api/edit", post(edit))
         .route("/api/new", post(new))
@@ -87,7 +87,8 @@ async fn aside<T: Send + 'static>(
 }
 
 async fn start(State(app): Shared) -> Answer {
-    Ok(json_response(StatusCode::OK, &app.start))
+    let start = aside(&app, |app| Ok(app.start())).await?;
+    Ok(json_response(StatusCode::OK, &start))
 }
 
 async fn activity(State(app): Shared) -> Answer {
@@ -101,6 +102,19 @@ async fn of_builtin(Path(name): Path<String>) -> Answer {
             Err(Refusal::of(StatusCode::NOT_FOUND, format!("there is no built-in design \"{name}\""), "see the list"))
         }
     }
+}
+
+async fn open(State(app): Shared, body: Bytes) -> Answer {
+    let OpenRecord { name } = read(&body)?;
+    let shown = aside(&app, move |app| app.open(&name)).await?;
+    Ok(json_response(StatusCode::OK, &shown))
+}
+
+async fn measure(State(app): Shared, body: Bytes) -> Answer {
+    let request: Measure = read(&body)?;
+    small(&request.subject.text)?;
+    let pairs = aside(&app, move |_| simulated::measure(&request)).await?;
+    Ok(json_response(StatusCode::OK, &pairs))
 }
 
 async fn judge(State(app): Shared, body: Bytes) -> Answer {
@@ -138,31 +152,20 @@ fn judged(subject: &Subject) -> Judged {
 }
 
 async fn edit(body: Bytes) -> Answer {
-    let Edit { text, field, value } = read(&body)?;
+    let Edit { mut text, changes } = read(&body)?;
     small(&text)?;
-    let changed = DesignSource::new("design", text)
-        .with_value(&field, &value)
-        .ok_or_else(|| Refusal::wrong(format!("the file has no {field} to change"), "write it into the text"))?;
-    Ok(json_response(StatusCode::OK, &Text { name: field, text: changed }))
+    for Change { field, value } in changes {
+        let changed = DesignSource::new("design", &*text).with_value(&field, &value);
+        let absent = || Refusal::wrong(format!("the file has no {field} to change"), "write it into the text");
+        text = changed.ok_or_else(absent)?;
+        small(&text)?;
+    }
+    Ok(json_response(StatusCode::OK, &Text { name: "design".into(), text }))
 }
 
 async fn new(State(app): Shared, body: Bytes) -> Answer {
-    let New { name, weave, major, minor, unit } = read(&body)?;
-    let text = aside(&app, move |_| {
-        let weave = Weave::ALL.into_iter().find(|known| known.name() == weave);
-        let weave = weave.ok_or_else(|| Refusal::wrong("there is no weave of that name", "see the list"))?;
-        let unit = Some(unit).filter(|unit| !unit.trim().is_empty());
-        let refused = |e: WeaveError| {
-            let help = miette::Diagnostic::help(&e).map_or(String::new(), |help| help.to_string());
-            Refusal::wrong(e.to_string(), help)
-        };
-        let design = weave.design(&name, &Rings { major, minor, unit }).map_err(refused)?;
-        if let Some(problem) = design.problems().first() {
-            return Err(Refusal::wrong(problem.to_string(), &problem.help));
-        }
-        Ok(Text { text: weave.file(&design, None), name: design.name })
-    })
-    .await?;
+    let request: New = read(&body)?;
+    let text = aside(&app, move |_| new_design::design_file(&request)).await?;
     Ok(json_response(StatusCode::OK, &text))
 }
 

@@ -18,6 +18,8 @@ const NEAR: f64 = 0.5;
 const MOST_PAIRS: f64 = 2e6;
 /// Rings of a cell, at most.
 const MOST_RINGS: usize = 2_000;
+/// Rings of a finite sheet, at most.
+const MOST_OF_SHEET: usize = 50_000;
 
 /// A subject as read, its design changed as the sliders say.
 pub struct Read {
@@ -57,8 +59,23 @@ impl Subject {
 impl Read {
     /// Compiles the design for `cell`.
     pub fn compile(&self, design: &Design, cell: Cell) -> Result<Model, Refusal> {
-        small_enough(design, cell)?;
-        Model::compile(design, cell).map_err(|problems| Refusal::design(&self.source.explain(&problems)))
+        self.compile_for(design, cell, false)
+    }
+
+    /// Compiles the design for `cell`, which may be the whole of a finite sheet.
+    pub fn compile_for(&self, design: &Design, cell: Cell, finite: bool) -> Result<Model, Refusal> {
+        let model = if finite {
+            small_enough(design, Cell::PRIMITIVE)?;
+            let count = design.elements.iter().map(|e| e.rings.len()).sum::<usize>().saturating_mul(cell.copies());
+            if count > MOST_OF_SHEET {
+                return Err(Refusal::wrong(format!("{count} rings are too many to show"), "take a smaller tile"));
+            }
+            Model::compile_sheet(design, cell)
+        } else {
+            small_enough(design, cell)?;
+            Model::compile(design, cell)
+        };
+        model.map_err(|problems| Refusal::design(&self.source.explain(&problems)))
     }
 }
 

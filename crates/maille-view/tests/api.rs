@@ -28,7 +28,7 @@ fn opened() -> Opened {
 }
 
 fn app(folder: PathBuf) -> Arc<App> {
-    Arc::new(App::new(&opened(), Some(2), folder).unwrap())
+    Arc::new(App::new(&opened(), Some(2), folder, None).unwrap())
 }
 
 fn runtime() -> tokio::runtime::Runtime {
@@ -141,11 +141,69 @@ fn a_design_is_judged_as_the_program_does() {
         assert!(judged.problems[0].problem.contains("overlap"), "{:?}", judged.problems);
         assert!(judged.sheet.unwrap().pairs.iter().any(|pair| pair.gap < 0.0));
 
-        let edit = |field: &str| Edit { text: text.into(), field: field.into(), value: "0.2".into() };
+        let edit = |field: &str| Edit {
+            text: text.into(),
+            changes: vec![Change { field: field.into(), value: "0.2".into() }],
+        };
         let (_, changed): (_, Text) = post(&router, "/api/edit", &edit("elements[1].center[2]")).await;
         assert!(changed.text.contains("[1.25, 0.0, 0.2]") && changed.text.starts_with("# Flat rings"));
         let (status, _): (_, Refused) = post(&router, "/api/edit", &edit("elements[9].center")).await;
         assert_eq!(status, StatusCode::UNPROCESSABLE_ENTITY);
+    });
+}
+
+/// A ring that gives no offset and no minor radius gets them, inline or in a table of its own; comments stay.
+#[test]
+fn absent_values_of_a_ring_are_added() {
+    runtime().block_on(async {
+        let router = router(app(PathBuf::from(".")), PORT);
+        let inline = builtin("1.1").unwrap().to_owned();
+        let block = inline.replace(
+            "rings = [{ major_radius = 1.0, normal = [0.0, 0.0, 1.0] }]",
+            "[[elements.rings]]\nmajor_radius = 1.0\nnormal = [0.0, 0.0, 1.0] # up\n",
+        );
+        for text in [inline, block] {
+            let change = |field: &str, value: &str| Change { field: field.into(), value: value.into() };
+            let ring = "elements[0].rings[0]";
+            let changes = vec![
+                change(&format!("{ring}.offset"), "[0.0, 0.0, 0.5]"),
+                change(&format!("{ring}.minor_radius"), "0.08"),
+                change(&format!("{ring}.offset"), "[0.0, 0.0, 0.25]"),
+            ];
+            let edit = Edit { text: text.clone(), changes };
+            let (status, changed): (_, Text) = post(&router, "/api/edit", &edit).await;
+            assert_eq!(status, StatusCode::OK);
+            let (_, judged): (_, Judged) = post(&router, "/api/judge", &subject(&changed.text)).await;
+            let design = judged.design.unwrap_or_else(|| panic!("{:?}\n{}", judged.problems, changed.text));
+            let ring = &design.elements[0].rings[0];
+            assert_eq!((ring.offset, ring.minor_radius), ([0.0, 0.0, 0.25], Some(0.08)));
+            assert!(changed.text.starts_with("# Flat rings") && changed.text.contains("# up") == text.contains("# up"));
+        }
+    });
+}
+
+#[test]
+fn a_new_design_is_a_weave_or_one_ring() {
+    runtime().block_on(async {
+        let router = router(app(PathBuf::from(".")), PORT);
+        let new = |weave: Option<&str>, minor| New {
+            name: "mine".into(),
+            weave: weave.map(str::to_owned),
+            major: 5.0,
+            minor,
+            unit: "mm".into(),
+        };
+        for (weave, rings, links) in [(None, 1, 0), (Some("kings-mail"), 4, 16)] {
+            let (_, made): (_, Text) = post(&router, "/api/new", &new(weave, 0.8)).await;
+            let (_, judged): (_, Judged) = post(&router, "/api/judge", &subject(&made.text)).await;
+            let sheet = judged.sheet.unwrap();
+            assert!(judged.problems.is_empty() && sheet.unit.as_deref() == Some("mm"), "{:?}", judged.problems);
+            assert_eq!((sheet.rings.len(), sheet.pairs.iter().filter(|p| p.number != 0).count()), (rings, links));
+        }
+        for wrong in [new(None, -1.0), new(Some("lace"), 0.8)] {
+            let (status, _): (_, Refused) = post(&router, "/api/new", &wrong).await;
+            assert_eq!(status, StatusCode::UNPROCESSABLE_ENTITY);
+        }
     });
 }
 
@@ -211,6 +269,7 @@ fn files_are_those_of_the_writers() {
             tile,
             state: None,
             cell: None,
+            finite: false,
             rows: Vec::new(),
         };
         for (format, head) in

@@ -2,7 +2,9 @@
 
 use maille::record::StateRecord;
 use maille_io::{builtin, read_design};
-use maille_view::api::{Activity, Edit, Export, Judged, New, Refused, Save, Solve, SolveEvent, Start, Subject, Text};
+use maille_view::api::{
+    Activity, Edit, Export, Judged, Measure, New, OpenRecord, Refused, Save, Solve, SolveEvent, Start, Subject, Text,
+};
 use serde_reflection::{ContainerFormat, Format, Named, Registry, Tracer, TracerConfig, VariantFormat};
 use std::{collections::BTreeMap, fmt::Write, fs, path::Path};
 
@@ -14,8 +16,11 @@ fn registry() -> Registry {
             $(tracer.trace_simple_type::<$type>().unwrap();)*
         };
     }
-    trace!(maille::record::Status, maille::design::Source);
-    trace!(Start, Subject, Judged, Solve, SolveEvent, Export, Edit, New, Save, Text, Activity, Refused);
+    trace!(maille::record::Status, maille::design::Source, maille::relaxation::simulate::End);
+    trace!(
+        Start,
+        OpenRecord, Measure, Subject, Judged, Solve, SolveEvent, Export, Edit, New, Save, Text, Activity, Refused
+    );
     tracer.registry().unwrap()
 }
 

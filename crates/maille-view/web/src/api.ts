@@ -1,6 +1,21 @@
 // The server, or the data of a bundle.
 
-import type { Edit, Export, Judged, New, Refused, Save, Solve, SolveEvent, Start, Subject, Text } from "./types";
+import type {
+  Change,
+  Export,
+  Judged,
+  Measure,
+  New,
+  Pair,
+  Refused,
+  Save,
+  Shown,
+  Solve,
+  SolveEvent,
+  Start,
+  Subject,
+  Text,
+} from "./types";
 
 /** What the server refused. */
 export class Refusal extends Error {
@@ -43,17 +58,27 @@ export async function start(): Promise<Start> {
   return inside ? (JSON.parse(inside) as Start) : ((await (await ask("/api/start", undefined)).json()) as Start);
 }
 
-export async function builtin(name: string): Promise<Text> {
-  return (await ask(`/api/builtin/${encodeURIComponent(name)}`, undefined)).json();
+export async function builtin(name: string): Promise<Shown> {
+  const text = (await (await ask(`/api/builtin/${encodeURIComponent(name)}`, undefined)).json()) as Text;
+  return { ...text, file: null, map: null, simulation: null };
+}
+export async function record(name: string): Promise<Shown> {
+  return (await ask("/api/open", { name })).json();
+}
+export async function measure(request: Measure): Promise<Pair[]> {
+  return (await ask("/api/measure", request)).json();
 }
 export async function judge(subject: Subject, signal: AbortSignal): Promise<Judged> {
   return (await ask("/api/judge", subject, signal)).json();
 }
-export async function edit(request: Edit): Promise<Text> {
-  return (await ask("/api/edit", request)).json();
+/** The text of a design file with values of it changed. */
+export async function edit(text: string, changes: Change[]): Promise<string> {
+  return ((await (await ask("/api/edit", { text, changes })).json()) as Text).text;
 }
-export async function weave(request: New): Promise<Text> {
-  return (await ask("/api/new", request)).json();
+/** A design that has no file yet. */
+export async function newDesign(request: New): Promise<Shown> {
+  const { name, text } = (await (await ask("/api/new", request)).json()) as Text;
+  return { name: `${name}.toml`, text, file: null, map: null, simulation: null };
 }
 export async function save(request: Save): Promise<Text> {
   return (await ask("/api/save", request)).json();

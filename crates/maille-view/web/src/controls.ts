@@ -8,7 +8,7 @@ import type { ViewState } from "./state";
 
 const TILES = ["4", "6", "8", "12", "16", "24", "41"];
 
-class Slider {
+export class Slider {
   readonly node: HTMLElement;
   private input: HTMLInputElement;
   private output = h("output", {});
@@ -56,8 +56,8 @@ function check(label: string, set: (on: boolean) => void): HTMLElement {
   return h("label", { class: "check" }, input, label);
 }
 
-function unitOf(state: ViewState): string {
-  return state.a.own?.unit ? ` ${state.a.own.unit}` : "";
+export function unitOf(side: Side): string {
+  return side.own?.unit ? ` ${side.own.unit}` : "";
 }
 
 export class Controls {
@@ -70,6 +70,9 @@ export class Controls {
   private widths = h("div", { class: "chips", role: "group", "aria-label": "Width of the record" });
   private elements: HTMLSelectElement;
   private command = h("code", { class: "command" });
+  private solved: HTMLElement;
+  private overlays: HTMLElement;
+  private tiles: HTMLElement;
 
   constructor(private state: ViewState) {
     const { a, start } = state;
@@ -83,33 +86,36 @@ export class Controls {
       "aria-label": "Element",
       onchange: () => state.pick(this.elements.value === "" ? null : Number(this.elements.value)),
     });
+    this.solved = h(
+      "div",
+      { class: "solved" },
+      this.l2.node,
+      h("label", { class: "check" }, this.free, "width free, as in a pull test"),
+      this.wire.node,
+      this.spacing.node,
+    );
+    const tiles = TILES.map((n): [string, string] => [n, `${n} × ${n}`]);
+    this.tiles = select("Cells", tiles, "8", (n) => state.set({ tile: [Number(n), Number(n)] }));
+    this.overlays = h(
+      "div",
+      { class: "row" },
+      check("forces", (forces) => state.set({ forces })),
+      check("binding chain", (chain) => state.set({ chain })),
+    );
     this.node = h(
       "div",
       { class: "controls" },
       this.direction.node,
       this.widths,
-      h(
-        "div",
-        { class: "solved", hidden: start.bundle },
-        this.l2.node,
-        h("label", { class: "check" }, this.free, "width free, as in a pull test"),
-        this.wire.node,
-        this.spacing.node,
-      ),
+      this.solved,
       this.looks(),
-      h(
-        "div",
-        { class: "row" },
-        check("forces", (forces) => state.set({ forces })),
-        check("binding chain", (chain) => state.set({ chain })),
-      ),
+      this.overlays,
       start.bundle ? null : this.commandRow(),
     );
   }
 
   private looks(): HTMLElement {
     const { state } = this;
-    const tiles = TILES.map((n): [string, string] => [n, `${n} × ${n}`]);
     const colors: [ColorBy, string][] = [
       ["element", "element"],
       ["load", "load"],
@@ -118,7 +124,7 @@ export class Controls {
     return h(
       "div",
       { class: "row" },
-      select("Cells", tiles, "8", (n) => state.set({ tile: [Number(n), Number(n)] })),
+      this.tiles,
       select("Colour by", colors, "element", (colorBy) => state.set({ colorBy })),
       h("label", { class: "field" }, "Element", this.elements),
     );
@@ -130,11 +136,15 @@ export class Controls {
   }
 
   draw(): void {
-    const { a } = this.state;
+    const { a, b, mode, start } = this.state;
+    // A simulation has no direction and no width, and nothing of it is solved anew.
+    const simulated = a.frames !== null && (mode !== "compare" || b.frames !== null);
+    this.direction.node.hidden = this.overlays.hidden = this.tiles.hidden = simulated;
+    this.solved.hidden = start.bundle || a.frames !== null;
     this.direction.set(a.choice?.direction ?? 0, a.choice ? `${short(a.choice.direction)}°` : "–");
     this.l2.set(a.l2, a.free ? "free" : short(a.l2, 3));
     this.free.checked = a.free;
-    this.wire.setWire(a, unitOf(this.state));
+    this.wire.setWire(a, unitOf(a));
     this.spacing.set(a.spacing ?? 1, `× ${short(a.spacing ?? 1, 3)}`);
     this.drawWidths();
     this.drawElements();
@@ -167,35 +177,5 @@ export class Controls {
       this.elements.replaceChildren(h("option", { value: "" }, "all"), ...options);
     }
     this.elements.value = picked === null || picked >= names.length ? "" : String(picked);
-  }
-}
-
-/** The second sheet: which design, which wire. */
-export class CompareControls {
-  readonly node: HTMLElement;
-  private wire: Slider;
-
-  constructor(private state: ViewState) {
-    const { b, start } = state;
-    const { designs, opened } = start;
-    this.wire = new Slider("Its wire radius", [0, 1, 0.001], (minorRadius) => void b.change({ minorRadius }));
-    const select = h(
-      "select",
-      { "aria-label": "Second design", onchange: () => void state.compareWith(select.value) },
-      ...designs.map((d) => h("option", { value: d.name }, `${d.name}  ${d.title}`)),
-      designs.some((d) => d.name === opened.name) ? null : h("option", { value: "" }, opened.name),
-    );
-    const same = h("button", { type: "button", onclick: () => void state.compareSame() }, "Same design");
-    this.node = h(
-      "div",
-      { class: "compared", hidden: true },
-      h("p", { class: "second-head" }, "With"),
-      h("div", { class: "row" }, h("label", { class: "field" }, "Second design", select), same),
-      this.wire.node,
-    );
-  }
-
-  draw(): void {
-    this.wire.setWire(this.state.b, unitOf(this.state));
   }
 }

@@ -1,33 +1,36 @@
 // What the stage is asked to draw.
 
 import type { InstancedMesh } from "three";
-import type { Limit, Pair, Sheet } from "./types";
+import type { ChangedLink } from "./links";
+import type { Pair, Sheet, StateRecord } from "./types";
 
 export type ColorBy = "element" | "load" | "slack";
 
-/** A link that the design had and has no more: two rings, the second in a cell. */
-export interface LostLink {
-  a: number;
-  b: number;
-  shift: [number, number];
+/** A state of a sheet: of a limit, or of a simulation. */
+export interface Posed {
+  state: Pick<StateRecord, "a1" | "a2" | "poses" | "contacts" | "chain">;
+  /** Pairs of rings that are linked or near each other in it, if they are known. */
+  pairs: Pair[] | null;
 }
 
 export interface Drawing {
   /** The design's own cell. */
   own: Sheet;
-  /** The cell of the limit, if there is one. */
+  /** The cell of the state, if there is one. */
   sheet: Sheet;
-  limit: Limit | null;
+  limit: Posed | null;
   /** Cells of the design along a1 and a2. */
   tile: [number, number];
-  /** Place between the start, 0, and the limit, 1. */
+  /** Place between the start, 0, and the state, 1. */
   t: number;
+  /** Of a finite sheet: how far its elements come from its middle. */
+  reach: number | null;
   colorBy: ColorBy;
   /** Element that is picked. */
   picked: number | null;
   forces: boolean;
   chain: boolean;
-  lost: LostLink[];
+  changed: ChangedLink[];
 }
 
 /** Rings of one pair of radii: each of `rings` in all cells, then the next. */
@@ -37,6 +40,6 @@ export interface Shape {
 }
 
 /** The pairs with their gaps in the state that is drawn, or in the start while it moves. */
-export function pairsOf({ sheet, limit, t }: Drawing): Pair[] {
-  return limit && t === 1 ? limit.pairs : sheet.pairs;
+export function pairsOf({ sheet, limit, t }: Pick<Drawing, "sheet" | "limit" | "t">): Pair[] {
+  return limit && t === 1 ? (limit.pairs ?? []) : sheet.pairs;
 }

@@ -1,6 +1,7 @@
 // The element that is picked: its load, its neighbours, their gaps.
 
 import { h, short } from "./dom";
+import { pairsOf } from "./drawing";
 import { loads, slack } from "./limits";
 import type { ViewState } from "./state";
 import type { Pair, Sheet } from "./types";
@@ -22,20 +23,20 @@ export class ElementInfo {
   constructor(private state: ViewState) {}
 
   draw(): void {
-    const { a, picked, locked, t } = this.state;
-    const sheet = locked?.sheet ?? a.own;
-    const pose = picked === null ? undefined : sheet?.poses[picked];
-    this.node.hidden = !pose;
-    if (picked === null || !sheet || !pose) return;
-    const limit = locked?.limit ?? null;
-    const pairs = limit?.pairs ?? sheet.pairs;
+    const { a, picked, t: place, mode } = this.state;
+    const drawn = a.drawn(place);
+    const pose = picked === null ? undefined : drawn?.sheet.poses[picked];
+    this.node.hidden = !pose || mode === "draw";
+    if (picked === null || !drawn || !pose) return;
+    const { sheet, limit, t } = drawn;
+    const pairs = pairsOf(drawn);
     const close = h("button", { type: "button", onclick: () => this.state.pick(null) }, "Close");
-    if (limit && t < 1) {
-      const words = h("p", {}, "interpolated: no gaps are known here");
-      return this.node.replaceChildren(h("b", {}, pose.element), words, close);
+    const unknown = limit && t < 1 ? "interpolated: no gaps are known here" : "the gaps of this state are not known";
+    if (limit && (t < 1 || !limit.pairs)) {
+      return this.node.replaceChildren(h("b", {}, pose.element), h("p", {}, unknown), close);
     }
     const room = slack(sheet, pairs)[picked]!;
-    const load = limit ? `; load ${short(loads(sheet, limit)[picked]!, 4)}` : "";
+    const load = limit?.state.contacts ? `; load ${short(loads(sheet, limit)[picked]!, 4)}` : "";
     const words = h("p", {}, `smallest gap ${Number.isFinite(room) ? short(room) : "–"}${load}`);
     this.node.replaceChildren(h("b", {}, pose.element), words, table(neighbours(sheet, pairs, picked)), close);
   }

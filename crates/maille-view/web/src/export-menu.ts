@@ -3,7 +3,7 @@
 import * as api from "./api";
 import { h } from "./dom";
 import type { ViewState } from "./state";
-import type { Export, LimitRow } from "./types";
+import type { Export, LimitRow, StateRecord } from "./types";
 
 const FORMATS: [format: string, label: string][] = [
   ["3mf", "3MF, to print"],
@@ -15,6 +15,18 @@ const FORMATS: [format: string, label: string][] = [
   ["csv", "CSV, the limits"],
   ["svg", "SVG, the map"],
 ];
+
+/** A state of which the poses alone are known. */
+const NO_STATE: Pick<StateRecord, "direction_deg" | "l2" | "status" | "deformation_gradient" | "residual"> = {
+  direction_deg: 0,
+  l2: 0,
+  status: "not-converged",
+  deformation_gradient: [
+    [1, 0],
+    [0, 1],
+  ],
+  residual: null,
+};
 
 /** How long a download may take to begin. */
 const KEEP_MS = 10_000;
@@ -37,22 +49,26 @@ export class ExportMenu {
   private async export(format: string): Promise<void> {
     const { a, t, tile } = this.state;
     const limit = t === 1 ? (a.locked?.limit ?? null) : null;
+    const { frames } = a;
     const request: Export = {
       format,
       subject: a.subject,
-      tile,
-      state: limit?.state ?? null,
-      cell: limit?.row.cell ?? null,
+      tile: frames ? [1, 1] : tile,
+      state: frames ? { ...NO_STATE, ...frames.posed(t).state } : (limit?.state ?? null),
+      cell: frames ? frames.simulation.sheet.cell : (limit?.row.cell ?? null),
+      finite: frames !== null,
       rows: format === "csv" || format === "svg" ? this.rows() : [],
     };
-    const place = limit ? `_dir${limit.row.direction_deg}_l2_${limit.row.l2}` : "";
+    const of = limit ? `_dir${limit.row.direction_deg}_l2_${limit.row.l2}` : "";
+    const place = frames ? `-simulate_frame${frames.at(t).number}` : of;
     const name = (a.own?.name ?? "sheet").replace(/[^\w.-]/g, "_");
     this.said.textContent = "writing …";
     try {
       const url = URL.createObjectURL(await api.exported(request));
       h("a", { href: url, download: `${name}${place}.${format}` }).click();
       setTimeout(() => URL.revokeObjectURL(url), KEEP_MS);
-      this.said.textContent = limit ? "the locked state is written" : "the start is written";
+      const what = frames ? `frame ${frames.at(t).number} is` : limit ? "the locked state is" : "the start is";
+      this.said.textContent = format === "csv" || format === "svg" ? "the limits are written" : `${what} written`;
     } catch (error) {
       const refused = error instanceof api.Refusal ? error.refused : { problem: String(error), help: "" };
       this.said.textContent = `${refused.problem}. ${refused.help}`;

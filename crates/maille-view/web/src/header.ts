@@ -1,28 +1,27 @@
 // The head of the page: the design that is open, the modes, exports.
 
+import { DesignSelect } from "./design-select";
 import { h } from "./dom";
 import { ExportMenu } from "./export-menu";
 import type { Mode, ViewState } from "./state";
 
 export class Header {
   readonly node: HTMLElement;
-  private designs: HTMLSelectElement;
-  /** What was opened and is no built-in design. */
-  private other: HTMLOptionElement;
+  private designs: DesignSelect;
   private tabs: HTMLButtonElement[];
 
   constructor(private state: ViewState) {
     const { start } = state;
-    this.other = h("option", { value: "" }, start.opened.name);
-    this.designs = h(
-      "select",
-      { "aria-label": "Design", class: "design", onchange: () => void state.open(this.designs.value) },
-      this.other,
-      ...start.designs.map((d) => h("option", { value: d.name }, `${d.name}  ${d.title}`)),
-    );
-    this.tabs = [this.tab("explore", "Explore"), this.tab("edit", "Edit"), this.tab("compare", "Compare")];
+    this.designs = new DesignSelect(start, { "aria-label": "Design", class: "design" }, (name) => void state.open(name));
+    const modes: [Mode, string][] = [
+      ["explore", "Explore"],
+      ["draw", "Draw"],
+      ["edit", "Edit"],
+      ["compare", "Compare"],
+    ];
+    this.tabs = modes.map(([mode, label]) => this.tab(mode, label));
     const asked = [
-      this.designs,
+      this.designs.node,
       h("div", { class: "tabs", role: "tablist" }, ...this.tabs),
       new ExportMenu(state).node,
     ];
@@ -47,11 +46,6 @@ export class Header {
   }
 
   draw(): void {
-    const { a, start } = this.state;
-    const builtin = (name: string) => start.designs.some((d) => d.name === name);
-    const known = builtin(a.name);
-    if (!known) this.other.textContent = a.name;
-    this.other.hidden = known && builtin(start.opened.name);
-    this.designs.value = known ? a.name : "";
+    this.designs.draw(this.state.a);
   }
 }

@@ -1,6 +1,7 @@
 // What the colours of the elements mean.
 
 import { h, short } from "./dom";
+import { pairsOf } from "./drawing";
 import { loads, slack } from "./limits";
 import type { ViewState } from "./state";
 
@@ -10,13 +11,13 @@ export class ColorLegend {
   constructor(private state: ViewState) {}
 
   draw(): void {
-    const { a, colorBy, locked, t, start } = this.state;
-    this.node.hidden = !a.own || colorBy === "element";
-    if (!a.own || colorBy === "element") return;
-    const sheet = locked?.sheet ?? a.own;
-    const limit = locked?.limit ?? null;
+    const { a, colorBy, start } = this.state;
+    const drawn = a.drawn(this.state.t);
+    this.node.hidden = !drawn || colorBy === "element";
+    if (!drawn || colorBy === "element") return;
+    const { sheet, limit } = drawn;
     const byLoad = colorBy === "load";
-    const values = byLoad ? loads(sheet, limit) : slack(sheet, limit && t === 1 ? limit.pairs : sheet.pairs);
+    const values = byLoad ? loads(sheet, limit) : slack(sheet, pairsOf(drawn));
     const most = Math.max(...values.filter(Number.isFinite), 0);
     const ramp = `background:linear-gradient(90deg, ${start.palette.loads.join(", ")})`;
     const [what, left, right] = byLoad

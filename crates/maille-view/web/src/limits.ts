@@ -1,5 +1,6 @@
 // Limits: what is chosen among them, and what they say of single elements.
 
+import type { Posed } from "./drawing";
 import type { Limit, Pair, Sheet } from "./types";
 
 export interface Choice {
@@ -34,7 +35,7 @@ export function widthColor(colors: string[], k: number, count: number): string {
 }
 
 /** Loads of the elements: sums of the contact forces on them. */
-export function loads(sheet: Sheet, limit: Limit | null): number[] {
+export function loads(sheet: Sheet, limit: Posed | null): number[] {
   const out = sheet.poses.map(() => 0);
   for (const c of limit?.state.contacts ?? []) {
     for (const ring of [c.ring_a, c.ring_b]) out[sheet.rings[ring]!.element]! += c.force;

@@ -1,4 +1,4 @@
-// What is drawn through the rings: forces, the binding chain, lost links.
+// What is drawn through the rings: forces, the binding chain, links that changed.
 
 import {
   BufferGeometry,
@@ -13,15 +13,15 @@ import {
   Vector3,
 } from "three";
 import { mergeGeometries } from "three/examples/jsm/utils/BufferGeometryUtils.js";
-import type { Drawing } from "./drawing";
+import type { Drawing, Posed } from "./drawing";
 import { centre, inLarger, type Poses } from "./pose";
-import type { ContactRecord, Limit, Palette, Sheet } from "./types";
+import type { ContactRecord, Palette, Sheet } from "./types";
 
 const Y = new Vector3(0, 1, 0);
 const MOST_ARROWS = 3000;
 const DOT = "#ffb703";
 const CHAIN = "#14213d";
-const LOST = "#d81b43";
+export const CHANGED = { broken: "#d81b43", new: "#6a35b0" };
 
 export class Overlays {
   readonly group = new Group();
@@ -34,11 +34,11 @@ export class Overlays {
     if (drawing.forces && limit && t === 1) this.forces(sheet, limit, poses, cells);
     if (drawing.chain && limit) this.chain(drawing, limit, poses);
     const middle = cells.map((count) => Math.floor((count - 1) / 2)) as [number, number];
-    for (const { a, b, shift } of drawing.lost) {
+    for (const { a, b, shift, kind } of drawing.changed) {
       if (!sheet.rings[a] || !sheet.rings[b]) continue;
       const to = middle.map((x, k) => x + shift[k]!) as [number, number];
       const ends = [centre(sheet, poses, a, middle), centre(sheet, poses, b, to)];
-      this.line(ends, 0.05 * sheet.reference_radius, LOST);
+      this.line(ends, 0.05 * sheet.reference_radius, CHANGED[kind]);
     }
   }
 
@@ -54,7 +54,7 @@ export class Overlays {
   }
 
   /** Arrows on both sides of each contact that carries force, in as many cells as can be drawn. */
-  private forces(sheet: Sheet, limit: Limit, poses: Poses, [m, n]: [number, number]): void {
+  private forces(sheet: Sheet, limit: Posed, poses: Poses, [m, n]: [number, number]): void {
     const contacts = limit.state.contacts ?? [];
     if (!contacts.length) return;
     const R = sheet.reference_radius;
@@ -88,7 +88,7 @@ export class Overlays {
   }
 
   /** The binding chain, repeated along the tile. */
-  private chain({ own, sheet, tile }: Drawing, limit: Limit, poses: Poses): void {
+  private chain({ own, sheet, tile }: Drawing, limit: Posed, poses: Poses): void {
     const { chain } = limit.state;
     if (!chain) return;
     const points: Vector3[] = [];

@@ -1,7 +1,9 @@
 // The page: what stands where. It shows and asks; limits and files come from the program.
 
-import { CompareControls, Controls } from "./controls";
+import { CompareControls } from "./compare-controls";
+import { Controls } from "./controls";
 import { h } from "./dom";
+import { DrawPanel } from "./draw-panel";
 import { Editor } from "./editor";
 import { ElementInfo } from "./element-info";
 import { Header } from "./header";
@@ -26,6 +28,7 @@ export class Page {
   private header: Header;
   private compare: CompareControls;
   private editor: Editor;
+  private drawing: DrawPanel;
   private stages: Stages;
   /** What is drawn once there is a sheet, in this order. */
   private parts: Part[];
@@ -36,6 +39,7 @@ export class Page {
     this.header = new Header(state);
     this.compare = new CompareControls(state);
     this.editor = new Editor(state.a, start.weaves);
+    this.drawing = new DrawPanel(state.a, start.palette);
     const boxes = { a: h("div", { class: "stage" }), b: h("div", { class: "stage second", hidden: true }) };
     const info = new ElementInfo(state);
     const legend = new ColorLegend(state);
@@ -51,7 +55,7 @@ export class Page {
         h(
           "section",
           { class: "view", "aria-label": "Sheet" },
-          h("div", { class: "stages" }, boxes.a, boxes.b, info.node, legend.node, this.notice),
+          h("div", { class: "stages" }, ...(start.bundle ? [] : [this.drawing.board.node]), boxes.a, boxes.b, info.node, legend.node, this.notice),
           scrubber.node,
         ),
         h(
@@ -59,7 +63,7 @@ export class Page {
           { class: "panel" },
           h("div", { class: "head" }, this.title, this.subtitle),
           h("div", { class: "explore" }, this.compare.node, plot.node, limit.node, controls.node),
-          start.bundle ? h("span") : this.editor.node,
+          ...(start.bundle ? [] : [this.editor.node, this.drawing.node]),
         ),
       ),
     );
@@ -81,6 +85,7 @@ export class Page {
       this.subtitle.textContent = a.own.title;
       for (const part of this.parts) part.draw();
       if (!start.bundle && mode === "edit") this.editor.draw();
+      if (!start.bundle && mode === "draw") this.drawing.draw();
     }
     this.drawNotice();
   }
@@ -89,6 +94,7 @@ export class Page {
     const { mode } = this.state;
     document.body.dataset["mode"] = mode;
     this.header.drawMode();
+    this.drawing.board.node.hidden = mode !== "draw";
     this.stages.drawMode();
     this.compare.node.hidden = mode !== "compare";
   }
@@ -96,7 +102,7 @@ export class Page {
   /** What went wrong; the editor shows problems of the design itself. */
   private drawNotice(): void {
     const { a, mode } = this.state;
-    const shown = a.failure ?? (mode === "edit" ? undefined : a.problems[0]);
+    const shown = a.failure ?? (mode === "edit" || mode === "draw" ? undefined : a.problems[0]);
     this.notice.hidden = !shown;
     if (shown) this.notice.replaceChildren(h("b", {}, shown.problem), " ", shown.help ?? "");
   }

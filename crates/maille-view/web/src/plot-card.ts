@@ -2,6 +2,7 @@
 
 import { h, short } from "./dom";
 import { widthColor, widths } from "./limits";
+import { ForcePlot, type Course } from "./force-plot";
 import { PolarPlot, type Family } from "./polar-plot";
 import type { Side } from "./side";
 import type { ViewState } from "./state";
@@ -22,6 +23,13 @@ function key(color: string, words: string): HTMLElement {
   return h("span", { class: "key" }, h("i", { style: `background:${color}` }), words);
 }
 
+/** Only the limits of one width, where there are several. */
+function atWidth(side: Side, all: Family[]): Family[] {
+  const l2 = side.choice?.l2 ?? side.l2;
+  const several = widths(side.limits).length > 1;
+  return several ? all.map((f) => ({ ...f, limits: f.limits.filter((l) => l.row.l2 === l2) })) : all;
+}
+
 function named(side: Side, color: string, name: string | undefined): HTMLElement {
   const radius = side.own && short(Math.min(...side.own.rings.map((r) => r.minor_radius)), 4);
   return key(color, `${name}, r = ${radius}`);
@@ -30,6 +38,7 @@ function named(side: Side, color: string, name: string | undefined): HTMLElement
 export class PlotCard {
   readonly node: HTMLElement;
   private plot: PolarPlot;
+  private forces: ForcePlot;
   private legend = h("div", { class: "map-legend" });
   private progress = h("div", { class: "progress" });
 
@@ -38,20 +47,56 @@ export class PlotCard {
       (direction, l2) => state.choose(direction, l2),
       (degrees) => state.step(degrees),
     );
-    this.node = h("div", { class: "map-box" }, this.plot.node, this.legend, this.plot.tip, this.progress);
+    this.forces = new ForcePlot((course, frame) => this.show(course, frame));
+    const plots = [this.plot.node, this.forces.node, this.legend, this.plot.tip, this.forces.tip];
+    this.node = h("div", { class: "map-box" }, ...plots, this.progress);
+  }
+
+  /** Shows frame `index` of the simulation that is drawn as `course`; another one stands at the same share then. */
+  private show(course: number, index: number): void {
+    const { state } = this;
+    const side = this.simulated[course]!;
+    const { frames } = side;
+    if (!frames) return;
+    const other = side === state.b && state.a.frames;
+    state.scrub(other ? other.nearest(frames.simulation.frames[index]!.share) : frames.place(index));
+  }
+
+  private get sides(): Side[] {
+    const { a, b, mode } = this.state;
+    return mode === "compare" ? [a, b] : [a];
+  }
+
+  private get simulated(): Side[] {
+    return this.sides.filter((side) => side.frames);
   }
 
   draw(): void {
     const { a, b, mode } = this.state;
     const two = mode === "compare";
-    const second = two ? families(b, COLORS.b) : [];
-    this.plot.draw([...families(a, COLORS.a), ...second], a.choice);
+    const mapped = this.sides.filter((side) => !side.frames);
+    const curves = (side: Side) => {
+      const all = families(side, COLORS[side === a ? "a" : "b"]);
+      return two ? atWidth(side, all) : all;
+    };
+    this.plot.node.toggleAttribute("hidden", !mapped.length);
+    this.plot.tip.hidden = !mapped.length;
+    if (mapped.length) this.plot.draw(mapped.flatMap(curves), mapped[0]!.choice);
+    this.forces.draw(this.simulated.map((side) => this.course(side)));
     this.legend.replaceChildren(...this.keys());
     this.progress.replaceChildren(...this.done(a.running || !two ? a : b));
   }
 
+  private course(side: Side): Course {
+    const frames = side.frames!;
+    const { a } = this.state;
+    const shown = frames.index(this.state.placeOf(side));
+    return { color: COLORS[side === a ? "a" : "b"][0]!, frames: frames.simulation.frames, shown };
+  }
+
   private keys(): HTMLElement[] {
     const { a, b, mode } = this.state;
+    if (a.frames && mode !== "compare") return [];
     if (mode === "compare") {
       return [named(a, COLORS.a[0]!, a.own?.name), named(b, COLORS.b[0]!, b.own?.name ?? "…")];
     }
@@ -62,6 +107,11 @@ export class PlotCard {
 
   private done(side: Side): HTMLElement[] {
     const found = side.limits.length;
+    if (side.frames) {
+      const { frames, total } = side.frames.simulation;
+      const some = frames.length < total ? `${frames.length} of ` : "";
+      return [h("span", {}, `${some}${total} states of ${side.source}`)];
+    }
     if (side.running) {
       return [
         h("progress", { max: side.total, value: Math.min(found, side.total), "aria-label": "Limits found" }),

@@ -1,7 +1,8 @@
 // Poses of a cell between its start and a state, and where a ring is in them.
 
 import { Quaternion, Vector3 } from "three";
-import type { Limit, PoseRecord, Sheet } from "./types";
+import type { Posed } from "./drawing";
+import type { PoseRecord, Sheet } from "./types";
 
 /** Poses of a cell's elements and its lattice, in the file's unit. */
 export interface Poses {
@@ -20,8 +21,8 @@ function of(poses: PoseRecord[], a1: number[], a2: number[]): Poses {
   };
 }
 
-/** A part `t` of the way from the start to the state of `limit`: straight lines, rotations at a constant rate. */
-export function posesAt(sheet: Sheet, limit: Limit | null, t: number): Poses {
+/** A part `t` of the way from the start to the state `limit`: straight lines, rotations at a constant rate. */
+export function posesAt(sheet: Sheet, limit: Posed | null, t: number): Poses {
   const start = of(sheet.poses, sheet.a1, sheet.a2);
   if (!limit || t === 0) return start;
   const end = of(limit.state.poses, limit.state.a1, limit.state.a2);

@@ -2,7 +2,10 @@
 
 import * as api from "./api";
 import { calm } from "./dom";
-import { halfTurn, reached, sameDirection, type Choice } from "./limits";
+import type { Drawing } from "./drawing";
+import { Frames } from "./frames";
+import { halfTurn, reached, sameDirection, widths, type Choice } from "./limits";
+import { changedLinks, type ChangedLink } from "./links";
 import type { Design, Limit, ListedProblem, Refused, Sheet, Shown, Subject } from "./types";
 
 const SESSION = Math.random().toString(36).slice(2);
@@ -29,13 +32,17 @@ export class Side {
   design: Design | null = null;
   own: Sheet | null = null;
   problems: ListedProblem[] = [];
-  /** Start of the design when it was opened: its links are to be kept. */
+  /** Start of the design when it was opened or saved: its links are to be kept. */
   base: Sheet | null = null;
   limits: Limit[] = [];
   old: Limit[] = [];
   sheets = new Map<string, Sheet>();
   /** Name of the record that the limits are of, if nothing was solved. */
   source: string | null = null;
+  /** The states of a simulation, if one was opened. */
+  frames: Frames | null = null;
+  /** Whether `own` is the sheet of the text as it is now. */
+  readable = true;
   total = 0;
   running = false;
   failure: Refused | null = null;
@@ -44,7 +51,11 @@ export class Side {
   private judging: AbortController | null = null;
   private solving: AbortController | null = null;
   private asking: AbortController | null = null;
-  private later = calm(140, () => void this.solve());
+  // By then a record may have been opened, of which nothing is solved.
+  private later = calm(140, () => void (this.source === null && this.solve()));
+  /** While a design is drawn or edited, nothing is solved. */
+  private resting = false;
+  private unsolved = false;
 
   constructor(
     readonly id: string,
@@ -53,9 +64,10 @@ export class Side {
     private changed: () => void,
   ) {}
 
-  /** Opens a design, with the limits of its record if it has one. */
+  /** Opens a design, with what its record holds if it has one. A choice that the record has, too, is kept. */
   async open(shown: Shown): Promise<void> {
     this.cancel();
+    const { choice } = this;
     Object.assign(this, { name: shown.name, file: shown.file, text: shown.text, minorRadius: null, spacing: null });
     Object.assign(this, {
       base: null,
@@ -65,18 +77,40 @@ export class Side {
       failure: null,
       problems: [],
       source: null,
+      frames: null,
+      readable: true,
       choice: null,
       total: 0,
+      unsolved: false,
     });
     this.sheets.clear();
+    if (shown.simulation) {
+      this.frames = new Frames(shown.simulation, this.subject);
+      this.source = shown.simulation.source;
+      this.own = this.base = shown.simulation.sheet;
+      return this.changed();
+    }
     if (shown.map) {
       this.take(shown.map.source, shown.map.sheets, shown.map.limits);
+      this.choice = choice;
+      if (!this.chosen) this.choice = null;
       this.changed();
       // What the sliders start from; a bundle has none.
       if (!this.alone) await this.judge();
       return;
     }
-    if (await this.judge()) this.later();
+    if (await this.judge()) this.solveLater();
+  }
+
+  /** Solves nothing until `resting` is false. */
+  rest(resting: boolean): void {
+    this.resting = resting;
+    if (!resting && this.unsolved) this.solveLater();
+  }
+
+  private solveLater(): void {
+    this.unsolved = this.resting;
+    if (!this.resting) this.later();
   }
 
   private take(source: string, sheets: Sheet[], limits: Limit[]): void {
@@ -86,7 +120,7 @@ export class Side {
     this.limits = limits;
     this.total = limits.length;
     this.free = limits[0]?.row.lateral === "free";
-    const l2s = [...new Set(limits.map((l) => l.row.l2))];
+    const l2s = widths(limits);
     this.l2 = l2s.includes(0) ? 0 : (l2s[0] ?? 0);
   }
 
@@ -105,6 +139,7 @@ export class Side {
       this.problems = judged.problems;
       this.design = judged.design ?? this.design;
       this.own = judged.sheet ?? this.own;
+      this.readable = judged.sheet !== null;
       this.base ??= judged.sheet;
       this.failure = null;
       this.changed();
@@ -117,6 +152,7 @@ export class Side {
 
   /** Something was dragged: the start is shown at once, the limits follow. Whatever was under way is dropped. */
   async change(what: Partial<Pick<Side, "minorRadius" | "spacing" | "l2" | "free" | "text">>): Promise<void> {
+    if (this.frames) return; // nothing of a simulation is solved anew
     Object.assign(this, what);
     this.cancel();
     this.source = null;
@@ -127,10 +163,10 @@ export class Side {
     this.total = 0;
     if (this.choice) this.choice = { ...this.choice, l2: this.free ? 0 : this.l2 };
     this.changed();
-    if (geometry ? await this.judge() : !this.problems.length) this.later();
+    if (geometry ? await this.judge() : !this.problems.length) this.solveLater();
   }
 
-  private fail(error: unknown): void {
+  fail(error: unknown): void {
     this.failure = error instanceof api.Refusal ? error.refused : { problem: String(error), help: "", problems: [] };
     this.running = false;
     this.changed();
@@ -196,7 +232,7 @@ export class Side {
     direction = halfTurn(direction);
     this.choice = { direction, l2: l2 ?? this.choice?.l2 ?? (this.free ? 0 : this.l2) };
     this.changed();
-    if (this.chosen || this.source !== null || this.problems.length) return;
+    if (this.chosen || this.source !== null || this.problems.length || this.resting) return;
     this.asking?.abort();
     const mine = new AbortController();
     this.asking = mine;
@@ -222,36 +258,38 @@ export class Side {
     return limit && sheet && reached(limit) !== null && limit.state.poses.length ? { limit, sheet } : null;
   }
 
-  /** Links that the design had when it was opened, and has no more. */
-  get lost(): { a: number; b: number; shift: [number, number]; words: string }[] {
-    const { base, own } = this;
-    if (!base || !own || base === own) return [];
-    const ringName = (sheet: Sheet, ring: number) => {
-      const { element } = sheet.rings[ring]!;
-      return `${sheet.poses[element]!.element}/${ring - sheet.first_ring[element]!}`;
-    };
-    const key = (sheet: Sheet, a: number, b: number, [i, j]: [number, number]) => {
-      const [from, to] = [ringName(sheet, a), ringName(sheet, b)];
-      // Of the two ways to write a pair, one.
-      return from < to || (from === to && (i > 0 || (i === 0 && j > 0)))
-        ? `${from} ${to} ${i},${j}`
-        : `${to} ${from} ${-i || 0},${-j || 0}`;
-    };
-    const kept = new Set(own.pairs.filter((p) => p.number).map((p) => key(own, p.ring_a, p.ring_b, p.shift)));
-    const find = (name: string) => own.rings.findIndex((_, ring) => ringName(own, ring) === name);
-    return base.pairs.flatMap((p) => {
-      if (!p.number || kept.has(key(base, p.ring_a, p.ring_b, p.shift))) return [];
-      const [from, to] = [ringName(base, p.ring_a), ringName(base, p.ring_b)];
-      const [a, b] = [find(from), find(to)];
-      const cell = p.shift.some(Boolean) ? ` in cell (${p.shift.join(", ")})` : "";
-      const words = `${from.replace("/0", "")} – ${to.replace("/0", "")}${cell}`;
-      return a < 0 || b < 0 ? [] : [{ a, b, shift: p.shift, words }];
-    });
+  /** What is drawn at `t`, between the start and the limit, or between the first state of a simulation and the last. */
+  drawn(t: number): Pick<Drawing, "sheet" | "limit" | "t"> | null {
+    if (this.frames) return { sheet: this.frames.simulation.sheet, limit: this.frames.posed(t), t: 1 };
+    if (this.locked && t > 0) return { ...this.locked, t };
+    return this.own && { sheet: this.own, limit: null, t: 0 };
+  }
+
+  /** Asks for the gaps of the state of a simulation that is drawn, if they are not known. */
+  measure(t: number): void {
+    if (!this.frames || this.alone) return;
+    this.frames.measure(t).then(this.changed, (error: unknown) => this.fail(error));
+  }
+
+  /** The links that the design has now are those to keep. */
+  keepLinks(): void {
+    this.base = this.own;
+    this.changed();
+  }
+
+  /** Links that the design had when it was opened and has no more, and new ones. */
+  get changedLinks(): ChangedLink[] {
+    return this.frames || !this.readable ? [] : changedLinks(this.base, this.own);
   }
 
   /** The command that gives the chosen number. */
   get command(): string {
     const quoted = (text: string) => (/[^\w./+-]/.test(text) ? `'${text}'` : text);
+    if (this.frames) return `maille plot ${quoted(this.name)} --kind force`;
+    if (this.source !== null) {
+      const place = this.choice ? ` --where 'direction_deg=${this.choice.direction},l2=${this.choice.l2}'` : "";
+      return `maille table ${quoted(this.source)}${place}`;
+    }
     const direction = this.choice ? this.choice.direction : "0:180:5";
     const l2 = this.choice?.l2 ?? this.l2;
     const radius = this.minorRadius === null ? "" : ` --minor-radius ${this.minorRadius}`;

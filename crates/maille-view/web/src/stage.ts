@@ -40,6 +40,7 @@ export class Stage {
   private overlays: Overlays;
   private key = "";
   private fitted = "";
+  private size = "";
   private shown: Drawing | null = null;
   private waiting = false;
   /** Copies of the sheet along a1 and a2. */
@@ -81,7 +82,7 @@ export class Stage {
     if (!width || !height) return;
     this.renderer.setSize(width, height, false);
     this.viewpoint.setAspect(width / height);
-    if (this.shown) this.viewpoint.fit(this.shown, this.cells);
+    if (this.shown) this.viewpoint.refit(this.shown, this.cells);
     this.draw();
   }
 
@@ -89,8 +90,8 @@ export class Stage {
   show(shown: Drawing): void {
     const { shown: old } = this;
     if (old && alike(shown, old)) return;
-    const size = copies(shown.sheet.cell);
-    this.cells = [Math.ceil(shown.tile[0] / size[0]), Math.ceil(shown.tile[1] / size[1])];
+    const [columns, rows] = copies(shown.sheet.cell);
+    this.cells = [Math.ceil(shown.tile[0] / columns), Math.ceil(shown.tile[1] / rows)];
     const radii = shown.sheet.rings.map((r) => `${r.major_radius},${r.minor_radius}`);
     const key = `${radii.join(";")}|${this.cells}`;
     if (key !== this.key) this.build(shown, radii);
@@ -98,10 +99,12 @@ export class Stage {
     this.shown = shown;
     this.place(shown);
     paint(this.shapes, shown, this.cells, this.palette);
-    if (shown.limit && shown.limit !== old?.limit) this.viewpoint.makeRoom(shown, this.cells);
-    const fitted = `${shown.own.name}|${shown.tile}|${shown.own.a1.map((x) => x.toFixed(1))}`;
+    if (shown.limit && shown.limit !== old?.limit && shown.reach === null) this.viewpoint.makeRoom(shown, this.cells);
+    const fitted = `${shown.own.name}|${shown.tile}|${shown.reach}`;
+    const size = [...shown.own.a1, ...shown.own.a2].map((x) => x.toFixed(1)).join();
     if (fitted !== this.fitted) this.viewpoint.fit(shown, this.cells);
-    this.fitted = fitted;
+    else if (size !== this.size) this.viewpoint.refit(shown, this.cells);
+    [this.fitted, this.size] = [fitted, size];
     this.draw();
   }
 
@@ -152,7 +155,9 @@ export class Stage {
       mesh.instanceMatrix.needsUpdate = true;
       mesh.boundingSphere = null;
     }
-    const mean = poses.position.reduce((sum, p) => sum.add(p), new Vector3()).divideScalar(poses.position.length);
+    // A finite sheet is seen from where it began, so that what is held stays in its place.
+    const seen = shown.reach === null ? poses : posesAt(sheet, null, 0);
+    const mean = seen.position.reduce((sum, p) => sum.add(p), new Vector3()).divideScalar(seen.position.length);
     mean.addScaledVector(poses.a1, (m - 1) / 2).addScaledVector(poses.a2, (n - 1) / 2);
     this.world.position.copy(mean.negate());
     this.overlays.draw(shown, poses, this.cells);
@@ -224,6 +229,6 @@ function lights(): [HemisphereLight, AmbientLight, DirectionalLight, Directional
 /** Whether two drawings are the same: objects are, lists that are made anew each time have to look it. */
 function alike(a: Drawing, b: Drawing): boolean {
   const names = Object.keys(a) as (keyof Drawing)[];
-  const listed = (name: keyof Drawing) => name === "tile" || name === "lost";
+  const listed = (name: keyof Drawing) => name === "tile" || name === "changed";
   return names.every((n) => a[n] === b[n] || (listed(n) && JSON.stringify(a[n]) === JSON.stringify(b[n])));
 }

@@ -1,14 +1,20 @@
 // What the page shows: one or two sheets, how far they are pulled, and what the controls set.
 
 import * as api from "./api";
-import { halfTurn } from "./limits";
+import { halfTurn, widths } from "./limits";
 import { Side } from "./side";
 import type { ColorBy } from "./drawing";
-import type { Start } from "./types";
+import type { Shown, Start } from "./types";
 
-export type Mode = "explore" | "edit" | "compare";
+export type Mode = "explore" | "draw" | "edit" | "compare";
+/** Which of two sheets that are compared are shown. */
+export type Both = "both" | "a" | "b";
+/** Before the folder of a record, where a name may also be that of a built-in design. */
+export const RECORD = "record:";
 
 const MOVE_MS = 900;
+/** Time of one state of a simulation that is played. */
+const FRAME_MS = 80;
 const calmly = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
 
 export class ViewState {
@@ -23,6 +29,7 @@ export class ViewState {
   chain = true;
   /** Element that is picked. */
   picked: number | null = null;
+  both: Both = "both";
   private compared = false;
   private moving = 0;
   private waiting = false;
@@ -46,48 +53,107 @@ export class ViewState {
     this.waiting = true;
     requestAnimationFrame(() => {
       this.waiting = false;
-      this.draw();
+      this.show();
     });
   }
 
-  /** Changes what needs nothing else. */
-  set(change: Partial<Pick<ViewState, "tile" | "colorBy" | "forces" | "chain">>): void {
-    Object.assign(this, change);
+  /** Draws; gaps of a simulation are asked for where they are shown. */
+  private show(): void {
+    const gaps = this.picked !== null || this.colorBy === "slack";
+    if (gaps) for (const side of this.sides) side.measure(this.placeOf(side));
     this.draw();
   }
 
+  /** The sheets that are shown. */
+  private get sides(): Side[] {
+    return this.mode === "compare" ? [this.a, this.b] : [this.a];
+  }
+
+  /** Where a sheet stands between its start and its end: two simulations stand at the same share of the pull. */
+  placeOf(side: Side): number {
+    const [first, second] = [this.a.frames, this.b.frames];
+    return side === this.b && first && second ? second.nearest(first.at(this.t).share) : this.t;
+  }
+
+  /** Changes what needs nothing else. */
+  set(change: Partial<Pick<ViewState, "tile" | "colorBy" | "forces" | "chain" | "both">>): void {
+    Object.assign(this, change);
+    this.show();
+  }
+
   setMode(mode: Mode): void {
+    if (mode === "draw") this.picked = null;
     this.mode = mode;
+    const writes = this.writes;
+    this.a.rest(writes);
+    if (writes) void this.openDesign();
     if (mode === "compare" && !this.compared) {
       this.compared = true;
       void this.compareSame();
     }
-    this.move(mode !== "edit" && this.a.locked ? 1 : 0, false);
+    const end = this.a.frames ? this.t : Number(this.a.locked !== null);
+    this.move(writes ? 0 : end, false);
   }
 
-  /** Opens a built-in design, or again what was opened first. */
+  /** Whether the design is being changed. */
+  private get writes(): boolean {
+    return this.mode === "edit" || this.mode === "draw";
+  }
+
+  /** Of a simulation, opens the design: that can be changed. The simulation stays in the list. */
+  private async openDesign(): Promise<void> {
+    const { frames, own, text } = this.a;
+    if (!frames) return;
+    await this.a.open({ name: `${own?.name ?? "sheet"}.toml`, file: null, text, map: null, simulation: null });
+  }
+
+  /** Opens a built-in design, a record, or again what was opened first. */
   async open(name: string): Promise<void> {
     this.picked = null;
-    this.t = 0;
-    await this.a.open(name === "" ? this.start.opened : { ...(await api.builtin(name)), file: null, map: null });
-    this.draw();
+    try {
+      await this.a.open(await this.find(name));
+    } catch (error) {
+      this.a.fail(error);
+    }
+    if (this.writes) await this.openDesign();
+    if (!this.a.locked || this.writes) this.t = 0;
+    this.show();
   }
 
-  /** Compares with a built-in design. */
+  private async find(name: string): Promise<Shown> {
+    if (name === "") return this.start.opened;
+    return name.startsWith(RECORD) ? api.record(name.slice(RECORD.length)) : api.builtin(name);
+  }
+
+  /** Compares with a built-in design, a record, or what was opened first. */
   async compareWith(name: string): Promise<void> {
-    await this.b.open({ ...(await api.builtin(name)), file: null, map: null });
+    try {
+      await this.b.open(await this.find(name));
+    } catch (error) {
+      this.a.fail(error);
+    }
+    await this.chooseSecond();
   }
 
-  /** Compares with the first design itself, to change its wire. */
+  /** Compares with the first design itself, to change its wire; a simulation with itself. */
   async compareSame(): Promise<void> {
-    const { name, file, text } = this.a;
-    await this.b.open({ name, file, text, map: null });
-    if (this.a.choice) await this.b.choose(this.a.choice.direction, null);
+    const { name, file, text, frames } = this.a;
+    await this.b.open({ name, file, text, map: null, simulation: frames?.simulation ?? null });
+    await this.chooseSecond();
+  }
+
+  /** The second sheet has the direction of the first, and its width where it can. */
+  private async chooseSecond(): Promise<void> {
+    const { a, b } = this;
+    if (!a.choice || b.frames) return;
+    const { direction, l2 } = a.choice;
+    const there = b.source === null ? b.l2 === l2 : widths(b.limits).includes(l2);
+    await b.choose(direction, there ? l2 : null);
   }
 
   /** Does the same with every sheet that is shown. */
   each(work: (side: Side) => Promise<void>): Promise<unknown> {
-    return Promise.all([this.a, ...(this.mode === "compare" ? [this.b] : [])].map(work));
+    return Promise.all(this.sides.map(work));
   }
 
   /** Ends what is being solved of a sheet. */
@@ -98,7 +164,9 @@ export class ViewState {
 
   choose(direction: number, l2: number | null): void {
     const whole = halfTurn(direction);
-    void this.each((side) => side.choose(whole, side === this.a ? l2 : null));
+    if (!this.a.frames) void this.a.choose(whole, l2);
+    else if (!this.b.frames) void this.b.choose(whole, l2);
+    if (this.mode === "compare") void this.chooseSecond();
     this.move(1, this.t < 1);
   }
 
@@ -110,14 +178,14 @@ export class ViewState {
   /** Picks an element, or lets go of the one that is picked. */
   pick(element: number | null): void {
     this.picked = element === this.picked ? null : element;
-    this.draw();
+    this.show();
   }
 
   /** Goes to a place between the start and the limit at once. */
   scrub(t: number): void {
     cancelAnimationFrame(this.moving);
     this.t = t;
-    this.draw();
+    this.show();
   }
 
   /** Plays the pull, or back from the limit. */
@@ -130,12 +198,14 @@ export class ViewState {
     if (!slowly || calmly) return this.scrub(to);
     cancelAnimationFrame(this.moving);
     const from = this.t;
+    const frames = this.a.frames?.simulation.frames.length ?? 0;
+    const whole = Math.max(MOVE_MS, FRAME_MS * frames);
     const begun = performance.now();
     const step = (now: number) => {
       // The limit is waited for.
-      const x = Math.min(1, (now - begun) / (MOVE_MS * Math.max(0.2, Math.abs(to - from))));
+      const x = Math.min(1, (now - begun) / (whole * Math.max(0.2, Math.abs(to - from))));
       this.t = x === 1 ? to : from + (to - from) * x * x * (3 - 2 * x);
-      this.draw();
+      this.show();
       if (x < 1) this.moving = requestAnimationFrame(step);
     };
     this.moving = requestAnimationFrame(step);

@@ -10,6 +10,11 @@ export interface ChainRecord {
   rings: [number, [number, number]][];
 }
 
+export interface Change {
+  field: string;
+  value: string;
+}
+
 export interface ContactRecord {
   ring_a: number;
   ring_b: number;
@@ -41,8 +46,7 @@ export interface DualRecord {
 
 export interface Edit {
   text: string;
-  field: string;
-  value: string;
+  changes: Change[];
 }
 
 export interface ElementSpec {
@@ -51,13 +55,29 @@ export interface ElementSpec {
   rings: RingSpec[];
 }
 
+export type End =
+  | "reached"
+  | "locked"
+  | "not-converged"
+  | "interrupted";
+
 export interface Export {
   format: string;
   subject: Subject;
   tile: [number, number];
   state: StateRecord | null;
   cell: string | null;
+  finite: boolean;
   rows: LimitRow[];
+}
+
+export interface Frame {
+  number: number;
+  share: number;
+  energy: number;
+  stretch: number | null;
+  mean_force: number | null;
+  poses: PoseRecord[];
 }
 
 export interface Judged {
@@ -141,12 +161,25 @@ export interface ListedProblem {
   column: number | null;
 }
 
+export interface Measure {
+  subject: Subject;
+  cell: string;
+  finite: boolean;
+  a1: [number, number, number];
+  a2: [number, number, number];
+  poses: PoseRecord[];
+}
+
 export interface New {
   name: string;
-  weave: string;
+  weave: string | null;
   major: number;
   minor: number;
   unit: string;
+}
+
+export interface OpenRecord {
+  name: string;
 }
 
 export interface Pair {
@@ -217,12 +250,22 @@ export interface Shown {
   file: string | null;
   text: string;
   map: ShownMap | null;
+  simulation: ShownSimulation | null;
 }
 
 export interface ShownMap {
   source: string;
   sheets: Sheet[];
   limits: Limit[];
+}
+
+export interface ShownSimulation {
+  source: string;
+  sheet: Sheet;
+  frames: Frame[];
+  total: number;
+  end: End;
+  note: string | null;
 }
 
 export interface Solve {
@@ -249,6 +292,7 @@ export type Source =
 export interface Start {
   version: string;
   designs: Listed[];
+  records: Listed[];
   weaves: string[];
   opened: Shown;
   palette: Palette;

@@ -63,9 +63,7 @@ export class Viewpoint {
 
   /** The whole tile in view, from the direction of the program's pictures. */
   fit(drawing: Drawing, cells: [number, number]): void {
-    const { own, tile } = drawing;
-    const whole = this.distance(own.a1, own.a2, tile, own.reference_radius);
-    const distance = Math.max(whole, this.distanceOfLimit(drawing, cells));
+    const distance = this.distanceOf(drawing, cells);
     const level = Math.cos(ELEVATION);
     const arm = new Vector3(-Math.sin(AZIMUTH) * level, -Math.cos(AZIMUTH) * level, Math.sin(ELEVATION));
     this.controls.target.set(0, 0, 0);
@@ -74,6 +72,20 @@ export class Viewpoint {
     this.camera.far = distance * 20;
     this.camera.updateProjectionMatrix();
     this.controls.update();
+  }
+
+  /** The whole tile in view, from where the user looks. */
+  refit(drawing: Drawing, cells: [number, number]): void {
+    this.controls.target.set(0, 0, 0);
+    this.camera.position.copy(this.arm().setLength(this.distanceOf(drawing, cells)));
+    this.controls.update();
+  }
+
+  private distanceOf(drawing: Drawing, cells: [number, number]): number {
+    const { own, tile, reach } = drawing;
+    if (reach !== null) return this.distanceOfRadius(reach);
+    const whole = this.distance(own.a1, own.a2, tile, own.reference_radius);
+    return Math.max(whole, this.distanceOfLimit(drawing, cells));
   }
 
   /** Goes back as far as a locked state needs; nobody is brought nearer. */
@@ -102,8 +114,12 @@ export class Viewpoint {
   private distance(a: number[], b: number[], [m, n]: [number, number], R: number): number {
     const [a1, a2] = [new Vector3(...a), new Vector3(...b)];
     const corners = [n, -n].map((k) => a1.clone().multiplyScalar(m).addScaledVector(a2, k).length());
+    return this.distanceOfRadius(Math.max(...corners) / 2 + R);
+  }
+
+  private distanceOfRadius(radius: number): number {
     const fov = (this.camera.fov * Math.PI) / 180;
-    return (0.92 * (Math.max(...corners) / 2 + R)) / Math.sin(fov / 2) / Math.min(1, this.camera.aspect);
+    return (0.92 * radius) / Math.sin(fov / 2) / Math.min(1, this.camera.aspect);
   }
 
   /** The distance that a locked state needs. */

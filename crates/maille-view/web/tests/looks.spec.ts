@@ -29,6 +29,8 @@ test("contrast and names pass WCAG AA", async ({ page, program }) => {
   await page.getByRole("tab", { name: "Edit" }).click();
   await expect(page.locator(".problem")).not.toHaveCount(0);
   await accessible(page, "edit");
+  await page.getByRole("tab", { name: "Draw" }).click();
+  await accessible(page, "draw");
   await page.getByRole("tab", { name: "Compare" }).click();
   await accessible(page, "compare");
 });
@@ -37,12 +39,12 @@ test("the keyboard reaches every control, and shows where it is", async ({ page,
   await page.goto(await program.view("1.1"));
   await solved(page);
   await clickMap(page, 45, 0.6);
-  for (const mode of ["Explore", "Edit", "Compare"]) {
+  for (const mode of ["Explore", "Draw", "Edit", "Compare"]) {
     await page.getByRole("tab", { name: mode }).click();
     await solved(page).catch(() => {});
     const wanted = await page.evaluate(() => {
       const all = [
-        ...document.querySelectorAll<HTMLElement>("button, select, input, textarea, summary, svg.map, canvas"),
+        ...document.querySelectorAll<HTMLElement>("button, select, input, textarea, summary, svg.map, .stage canvas, .board svg"),
       ];
       const there = all.filter((e) => e.checkVisibility() && !(e as HTMLButtonElement).disabled);
       there.forEach((e, k) => (e.dataset["wanted"] = String(k)));
@@ -96,6 +98,12 @@ for (const width of [1440, 1024, 390]) {
     if (width === 1440) await page.screenshot({ path: "test-results/guide-view.jpg", quality: 86 });
     // Nothing sticks out sideways.
     expect(await page.evaluate(() => document.documentElement.scrollWidth - innerWidth)).toBeLessThanOrEqual(0);
+    await page.getByRole("tab", { name: "Draw" }).click();
+    await page.getByLabel("Ring", { exact: true }).selectOption("1");
+    await page.waitForTimeout(300);
+    await shot("draw");
+    if (width === 1440) await page.screenshot({ path: "test-results/guide-draw.jpg", quality: 86 });
+    expect(await page.evaluate(() => document.documentElement.scrollWidth - innerWidth)).toBeLessThanOrEqual(0);
     await page.getByRole("tab", { name: "Edit" }).click();
     await page
       .getByLabel("Design file, TOML")
@@ -116,6 +124,29 @@ for (const width of [1440, 1024, 390]) {
     await solved(page);
     await page.waitForTimeout(500);
     await shot("compare");
+    expect(await page.evaluate(() => document.documentElement.scrollWidth - innerWidth)).toBeLessThanOrEqual(0);
+  });
+}
+
+for (const width of [1440, 390]) {
+  test(`pictures of simulations at ${width} pixels`, async ({ page, program }) => {
+    for (const [name, r] of [
+      ["a", "0.1"],
+      ["b", "0.05"],
+    ] as const) {
+      const pull = ["--tile", "3x3", "--fix", "left", "--pull", "right=6,0,0", "--steps", "6", "--minor-radius", r];
+      program.run("simulate", "1.1", ...pull, "--out", `maille-out/${name}`, "--quiet");
+    }
+    await page.setViewportSize({ width, height: width === 390 ? 844 : 900 });
+    await page.goto(await program.view("maille-out/a"));
+    await page.locator(".scrubber input").fill("1");
+    await expect(page.locator(".card")).toContainText("mean force");
+    if (width === 1440) await accessible(page, "simulation");
+    await page.getByRole("tab", { name: "Compare" }).click();
+    await page.getByLabel("Second design").selectOption("record:maille-out/b");
+    await expect(page.locator(".difference")).toBeVisible();
+    await page.waitForTimeout(1000);
+    await page.screenshot({ path: `test-results/simulations-${width}.png`, fullPage: width === 390 });
     expect(await page.evaluate(() => document.documentElement.scrollWidth - innerWidth)).toBeLessThanOrEqual(0);
   });
 }

@@ -191,20 +191,7 @@ impl<'a> ExactMethod<'a> {
         (first.runs, first.iterations) = (first.runs + own.runs, first.iterations + own.iterations);
         let near =
             (first.best.is_none() && !least && !across.any()).then(|| self.too_near(stretch, upper_bound)).flatten();
-        let rule = LargerCells {
-            every: least,
-            // With the width free a solve is long, and folds are found from the smaller cell's state.
-            own_starts: match (least, across.any()) {
-                (true, _) => self.stop().of_larger_cell(true),
-                (false, true) => 0,
-                (false, false) => self.stop().of_larger_cell(false),
-            },
-            // Under lateral compression a larger cell can fold where this one cannot.
-            where_none: l2 < 0.0,
-            fallback: (!least).then(|| neighbour.unwrap_or_else(|| Start::written(self.models[0].start.clone()))),
-            follow_waves: self.models.len() > 1,
-            neighbours,
-        };
+        let rule = self.larger(stretch, neighbour, neighbours);
         let found = search.larger_cells(self.models, first, &rule);
         if cancel.load(Ordering::Relaxed) {
             return ended(Status::Interrupted, None, &bound);
@@ -238,6 +225,30 @@ impl<'a> ExactMethod<'a> {
         let reached = found.starts.into_iter().filter(|(cell, _)| best(cell));
         let own = own.best.map(|start| (Cell::PRIMITIVE, start));
         (Answer { by_cell, wave, ..answer }, reached.chain(own).collect())
+    }
+
+    /// Which larger cells are searched.
+    fn larger<'n>(
+        &self,
+        stretch: &Stretch,
+        neighbour: Option<Start>,
+        neighbours: &'n [(Cell, Start)],
+    ) -> LargerCells<'n> {
+        let least = stretch.sign < 0.0;
+        LargerCells {
+            every: least,
+            // With the width free a solve is long, and folds are found from the smaller cell's state.
+            own_starts: match (least, stretch.across.any()) {
+                (true, _) => self.stop().of_larger_cell(true),
+                (false, true) => 0,
+                (false, false) => self.stop().of_larger_cell(false),
+            },
+            // Under lateral compression a larger cell can fold where this one cannot.
+            where_none: stretch.l2 < 0.0,
+            fallback: (!least).then(|| neighbour.unwrap_or_else(|| Start::written(self.models[0].start.clone()))),
+            follow_waves: self.models.len() > 1,
+            neighbours,
+        }
     }
 
     /// The bound, or a lower one where the search does not attain it. Of the least l1 bounds only tell that no state has this l2.
