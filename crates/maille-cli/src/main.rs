@@ -15,6 +15,7 @@ mod effort;
 mod exit;
 mod export;
 mod extreme;
+mod figure;
 mod input;
 mod inspect;
 mod interrupt;

@@ -41,7 +41,7 @@ fn every_kind_is_drawn_from_records() {
         assert_eq!(code, Some(2), "{err}");
         err
     };
-    assert!(wrong(&["plot", "a", "-o", "x.pdf"]).contains(".svg or .png"));
+    assert!(wrong(&["plot", "a", "-o", "x.eps"]).contains(".svg, .pdf or .png"));
     assert!(wrong(&["plot", "a", "--where", "l2=7"]).contains("no row is left"));
     assert!(wrong(&["plot", "a", "--kind", "steps", "--quantity", "l1"]).contains("have a --quantity"));
 }
