@@ -41,6 +41,7 @@ mod table;
 mod units;
 mod verify;
 mod verify_proof;
+mod verify_surface;
 mod view;
 mod watch;
 

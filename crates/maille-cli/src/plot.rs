@@ -1,6 +1,7 @@
 //! `maille plot`: records compared in a figure.
 
 use crate::{
+    boundary::surface_svg,
     exit::{self, wrong},
     figure::FigureArgs,
     input::file_name,
@@ -42,7 +43,7 @@ less the smallest limit of all directions, against l2; radius \
 limits against the minor radius, a curve for each design, direction and l2; poisson the ratio of width to length where the width was free; steps and times the solver's iterations and the wall time of \
 each limit; force how hard a finite sheet of `maille simulate` is pulled, against its stretch. --where takes the conditions of `maille table`.")]
 pub struct Args {
-    /// Folders of records, for force those of simulations; NAME stands for maille-out/NAME
+    /// Folders of records, for force those of simulations, or the folder of one surface; NAME stands for maille-out/NAME
     #[arg(required = true, value_name = "RECORD")]
     records: Vec<PathBuf>,
     /// What is shown
@@ -155,6 +156,16 @@ pub fn run(args: &Args) -> Result<()> {
         let (simulations, svg) = force(args, layout)?;
         let designs = simulations.iter().map(|named| named.record.design.name.as_str());
         return args.figure.write(&svg, &usual(args.kind, designs));
+    }
+    if let [path] = &args.records[..]
+        && let Some((record, surface)) = records::surface(path)?
+    {
+        if args.kind != Kind::Polar || !args.conditions.is_empty() || args.quantity.is_some() {
+            let help = "give the folder alone, with --style and --output";
+            return Err(wrong(exit::USAGE, "the surface of all strains has one kind of plot, of all its rays", help));
+        }
+        let svg = surface_svg(&record, &surface, layout);
+        return args.figure.write(&svg, &format!("maille-out/boundary-{}", file_name(&record.design.name)));
     }
     let mut records = records::read(&args.records).map_err(|report| of_simulation(args, report))?;
     // Of all rows, not only of those that are shown.

@@ -81,7 +81,8 @@ impl Canvas {
         } else {
             ""
         };
-        let (x, y, size, text) = (short(at[0]), short(at[1]), short(size), escape(text));
+        let (x, y, text) = (short(at[0]), short(at[1]), with_subscripts(&escape(text), size));
+        let size = short(size);
         self.line_out(format!(
             "<text x=\"{x}\" y=\"{y}\" font-size=\"{size}\" fill=\"{color}\"{bold}{anchor}{halo}>{text}</text>"
         ));
@@ -136,6 +137,21 @@ fn escape(text: &str) -> String {
     let allowed = |c: &char| !c.is_control();
     let text: String = text.chars().map(|c| if c == '\n' || c == '\t' { ' ' } else { c }).filter(allowed).collect();
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
+
+/// Components of the strain with their letters below the line: `E_xx`.
+fn with_subscripts(text: &str, size: f64) -> String {
+    let (below, small) = (short(0.22 * size), short(0.75 * size));
+    let mut parts = text.split("E_");
+    let mut out = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (letters, rest) = part.split_at(part.len().min(2));
+        let _ = write!(
+            out,
+            "E<tspan font-size=\"{small}\" dy=\"{below}\">{letters}</tspan><tspan dy=\"-{below}\">{rest}</tspan>"
+        );
+    }
+    out
 }
 
 /// The title of an SVG, as it was given.
