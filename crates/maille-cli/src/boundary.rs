@@ -11,6 +11,7 @@ use crate::{
     progress::Progress,
 };
 use maille::{
+    design::Design,
     record::Status,
     survey::{
         CellChoice,
@@ -18,11 +19,15 @@ use maille::{
     },
 };
 use maille_io::{
-    boundary::{BoundaryHead, SurfaceFolder, boundary_csv, boundary_obj, boundary_ply},
-    plot::{boundary_svg, svg_to_png},
+    boundary::{
+        BoundaryHead, SURFACE, SURFACE_STATES, SurfaceFolder, SurfaceRecord, boundary_csv, boundary_obj, boundary_ply,
+        surface_states,
+    },
+    plot::{Layout, boundary_svg, svg_to_png},
 };
 use miette::{IntoDiagnostic, Result, WrapErr};
 use std::{
+    collections::{BTreeMap, btree_map::Entry},
     path::{Path, PathBuf},
     process::ExitCode,
     sync::{Mutex, atomic::Ordering},
@@ -34,8 +39,9 @@ use std::{
 /// Rays from the written lattice in the space of Green strains (E_xx, E_yy, E_xy, the tensor shear), each to the farthest
 /// certified state, with the proven outer bound; more rays where the surface bends. Writes a folder with boundary.csv (one row
 /// for each vertex: where the straight way is first stopped, and the farthest state), boundary.obj and boundary.ply (the mesh),
-/// boundary.svg and boundary.png (three sections and a view) and boundary.jsonl (every state). If it is interrupted, the same command
-/// continues it; with another --tolerance or more --vertices it keeps the rays that are there.
+/// boundary.svg and boundary.png (three sections and a view), boundary.jsonl (from which an interrupted run continues),
+/// surface.json and surface.jsonl (what it is of, and every state). `maille table`, `maille plot` and `maille verify` read the
+/// folder. The same command continues it; with another --tolerance or more --vertices it keeps the rays that are there.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -43,6 +49,8 @@ Examples:
   maille boundary european-4-in-1 --tolerance 3e-4 --vertices 20000   finer, from the rays that are there
   maille boundary 1.1 --tolerance 0.005 --vertices 500 --out results/surface-1.1
   maille boundary european-4-in-1 --cell auto --out folded   with folds in larger cells, takes minutes
+  maille plot european-4-in-1-boundary --style paper -o fig.pdf   its figure, for print
+  maille verify european-4-in-1-boundary   its states derived anew
 
 Exit codes: 0 every ray has a certified end, 5 some have none (0 with --allow-incomplete), 130 interrupted.")]
 pub struct Args {
@@ -117,53 +125,59 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if let Some(error) = failure {
         return Err(error.into());
     }
-    write(&out, &input, &surface, &options)?;
+    let record = write(&out, &input, &surface, &options)?;
     if !args.quiet {
-        summary(&out, &input, &surface, &options, now, begun.elapsed().as_secs_f64());
+        summary(&out, &record, &surface, &options, now, begun.elapsed().as_secs_f64());
     }
     let certified = |v: &BoundaryVertex| matches!(v.status, Status::Global | Status::Local);
     let incomplete = !surface.vertices.iter().all(certified);
     Ok(exit::ended(!surface.complete, args.run.code(incomplete), args.quiet))
 }
 
-fn write(out: &Path, input: &Input, surface: &Boundary, options: &BoundaryOptions) -> Result<()> {
-    let name = &input.design.name;
-    let title = format!("Attainable strains of {name}");
-    let caption = vec![format!(
-        "{} rays, {} triangles; {}. Beyond its bound no state of any cell lies on a ray.",
-        surface.vertices.len(),
-        surface.triangles.len(),
-        accuracy(surface, options),
-    )];
-    let svg = boundary_svg(surface, &title, caption);
+/// Writes the files; gives what the surface is of.
+fn write(out: &Path, input: &Input, surface: &Boundary, options: &BoundaryOptions) -> Result<SurfaceRecord> {
+    let title = surface_title(&input.design);
+    let table = boundary_csv(surface);
+    let states = surface_states(surface);
+    let mut cells: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for vertex in &surface.vertices {
+        if let Entry::Vacant(entry) = cells.entry(vertex.cell.to_string()) {
+            let model = input.compile(&input.design, vertex.cell)?;
+            entry.insert(model.elements.iter().map(|element| element.name.clone()).collect());
+        }
+    }
+    let record = SurfaceRecord::new(&input.design, options, surface, cells, [table.as_bytes(), states.as_bytes()]);
+    let svg = surface_svg(&record, surface, Layout::Beside);
     let png = svg_to_png(&svg, 2.0).into_diagnostic().wrap_err("cannot draw the figure")?;
-    output::write(&out.join("boundary.csv"), boundary_csv(surface).as_bytes())?;
+    let head = serde_json::to_string(&record).into_diagnostic().wrap_err("cannot write JSON")?;
+    output::write(&out.join("boundary.csv"), table.as_bytes())?;
+    output::write(&out.join(SURFACE_STATES), states.as_bytes())?;
     output::write(&out.join("boundary.obj"), boundary_obj(surface, &title).as_bytes())?;
     output::write(&out.join("boundary.ply"), boundary_ply(surface, &title).as_bytes())?;
     output::write(&out.join("boundary.svg"), svg.as_bytes())?;
-    output::write(&out.join("boundary.png"), &png)
+    output::write(&out.join("boundary.png"), &png)?;
+    output::write(&out.join(SURFACE), format!("{head}\n").as_bytes())?;
+    Ok(record)
 }
 
-/// How near the triangles are expected to be, and why not nearer.
-fn accuracy(surface: &Boundary, options: &BoundaryOptions) -> String {
-    let Boundary { arch, open, jumps, .. } = surface;
-    let asked = options.tolerance;
-    let not =
-        |why: String| format!("the tolerance of {asked:.1e} is not reached: {why}; worst expected distance {arch:.1e}");
-    let edges = |n: usize| counted(n, "edge");
-    match (surface.complete, *open, *jumps) {
-        (false, ..) => "the rays are not all solved".into(),
-        (_, 0, 0) => format!("the surface is expected within {arch:.1e} of the triangles (asked: {asked:.1e})"),
-        (_, 0, jumps) => not(format!("{} beyond it lie where the distance jumps from ray to ray", edges(jumps))),
-        (_, open, jumps) => {
-            not(format!("stopped at {} rays with {} beyond it", surface.vertices.len(), edges(open + jumps)))
-        }
-    }
+fn surface_title(design: &Design) -> String {
+    format!("Attainable strains of {}", design.name)
 }
 
-fn summary(out: &Path, input: &Input, surface: &Boundary, options: &BoundaryOptions, now: usize, wall_s: f64) {
+/// The figure of a surface; also of `maille plot`.
+pub fn surface_svg(record: &SurfaceRecord, surface: &Boundary, layout: Layout) -> String {
+    let caption = format!(
+        "{} rays, {} triangles; {}. Beyond its bound no state of any cell lies on a ray.",
+        surface.vertices.len(),
+        surface.triangles.len(),
+        record.accuracy(),
+    );
+    boundary_svg(surface, &surface_title(&record.design), vec![caption], layout)
+}
+
+fn summary(out: &Path, record: &SurfaceRecord, surface: &Boundary, options: &BoundaryOptions, now: usize, wall_s: f64) {
     let vertices = &surface.vertices;
-    say!("{}: {} rays, {} triangles", input.design.name, vertices.len(), surface.triangles.len());
+    say!("{}: {} rays, {} triangles", record.design.name, vertices.len(), surface.triangles.len());
     for (k, name) in ["exx", "eyy", "exy"].into_iter().enumerate() {
         let ends = vertices.iter().filter_map(|v| Some(v.point(v.distance?)[k]));
         let (least, most) = ends.fold((0.0f64, 0.0f64), |(low, high), x| (low.min(x), high.max(x)));
@@ -182,7 +196,7 @@ fn summary(out: &Path, input: &Input, surface: &Boundary, options: &BoundaryOpti
     if unstable > 0 && options.cells != CellChoice::Auto {
         say!("  {unstable} rays end where a wave through the sheet is unstable: --cell auto continues in larger cells");
     }
-    say!("  {}", accuracy(surface, options));
+    say!("  {}", record.accuracy());
     if surface.complete && surface.open > 0 {
         say!("  the same command with more --vertices continues from here");
     }

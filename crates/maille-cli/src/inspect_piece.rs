@@ -69,7 +69,7 @@ pub fn other_states(input: &Input, mm: f64, size: [f64; 2], cell: OfCell) -> Res
     let sheet = input.sheet(Cell::PRIMITIVE.into())?;
     let a1 = sheet.model().start.a1;
     let across = Question::stretch_along(a1.y.atan2(a1.x).to_degrees() + 90.0);
-    let cancel = interrupt::flag()?;
+    let cancel = interrupt::flag(false)?;
     let locked = pool(None)?.install(|| sheet.answer_until(&across, &cancel)).map_err(|e| crate::exit::refused(&e))?;
     let found = [("roomiest", &roomiest.found, roomiest.model()), ("locked across the rows", &locked, sheet.model())];
     let pieces = found.into_iter().filter(|(_, answer, _)| answer.value.is_some()).map(|(state, answer, model)| {

@@ -1,21 +1,21 @@
 //! `maille plot`: records compared in a figure.
 
 use crate::{
+    boundary::surface_svg,
     exit::{self, wrong},
+    figure::FigureArgs,
     input::file_name,
-    numbers::positive,
-    output::{self, say},
     records, table,
 };
 use maille_io::{
     Quantity,
     plot::{
         Cost, Layout, NamedSimulation, OfStep, PolarPlot, cost_svg, difference_svg, force_svg, parameter_words,
-        poisson_svg, polar_svg, run_svg, svg_to_png, with_palette,
+        poisson_svg, polar_svg, radius_svg, run_svg,
     },
     record::{NamedRecord, Reference, ReferenceCell, SIMULATION, open_simulation},
 };
-use miette::{IntoDiagnostic, Result, WrapErr};
+use miette::Result;
 use std::path::{Path, PathBuf};
 
 /// Records in one figure: limits against direction, their spread, what they cost; force against stretch of simulations
@@ -29,17 +29,21 @@ Examples:
   maille plot 1.1 1.2 --where l2=0                     two records of maille-out in one
   maille plot exact-3.1 energy-3.1 --kind steps -o steps.png
   maille plot 1.1 -o small.png --scale 0.75 --palette   645 pixels wide, in few bytes
+  maille plot 1.1 --style paper -o fig1.pdf             one column of a journal, 89 mm wide, letters of 7 points
+  maille plot 1.1 --style paper --width 183mm --font-size 8 -o fig1.pdf    two columns
   maille plot r-0.05 r-0.1 r-0.2 --kind difference --quantity l1 -o spread.svg -o spread.png
   maille plot 1.1-free --kind poisson                  of `maille characterize 1.1 --lateral free --out maille-out/1.1-free`
+  maille plot r-0.05 r-0.1 r-0.2 --kind radius --where 'direction=0|45,l2=0'    limits against the minor radius
   maille plot maille-out/1.1 --kind times --where 'direction<=90'
   maille plot 1.1 3.1 --reference largest-cell --where l2=0    each from its largest cell: comparable, whatever their files start from
   maille plot 1.1-simulate --kind force                of `maille simulate 1.1 --fix left --pull right=8,0,0 --steps 40`
 
 Kinds: polar shows limits against the direction of the pull, 0\u{b0} right, counter-clockwise; difference the largest \
-less the smallest limit of all directions, against l2; poisson the ratio of width to length where the width was free; steps and times the solver's iterations and the wall time of \
+less the smallest limit of all directions, against l2; radius \
+limits against the minor radius, a curve for each design, direction and l2; poisson the ratio of width to length where the width was free; steps and times the solver's iterations and the wall time of \
 each limit; force how hard a finite sheet of `maille simulate` is pulled, against its stretch. --where takes the conditions of `maille table`.")]
 pub struct Args {
-    /// Folders of records, for force those of simulations; NAME stands for maille-out/NAME
+    /// Folders of records, for force those of simulations, or the folder of one surface; NAME stands for maille-out/NAME
     #[arg(required = true, value_name = "RECORD")]
     records: Vec<PathBuf>,
     /// What is shown
@@ -55,17 +59,8 @@ pub struct Args {
     /// Only rows that meet these conditions, as l2=0; may be given several times
     #[arg(long = "where", value_name = "CONDITIONS", value_parser = table::conditions, allow_hyphen_values = true)]
     conditions: Vec<table::Conditions>,
-    /// The file, .svg or .png; may be given several times [default: maille-out/KIND-DESIGNS.svg and .png]
-    #[arg(long, short, value_name = "FILE")]
-    output: Vec<PathBuf>,
     #[command(flatten)]
-    replace: output::Replace,
-    /// Pixels of a PNG for each unit of its SVG, most of which are 860 units wide
-    #[arg(long, default_value = "2", value_parser = positive)]
-    scale: f64,
-    /// A PNG of 256 colours, chosen for the figure: a third of the bytes, for web pages
-    #[arg(long)]
-    palette: bool,
+    figure: FigureArgs,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -74,6 +69,8 @@ enum Kind {
     Polar,
     /// Largest less smallest limit of all directions, against l2
     Difference,
+    /// Limits against the minor radius of the rings
+    Radius,
     /// Kinematic Poisson ratio -ln(1+l2)/ln(1+l1) where the width was free
     Poisson,
     /// Iterations of the solver
@@ -132,26 +129,20 @@ impl From<MeasuredFrom> for Reference {
     }
 }
 
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Format {
-    Svg,
-    Png,
-}
-
 /// More curves than this are hard to tell apart.
 const MANY: usize = 12;
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
-    if args.quantity.is_some() && !matches!(args.kind, Kind::Polar | Kind::Difference) {
+    if args.quantity.is_some() && !matches!(args.kind, Kind::Polar | Kind::Difference | Kind::Radius) {
         return Err(wrong(
             exit::USAGE,
-            "only polar plots and differences have a --quantity",
-            "leave --quantity out, or choose --kind polar or difference",
+            "only plots of limits have a --quantity",
+            "leave --quantity out, or choose --kind polar, difference or radius",
         ));
     }
-    let outputs: Vec<(&Path, Format)> =
-        args.output.iter().map(|file| Ok((file.as_path(), format(file)?))).collect::<Result<_>>()?;
+    args.figure.check()?;
+    let layout = args.figure.layout()?;
     if args.reference != MeasuredFrom::Start
         && (args.kind != Kind::Polar || matches!(args.quantity, Some(Shown::Lambda1)))
     {
@@ -162,9 +153,19 @@ pub fn run(args: &Args) -> Result<()> {
         ));
     }
     if args.kind == Kind::Force {
-        let (simulations, svg) = force(args)?;
+        let (simulations, svg) = force(args, layout)?;
         let designs = simulations.iter().map(|named| named.record.design.name.as_str());
-        return write(args, &svg, outputs, &usual(args.kind, designs));
+        return args.figure.write(&svg, &usual(args.kind, designs));
+    }
+    if let [path] = &args.records[..]
+        && let Some((record, surface)) = records::surface(path)?
+    {
+        if args.kind != Kind::Polar || !args.conditions.is_empty() || args.quantity.is_some() {
+            let help = "give the folder alone, with --style and --output";
+            return Err(wrong(exit::USAGE, "the surface of all strains has one kind of plot, of all its rays", help));
+        }
+        let svg = surface_svg(&record, &surface, layout);
+        return args.figure.write(&svg, &format!("maille-out/boundary-{}", file_name(&record.design.name)));
     }
     let mut records = records::read(&args.records).map_err(|report| of_simulation(args, report))?;
     // Of all rows, not only of those that are shown.
@@ -189,39 +190,13 @@ pub fn run(args: &Args) -> Result<()> {
     for (named, cell) in records.iter_mut().zip(&cells) {
         named.record.rows.iter_mut().for_each(|row| *row = cell.measured(row));
     }
-    let svg = svg(args, &records, &cells)?;
+    let svg = svg(args, &records, &cells, layout)?;
     let designs = records.iter().map(|named| named.record.run.design.name.as_str());
-    write(args, &svg, outputs, &usual(args.kind, designs))
-}
-
-/// Writes the plot as each of `outputs`; if there is none, as `usual` with either ending.
-fn write(args: &Args, svg: &str, outputs: Vec<(&Path, Format)>, usual: &str) -> Result<()> {
-    let default: Vec<(PathBuf, Format)> = match outputs.is_empty() {
-        true => [("svg", Format::Svg), ("png", Format::Png)]
-            .map(|(ending, f)| (format!("{usual}.{ending}").into(), f))
-            .into(),
-        false => Vec::new(),
-    };
-    let outputs: Vec<_> =
-        outputs.into_iter().chain(default.iter().map(|(file, format)| (file.as_path(), *format))).collect();
-    outputs.iter().try_for_each(|(file, _)| args.replace.check(file))?;
-    for (file, format) in outputs {
-        match format {
-            Format::Svg => output::write(file, svg.as_bytes())?,
-            Format::Png => {
-                let png = svg_to_png(svg, args.scale as f32)
-                    .and_then(|png| if args.palette { with_palette(&png) } else { Ok(png) });
-                let png = png.into_diagnostic().wrap_err("cannot draw the plot")?;
-                output::write(file, &png)?;
-            }
-        }
-        say!("{}", file.display());
-    }
-    Ok(())
+    args.figure.write(&svg, &usual(args.kind, designs))
 }
 
 /// The simulations that are named, and their plot.
-fn force(args: &Args) -> Result<(Vec<NamedSimulation>, String)> {
+fn force(args: &Args, layout: Layout) -> Result<(Vec<NamedSimulation>, String)> {
     if !args.conditions.is_empty() {
         return Err(wrong(exit::USAGE, "a simulation has no rows of limits for --where", "leave --where out"));
     }
@@ -250,7 +225,7 @@ fn force(args: &Args) -> Result<(Vec<NamedSimulation>, String)> {
         })?;
         simulations.push(NamedSimulation { name, record: files.record, forces });
     }
-    let svg = force_svg(&simulations, Layout::Beside).ok_or_else(|| {
+    let svg = force_svg(&simulations, layout).ok_or_else(|| {
         let help = "hold an edge and pull the one opposite to it, as --fix left --pull right=8,0,0";
         wrong(exit::USAGE, "no frame of these simulations has a stretch along a pull", help)
     })?;
@@ -286,7 +261,7 @@ fn reference_cells(from: MeasuredFrom, records: &[NamedRecord]) -> Result<Vec<Re
     }
 }
 
-fn svg(args: &Args, records: &[NamedRecord], cells: &[ReferenceCell]) -> Result<String> {
+fn svg(args: &Args, records: &[NamedRecord], cells: &[ReferenceCell], layout: Layout) -> Result<String> {
     let l2 = |named: &NamedRecord| {
         let mut l2: Vec<u64> = named.record.rows.iter().map(|row| row.l2.to_bits()).collect();
         l2.sort_unstable();
@@ -294,7 +269,7 @@ fn svg(args: &Args, records: &[NamedRecord], cells: &[ReferenceCell]) -> Result<
         l2.len()
     };
     let curves: usize = records.iter().map(l2).sum();
-    if args.kind != Kind::Difference && records.len() > 1 && curves > MANY {
+    if !matches!(args.kind, Kind::Difference | Kind::Radius) && records.len() > 1 && curves > MANY {
         eprintln!("note: {curves} curves are many for one figure; --where l2=0 shows those of one l2");
     }
     let measured = |plot: PolarPlot| match cells {
@@ -306,24 +281,30 @@ fn svg(args: &Args, records: &[NamedRecord], cells: &[ReferenceCell]) -> Result<
             let (run, rows) = (&one.record.run, &one.record.rows);
             let quantity = args.quantity.map_or_else(Quantity::default, Into::into);
             let plot = PolarPlot::from_rows(&run.design, rows, quantity, &parameter_words(run));
-            polar_svg(&measured(plot), Layout::Beside)
+            polar_svg(&measured(plot), layout)
         }
         (Kind::Polar, several) => {
             let quantity = args.quantity.map_or_else(Quantity::default, Into::into);
-            polar_svg(&measured(PolarPlot::from_records(several, quantity)), Layout::Beside)
+            polar_svg(&measured(PolarPlot::from_records(several, quantity)), layout)
         }
         (Kind::Difference, records) => {
-            difference_svg(records, args.quantity.map_or(Quantity::Lambda1, Into::into), Layout::Beside)
+            difference_svg(records, args.quantity.map_or(Quantity::Lambda1, Into::into), layout)
         }
-        (Kind::Poisson, records) => poisson_svg(records, Layout::Beside).ok_or_else(|| {
+        (Kind::Radius, records) => {
+            radius_svg(records, args.quantity.map_or_else(Quantity::default, Into::into), layout).ok_or_else(|| {
+                let help = "name records of one design at several --minor-radius, or of the whole of a `maille sweep`";
+                wrong(exit::USAGE, "no two of these limits differ in the minor radius alone", help)
+            })?
+        }
+        (Kind::Poisson, records) => poisson_svg(records, layout).ok_or_else(|| {
             let help = "`maille characterize DESIGN --lateral free` leaves the width to the sheet";
             wrong(exit::USAGE, "no limit of these records has a free width", help)
         })?,
-        (Kind::Steps, records) => cost_svg(records, Cost::Steps, Layout::Beside),
-        (Kind::Times, records) => cost_svg(records, Cost::WallTime, Layout::Beside),
+        (Kind::Steps, records) => cost_svg(records, Cost::Steps, layout),
+        (Kind::Times, records) => cost_svg(records, Cost::WallTime, layout),
         (Kind::StepTimes | Kind::StepSizes, records) => {
             let shown = if args.kind == Kind::StepTimes { OfStep::Time } else { OfStep::Size };
-            run_svg(records, shown, Layout::Beside).ok_or_else(|| {
+            run_svg(records, shown, layout).ok_or_else(|| {
                 let help = "`maille characterize DESIGN --method energy --steps` keeps them";
                 wrong(exit::USAGE, "these records have no steps", help)
             })?
@@ -332,24 +313,12 @@ fn svg(args: &Args, records: &[NamedRecord], cells: &[ReferenceCell]) -> Result<
     })
 }
 
-fn format(file: &Path) -> Result<Format> {
-    let ending = file.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-    match ending.as_str() {
-        "svg" => Ok(Format::Svg),
-        "png" => Ok(Format::Png),
-        _ => Err(wrong(
-            exit::USAGE,
-            format!("the ending of {} names no format of a plot", file.display()),
-            "call it .svg or .png",
-        )),
-    }
-}
-
 /// `maille-out/polar-1.1-3.1`, to which an ending is added.
 fn usual<'a>(kind: Kind, designs: impl Iterator<Item = &'a str>) -> String {
     let kind = match kind {
         Kind::Polar => "polar",
         Kind::Difference => "difference",
+        Kind::Radius => "radius",
         Kind::Poisson => "poisson",
         Kind::Steps => "steps",
         Kind::Times => "times",

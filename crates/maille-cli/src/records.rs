@@ -4,7 +4,11 @@ use crate::{
     exit::{self, wrong},
     source::read_record,
 };
-use maille_io::record::NamedRecord;
+use maille::survey::surface::Boundary;
+use maille_io::{
+    boundary::{SURFACE, SurfaceRecord, open_surface},
+    record::NamedRecord,
+};
 use miette::Result;
 use std::path::{Path, PathBuf};
 
@@ -17,6 +21,22 @@ pub fn folder(named: &Path) -> PathBuf {
         usual
     } else {
         named.to_owned()
+    }
+}
+
+/// The surface of all strains that the folder holds, if it holds one.
+pub fn surface(named: &Path) -> Result<Option<(SurfaceRecord, Boundary)>> {
+    let folder = folder(named);
+    if folder.join(SURFACE).is_file() {
+        return Ok(Some(open_surface(&folder)?));
+    }
+    match folder.join("boundary.jsonl").is_file() {
+        true => {
+            let problem = format!("{} holds a surface without {SURFACE}", folder.display());
+            let help = "its run was killed, or is older than this file: the same `maille boundary` command writes it";
+            Err(wrong(exit::RECORD, problem, help))
+        }
+        false => Ok(None),
     }
 }
 

@@ -13,7 +13,8 @@ use maille_io::{
     Tile,
     plot::with_palette,
     render::{
-        Background, ColorBy, Extent, Forces, Picture, RenderError, RenderOptions, Subject, View, film, render_frames,
+        Background, Caption, ColorBy, Extent, Forces, Picture, RenderError, RenderOptions, Subject, View, film,
+        render_frames,
     },
 };
 use miette::{IntoDiagnostic, Report, Result, WrapErr};
@@ -44,7 +45,8 @@ Examples:
 Colours: elements that differ by a translation alone share one. With --color load, from yellow to violet by the sum of
 the contact forces on an element; grey carries none.
 
-Arrows: at each contact, the force on either ring, from where the wires touch, seen through the rings.")]
+Arrows: at each contact, the force on either ring, from where the wires touch, seen through the rings. Where there are
+many, those of one cell; --forces all shows them in the whole patch. The arrow D above is along the pull.")]
 pub struct Args {
     #[command(flatten)]
     source: SourceArgs,
@@ -73,6 +75,9 @@ pub struct Args {
     /// Contact forces of a locked state [default: arrows where the state has forces]
     #[arg(long, value_enum)]
     forces: Option<ForcesArg>,
+    /// Nothing above the sheet [default: what limit it is, with an arrow D along the pull]
+    #[arg(long)]
+    no_caption: bool,
     /// Outline one cell, with a1 and a2
     #[arg(long)]
     cell: bool,
@@ -120,7 +125,10 @@ enum ColorArg {
 
 #[derive(Clone, Copy, clap::ValueEnum)]
 enum ForcesArg {
+    /// As arrows; on a dense weave those of one cell
     Arrows,
+    /// As arrows in the whole patch
+    All,
     None,
 }
 
@@ -208,7 +216,10 @@ pub fn run(args: &Args) -> Result<()> {
     if let Some(caution) = source.caution().filter(|_| !args.quiet) {
         eprintln!("note: {caution}");
     }
-    let options = options(args, size, extent(args, &source, size, piece)?, !contacts.is_empty());
+    let options = RenderOptions {
+        caption: caption(&source).filter(|_| !args.no_caption && args.frames.is_none()),
+        ..options(args, size, extent(args, &source, size, piece)?, !contacts.is_empty())
+    };
     let frames = source.frames(args.frames);
     let unit = source.design.unit.as_deref();
     let subjects: Vec<Subject<'_>> =
@@ -249,6 +260,7 @@ fn options(args: &Args, size: [u32; 2], extent: Extent, forces: bool) -> RenderO
         },
         forces: match args.forces {
             Some(ForcesArg::Arrows) => Forces::Arrows,
+            Some(ForcesArg::All) => Forces::AllArrows,
             None if forces && args.frames.is_none() => Forces::Arrows,
             Some(ForcesArg::None) | None => Forces::None,
         },
@@ -276,6 +288,17 @@ fn draw(args: &Args, subjects: &[Subject<'_>], options: &RenderOptions) -> Resul
     let all = pool.install(|| render_frames(subjects, options, told, |picture| pictures.push(picture)));
     progress.finish();
     Ok(all.map(|()| pictures))
+}
+
+/// What limit a picture shows.
+fn caption(source: &Source) -> Option<Caption> {
+    let (state, _) = source.locked.as_ref()?;
+    let (sin, cos) = state.direction_deg.to_radians().sin_cos();
+    let f = state.deformation_gradient;
+    let strain = |[x, y]: [f64; 2]| x * (f[0][0] * x + f[0][1] * y) + y * (f[1][0] * x + f[1][1] * y) - 1.0;
+    let (l1, l2) = (strain([cos, sin]), strain([-sin, cos]));
+    let text = format!("{}, pulled along {}°, l₂ = {l2:.4}, l₁ = {l1:.4}", source.design.name, state.direction_deg);
+    Some(Caption { text: text.replace("= -", "= −"), pull_deg: Some(state.direction_deg) })
 }
 
 /// The file to write, or `-`.

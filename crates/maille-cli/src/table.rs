@@ -4,7 +4,9 @@ use crate::{
     exit::{self, wrong},
     output, records,
 };
+use maille::survey::surface::Boundary;
 use maille_io::{
+    boundary::boundary_csv,
     record::NamedRecord,
     table::{Condition, Extent, Field, SortKey, Table, TableError},
 };
@@ -32,7 +34,7 @@ Conditions: = != < <= > >=, divided by commas, all must hold. a|b is either, non
 comma stands in double quotes: 'cell=\"1,0;-1,2\"'. Numbers are equal if nine digits are. direction is short for \
 direction_deg, r for minor_radius; record is the folder that a row comes from.")]
 pub struct Args {
-    /// Folders of records; NAME stands for maille-out/NAME
+    /// Folders of records, or the folder of one surface; NAME stands for maille-out/NAME
     #[arg(required = true, value_name = "RECORD")]
     records: Vec<PathBuf>,
     /// Only rows that meet these conditions; may be given several times
@@ -103,8 +105,14 @@ pub fn run(args: &Args) -> Result<()> {
         return Err(wrong(exit::USAGE, "Parquet is not for the terminal", "name a file, as -o limits.parquet"));
     }
     file.into_iter().try_for_each(|file| args.replace.check(file))?;
-    let records = records::read(&args.records)?;
-    let bytes = written(args, &records, format)?;
+    let bytes = match &args.records[..] {
+        [path] => records::surface(path)?.map(|(_, surface)| of_surface(args, &surface, format)).transpose()?,
+        _ => None,
+    };
+    let bytes = match bytes {
+        Some(bytes) => bytes,
+        None => written(args, &records::read(&args.records)?, format)?,
+    };
     match file {
         Some(file) => {
             output::write(file, &bytes)?;
@@ -143,6 +151,54 @@ fn written(args: &Args, records: &[NamedRecord], format: Format) -> Result<Vec<u
             bytes
         }
     })
+}
+
+/// The vertices of a surface: the columns of its `boundary.csv`, rounded in text.
+fn of_surface(args: &Args, surface: &Boundary, format: Format) -> Result<Vec<u8>> {
+    if !args.conditions.is_empty() || args.sort.is_some() || args.columns.is_some() || format == Format::Parquet {
+        let help = "--format csv or json has all of its columns and rows, for other programs to choose from";
+        return Err(wrong(
+            exit::USAGE,
+            "the table of a surface is not chosen from, sorted or written as Parquet",
+            help,
+        ));
+    }
+    let csv = boundary_csv(surface);
+    let rows = args.rows.unwrap_or(usize::MAX);
+    let kept: Vec<Vec<&str>> = csv.lines().take(rows.saturating_add(1)).map(|line| line.split(',').collect()).collect();
+    let text = match (format, &kept[..]) {
+        (Format::Text, kept) => aligned(kept),
+        (Format::Json, [names, rows @ ..]) => {
+            let value = |text: &&str| match (text.is_empty(), text.parse::<f64>()) {
+                (true, _) => serde_json::Value::Null,
+                (_, Ok(number)) => number.into(),
+                _ => (*text).into(),
+            };
+            let row = |row: &Vec<&str>| names.iter().map(|n| n.to_string()).zip(row.iter().map(value)).collect();
+            let rows: Vec<serde_json::Map<String, serde_json::Value>> = rows.iter().map(row).collect();
+            format!("{}\n", serde_json::json!({ "columns": names, "rows": rows }))
+        }
+        (_, kept) => kept.iter().map(|row| row.join(",") + "\n").collect(),
+    };
+    Ok(text.into_bytes())
+}
+
+/// Columns as wide as their longest text, numbers to six decimals.
+fn aligned(rows: &[Vec<&str>]) -> String {
+    let rounded = |text: &&str| match text.parse::<f64>() {
+        Ok(number) if text.contains('.') => format!("{number:.6}"),
+        _ => (*text).to_owned(),
+    };
+    let texts: Vec<Vec<String>> = rows.iter().map(|row| row.iter().map(rounded).collect()).collect();
+    let columns = texts.first().map_or(0, Vec::len);
+    let width =
+        |k: usize| texts.iter().filter_map(|row| row.get(k)).map(|text| text.chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..columns).map(width).collect();
+    let line = |row: &Vec<String>| {
+        let cells = row.iter().zip(&widths).map(|(text, width)| format!("{text:>width$}"));
+        cells.collect::<Vec<_>>().join("  ") + "\n"
+    };
+    texts.iter().map(line).collect()
 }
 
 fn format_of(file: &Path) -> Result<Format> {

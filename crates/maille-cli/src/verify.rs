@@ -8,6 +8,7 @@ use crate::{
     remedy::DAMAGED,
     source::is_record,
     verify_proof::{self, VerifiedProof},
+    verify_surface::{self, VerifiedSurface, is_surface},
 };
 use maille_verify::{Check, Finding, RowReport, Texts, Verdict, Verifier};
 use miette::{IntoDiagnostic, Result, WrapErr};
@@ -33,6 +34,7 @@ Examples:
   maille verify maille-out/*              many, with one line for each check
   maille verify 1.1 --rows                a line for each row
   maille verify 1.1 --json
+  maille verify 1.1-boundary              a surface of `maille boundary`: each vertex
   maille verify maille-out/2-0deg.proof   a proof that `maille prove` wrote
 
 What a row claims is derived, or false, or open. Not judged: what the search did (n_starts, n_distinct, better_chance, iterations, runs, wall_s), and
@@ -40,7 +42,7 @@ that rings never crossed on the way. docs/reliability.md has the method.
 
 Exit codes: 0 all certified rows are proved, 4 something is false or unreadable, 5 something could not be proved.")]
 pub struct Args {
-    /// Folders of records, NAME stands for maille-out/NAME; or files of `maille prove`
+    /// Folders of records or of surfaces, NAME stands for maille-out/NAME; or files of `maille prove`
     #[arg(required = true, value_name = "RECORD")]
     records: Vec<PathBuf>,
     /// A line for each row, not only for those that are not proved
@@ -75,20 +77,25 @@ const NAMED: usize = 20;
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let pool = map::pool(args.threads)?;
-    let (mut all, mut proofs) = (Vec::new(), Vec::new());
+    let (mut all, mut proofs, mut surfaces) = (Vec::new(), Vec::new(), Vec::new());
     for named in &args.records {
         match verify_proof::is_proof(named) {
             true => proofs.push(verify_proof::verified(named, &pool, args.quiet)?),
+            false if is_surface(named) => surfaces.push(verify_surface::verified(named, &pool, args.quiet)?),
             false => all.push(verified(&records::folder(named), &pool, args.quiet)?),
         }
     }
     if args.json {
-        output::print_json(&serde_json::json!({ "records": all, "proofs": proofs }))?;
+        output::print_json(&serde_json::json!({ "records": all, "proofs": proofs, "surfaces": surfaces }))?;
     } else {
         all.iter().for_each(|record| tell(record, args.rows));
+        surfaces.iter().for_each(|surface| surface.tell(args.rows));
         proofs.iter().for_each(VerifiedProof::tell);
     }
-    let codes = || all.iter().map(Verified::code).chain(proofs.iter().map(VerifiedProof::code));
+    let codes = || {
+        let of_records = all.iter().map(Verified::code).chain(surfaces.iter().map(VerifiedSurface::code));
+        of_records.chain(proofs.iter().map(VerifiedProof::code))
+    };
     let worst = codes().max().unwrap_or(exit::DONE);
     let refuted = codes().any(|code| code == exit::RECORD);
     Ok(ExitCode::from(if refuted { exit::RECORD } else { worst }))
@@ -130,7 +137,8 @@ fn verified(folder: &Path, pool: &rayon::ThreadPool, quiet: bool) -> Result<Veri
     Ok(out)
 }
 
-fn text(folder: &Path, name: &str) -> Result<Option<String>> {
+/// A file of a folder, if it is there.
+pub fn text(folder: &Path, name: &str) -> Result<Option<String>> {
     let path = folder.join(name);
     match fs::read_to_string(&path) {
         Ok(text) => Ok(Some(text)),
@@ -166,17 +174,7 @@ fn tell(record: &Verified, all: bool) {
     for finding in &record.files {
         output::say!("  {:<12} {}", "files", marked(finding));
     }
-    for check in Check::ALL.into_iter().filter(|check| *check != Check::Files) {
-        let findings: Vec<&Finding> = record.rows.iter().filter_map(|row| row.finding(check)).collect();
-        if findings.is_empty() {
-            continue;
-        }
-        let verdicts = [(Verdict::Proved, "proved"), (Verdict::Open, "could not be shown"), (Verdict::False, "false")];
-        let count = |verdict: Verdict| findings.iter().filter(|f| f.verdict == verdict).count();
-        let words = verdicts.iter().map(|(verdict, word)| (count(*verdict), word)).filter(|(n, _)| *n > 0);
-        let words: Vec<String> = words.map(|(n, word)| format!("{n} {word}")).collect();
-        output::say!("  {:<12} {}{}", check.name(), words.join(", "), extreme(check, &findings));
-    }
+    say_checks(record.rows.iter().map(|row| &row.findings[..]));
     let told = |row: &&RowReport| all || row.findings.iter().any(|f| f.verdict >= Verdict::Open);
     let rows: Vec<&RowReport> = record.rows.iter().filter(told).collect();
     let most = if all { rows.len() } else { NAMED };
@@ -191,7 +189,24 @@ fn tell(record: &Verified, all: bool) {
     }
 }
 
-fn marked(finding: &Finding) -> String {
+/// A line for each check of all rows.
+pub fn say_checks<'a>(rows: impl Iterator<Item = &'a [Finding]> + Clone) {
+    for check in Check::ALL.into_iter().filter(|check| *check != Check::Files) {
+        let of = |findings: &'a [Finding]| findings.iter().find(|finding| finding.check == check);
+        let findings: Vec<&Finding> = rows.clone().filter_map(of).collect();
+        if findings.is_empty() {
+            continue;
+        }
+        let verdicts = [(Verdict::Proved, "proved"), (Verdict::Open, "could not be shown"), (Verdict::False, "false")];
+        let count = |verdict: Verdict| findings.iter().filter(|f| f.verdict == verdict).count();
+        let words = verdicts.iter().map(|(verdict, word)| (count(*verdict), word)).filter(|(n, _)| *n > 0);
+        let words: Vec<String> = words.map(|(n, word)| format!("{n} {word}")).collect();
+        output::say!("  {:<12} {}{}", check.name(), words.join(", "), extreme(check, &findings));
+    }
+}
+
+/// A finding in words.
+pub fn marked(finding: &Finding) -> String {
     let mark = match finding.verdict {
         Verdict::Proved | Verdict::Consistent => "",
         Verdict::Open => "could not be shown: ",

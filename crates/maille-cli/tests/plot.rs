@@ -41,7 +41,7 @@ fn every_kind_is_drawn_from_records() {
         assert_eq!(code, Some(2), "{err}");
         err
     };
-    assert!(wrong(&["plot", "a", "-o", "x.pdf"]).contains(".svg or .png"));
+    assert!(wrong(&["plot", "a", "-o", "x.eps"]).contains(".svg, .pdf or .png"));
     assert!(wrong(&["plot", "a", "--where", "l2=7"]).contains("no row is left"));
     assert!(wrong(&["plot", "a", "--kind", "steps", "--quantity", "l1"]).contains("have a --quantity"));
 }
@@ -108,4 +108,78 @@ fn forces_are_drawn_from_simulations() {
     assert!(std::fs::read(folder.join("maille-out/force-1.1.png")).unwrap().starts_with(b"\x89PNG"));
     done(folder, &["plot", "1.1-simulate", "maille-out/1.2-simulate/forces.csv", "--kind", "force", "-o", "two.svg"]);
     assert!(text("two.svg").contains(">1.1 and 1.2<") && text("two.svg").contains(">stops at 1.440<"));
+}
+
+/// The folder of a surface is a record: drawn for print, tabulated, derived anew; an edit is seen.
+#[test]
+fn a_surface_is_plotted_tabulated_and_verified() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let surface = ["boundary", "european-4-in-1", "--vertices", "162", "--starts", "1", "--quiet", "--out", "s"];
+    let (_, _, err) = maille(folder, &surface);
+    let text = |file: &str| std::fs::read_to_string(folder.join(file)).unwrap();
+    assert!(folder.join("s/surface.json").is_file(), "{err}");
+    done(folder, &["plot", "s", "--style", "paper", "-o", "s.svg", "-o", "s.pdf"]);
+    assert!(text("s.svg").contains("width=\"89mm\"") && text("s.svg").contains("Attainable strains"));
+    assert!(std::fs::read(folder.join("s.pdf")).unwrap().starts_with(b"%PDF"));
+    let table = done(folder, &["table", "s", "--rows", "3"]);
+    assert!(table.lines().count() == 4 && table.contains("distance"), "{table}");
+    assert_eq!(done(folder, &["table", "s", "--format", "csv"]), text("s/boundary.csv"));
+
+    // Of what is derived nothing is false, and nearly all is proved.
+    let (code, out, err) = maille(folder, &["verify", "s", "--json", "--quiet"]);
+    let found: serde_json::Value = serde_json::from_str(&out).unwrap();
+    let found = &found["surfaces"][0];
+    let (proved, certified) = (found["proved"].as_u64().unwrap(), found["certified"].as_u64().unwrap());
+    assert!(
+        matches!(code, Some(0 | 5)) && certified > 100 && 10 * proved > 8 * certified,
+        "{proved} of {certified} {err}"
+    );
+    // A ring moved by a tenth of R: its state, whose checksum is made right again, is refuted.
+    let (states, head) = (text("s/surface.jsonl"), text("s/surface.json"));
+    let first = states.lines().next().unwrap();
+    let mut vertex: serde_json::Value = serde_json::from_str(first).unwrap();
+    let x = vertex["poses"][0][0].as_f64().unwrap();
+    vertex["poses"][0][0] = (x + 0.1).into();
+    let edited = states.replacen(first, &vertex.to_string(), 1);
+    std::fs::write(folder.join("s/surface.jsonl"), &edited).unwrap();
+    let (code, out, _) = maille(folder, &["verify", "s", "--quiet"]);
+    assert!(code == Some(4) && out.contains("surface.jsonl was edited"), "{out}");
+    let sum = |text: &str| -> String {
+        use sha2::Digest;
+        sha2::Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
+    };
+    std::fs::write(folder.join("s/surface.json"), head.replace(&sum(&states), &sum(&edited))).unwrap();
+    let (code, out, _) = maille(folder, &["verify", "s", "--quiet"]);
+    assert!(code == Some(4) && !out.contains("was edited") && out.contains("FALSE: rings"), "{out}");
+}
+
+/// Limits against the radius, of the records of a study; with one radius there is nothing to draw.
+#[test]
+fn a_radius_study_is_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    for radius in ["0.05", "0.1"] {
+        let map = [
+            "characterize",
+            "1.1",
+            "--minor-radius",
+            radius,
+            "--directions",
+            "0,45",
+            "--l2",
+            "0",
+            "--quiet",
+            "--out",
+            radius,
+        ];
+        done(folder, &map);
+    }
+    done(folder, &["plot", "0.1", "0.05", "--kind", "radius", "-o", "r.svg", "-o", "r.pdf"]);
+    let svg = std::fs::read_to_string(folder.join("r.svg")).unwrap();
+    assert!(svg.contains(">45°<") && svg.contains("Limit 1 + l₁ against the minor radius"), "{svg}");
+    let (code, _, err) = maille(folder, &["plot", "0.1", "--kind", "radius"]);
+    assert!(code == Some(2) && err.contains("differ in the minor radius"), "{err}");
+    let (code, _, err) = maille(folder, &["plot", "0.1", "--width", "183mm"]);
+    assert!(code == Some(2) && err.contains("--style paper"), "{err}");
 }

@@ -42,7 +42,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         let mut plot = PolarPlot::from_rows(&design, &rows, quantity, &parameters);
         if name == "one" {
-            let dense: Vec<_> = (0..180).map(|d| (f64::from(d), bound(f64::from(d), 0.0).map(|b| b + 0.03))).collect();
+            let bound = |d: f64| (d, bound(d, 0.0).map(|b| b + 0.03), Status::Local);
+            let dense: Vec<_> = (0..180).map(|d| bound(f64::from(d))).collect();
             plot.curves.push(Curve::new(0, 0.0, CurveKind::Bound, &dense));
         }
         let svg = polar_svg(&plot, Layout::Beside);

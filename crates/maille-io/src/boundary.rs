@@ -2,8 +2,10 @@
 //!
 //! Meshes have E_xx, E_yy and E_xy as coordinates. The colours of the PLY file tell the status.
 
+mod folder;
 mod journal;
 
+pub use self::folder::{SURFACE, SURFACE_STATES, SurfaceRecord, open_surface, surface_states};
 pub use self::journal::{BoundaryHead, SurfaceFolder, read_surface, surface_line, write_surface};
 
 use crate::record::{csv_number, csv_text};

@@ -1,8 +1,9 @@
-//! Plots of records, as SVG and PNG. Each kind is a file.
+//! Plots of records, as SVG, PDF and PNG. Each kind is a file.
 
 mod boundary;
 mod canvas;
 mod chart;
+mod clip;
 mod compare;
 mod curve;
 mod difference;
@@ -10,10 +11,13 @@ mod effort;
 mod force;
 mod frame;
 mod look;
+mod outcome;
 mod palette;
+mod pdf;
 mod png;
 mod poisson;
 mod polar;
+mod radius;
 mod records;
 mod run;
 mod scale;
@@ -24,10 +28,12 @@ pub use curve::{Curve, CurveKind};
 pub use difference::difference_svg;
 pub use effort::{Cost, cost_svg};
 pub use force::{NamedSimulation, force_svg};
-pub use frame::Layout;
+pub use frame::{Layout, Paper};
+pub use pdf::{outlined_svg, svg_to_pdf};
 #[cfg(feature = "render")]
 pub(crate) use png::{COLOURS, SAMPLE};
 pub use png::{PlotError, svg_to_png, with_palette};
 pub use poisson::poisson_svg;
 pub use polar::{PolarPlot, Ray, RayKind, polar_svg};
+pub use radius::radius_svg;
 pub use run::{OfStep, run_svg};

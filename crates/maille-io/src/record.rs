@@ -34,6 +34,7 @@ pub use limits::{read_limits, write_limits};
 pub use lock::FolderLock;
 pub use plan::{LoadedPlace, PulledPlace, SheetPlan};
 pub use reference::{Reference, ReferenceCell};
+pub(crate) use run::sha256;
 pub use run::{Counters, RunRecord, input_hash, read_run, write_run};
 pub use simulation::{
     SIMULATION, SimulationFiles, SimulationOutcome, SimulationRecord, open_simulation, read_frames, read_simulation,

@@ -10,8 +10,8 @@ use maille_io::record::{ForceTable, NamedRecord, SimulationRecord};
 use maille_io::{
     Quantity,
     plot::{
-        Cost, Curve, CurveKind, Layout, NamedSimulation, PolarPlot, cost_svg, difference_svg, force_svg, polar_svg,
-        svg_to_png,
+        Cost, Curve, CurveKind, Layout, NamedSimulation, Paper, PolarPlot, cost_svg, difference_svg, force_svg,
+        outlined_svg, poisson_svg, polar_svg, radius_svg, svg_to_pdf, svg_to_png,
     },
 };
 use rows::{design, record};
@@ -112,7 +112,7 @@ fn plots_without_limits_and_with_odd_texts_are_drawn() {
 #[test]
 fn a_bound_is_dashed_and_has_no_markers() {
     let mut plot = PolarPlot::from_rows(&design(), &[], Quantity::L1, &[]);
-    let points: Vec<_> = (0..180).map(|d| (f64::from(d), Some(0.5))).collect();
+    let points: Vec<_> = (0..180).map(|d| (f64::from(d), Some(0.5), Status::Local)).collect();
     plot.curves.push(Curve::new(0, 0.0, CurveKind::Bound, &points));
     let svg = polar_svg(&plot, Layout::Beside);
     assert!(svg.contains("stroke-dasharray=\"5 4\"") && !svg.contains("fill=\"#222222\" stroke=\"#222222\""));
@@ -215,7 +215,7 @@ fn several_records_differ_in_colour_and_in_line() {
     for text in labels.iter().map(String::as_str).chain(["−0.125", "0"]) {
         assert_eq!(svg.matches(&format!(">{text}<")).count(), 1, "{text}");
     }
-    assert!(svg.contains("Gaps: 1 of 26 searches gave no limit (1 l2-not-reached)."));
+    assert!(svg.contains("r = 0.1, exact: 1 of 26 searches gave no limit (1 l2-not-reached)"));
     svg_to_png(&svg, 1.0).unwrap();
 }
 
@@ -252,7 +252,7 @@ fn differences_are_largest_less_smallest_limit() {
     // Axes from 0 to 0.15 and to 0.4, over 400 units.
     let (high, low, svg) = places(Quantity::L1);
     assert!((high / 400.0 * 0.15 - 0.125).abs() < 1e-4 && low == 0.0, "{high} {low}");
-    assert!(svg.contains("Largest less smallest l₁ of all directions (no unit)"));
+    assert!(svg.contains("Largest less smallest l₁ of all directions"));
     assert!(svg.contains(">some directions have no limit<"));
     let (high, low, svg) = places(Quantity::Lambda1);
     let wanted = 1.465f64.powi(2) - 1.34f64.powi(2);
@@ -275,6 +275,192 @@ fn steps_and_times_have_a_curve_for_each_record_and_l2() {
     let one = cost_svg(&records[..1], Cost::Steps, Layout::Beside);
     assert_eq!(lines(&one).len(), 2);
     assert!(one.contains(">Iterations<") && one.contains("quadratic programs") && !one.contains("Newton"));
+}
+
+/// The bounds are far out: the axis is that of the limits, and the bounds are cut at its end.
+#[test]
+fn bounds_do_not_set_the_axis() {
+    let far = |bound: f64| {
+        let row = |row: LimitRow| LimitRow { bound_l1: Some(bound), bound_gap: Some(bound - 0.44), ..row };
+        let rows: Vec<_> = turn(0.0, 1.0).into_iter().map(row).collect();
+        polar_svg(&PolarPlot::from_rows(&design(), &rows, Quantity::L1, &[]), Layout::Beside)
+    };
+    let (near, far) = (far(0.45), far(3.0));
+    for svg in [&near, &far] {
+        assert!(svg.contains(">0.5<") && !svg.contains(">1.0<") && !svg.contains(">3.0<"));
+    }
+    let dashed = |svg: &str| lines(svg).iter().filter(|line| line.contains("dasharray=\"5 4\"")).count();
+    assert_eq!((dashed(&near), dashed(&far)), (1, 0));
+    assert!(near.contains(">proven bound<") && far.contains(">proven bound, cut off at 0.5<"));
+}
+
+/// A limit that is not proved has a hollow marker; a direction without a limit has a mark that tells why.
+#[test]
+fn markers_tell_what_is_proved() {
+    let mut rows = turn(0.0, 30.0);
+    rows.iter_mut().for_each(|row| row.status = Status::Global);
+    let draw = |rows: &[LimitRow]| polar_svg(&PolarPlot::from_rows(&design(), rows, Quantity::L1, &[]), Layout::Beside);
+    let hollow = |svg: &str| svg.matches("fill=\"#ffffff\" stroke=\"#222222\"").count();
+    rows[2].status = Status::L2NotReached;
+    let svg = draw(&rows);
+    assert!(hollow(&svg) == 0 && !svg.contains("not proved") && svg.contains(">no limit found<"));
+    rows[5].status = Status::Local;
+    rows[2].status = Status::L2Unreachable;
+    let svg = draw(&rows);
+    assert_eq!(hollow(&svg), 2, "at 75° and 255°");
+    assert!(svg.contains(">proved<") && svg.contains(">not proved (local)<") && svg.contains(">no limit (proved)<"));
+}
+
+/// A figure of a printed column: its width in millimetres, letters of the size asked for, neither title nor notes.
+#[test]
+fn paper_has_the_size_of_a_column() {
+    let records = three();
+    for (width_mm, font_pt) in [(89.0, 7.0), (183.0, 7.0), (120.0, 9.0)] {
+        let layout = Layout::Paper(Paper { width_mm, font_pt });
+        for svg in [
+            polar_svg(&PolarPlot::from_records(&records, Quantity::L1), layout),
+            difference_svg(&records, Quantity::L1, layout),
+            cost_svg(&records, Cost::Steps, layout),
+        ] {
+            assert_eq!(attribute(&svg, "width"), format!("{width_mm}mm"));
+            assert!(!svg.contains("font-weight=\"bold\">1.1") && !svg.contains("Gaps:"));
+            let view: Vec<f64> = attribute(&svg, "viewBox").split(' ').map(|x| x.parse().unwrap()).collect();
+            let unit_pt = width_mm / view[2] * 72.0 / 25.4;
+            assert!((13.0 * unit_pt - font_pt).abs() < 0.01, "{unit_pt}");
+            for text in svg.lines().filter(|line| line.starts_with("<text")) {
+                let (x, y, size) = (number(text, "x"), number(text, "y"), number(text, "font-size"));
+                let letters = text.split_once('>').unwrap().1.trim_end_matches("</text>").chars().count() as f64;
+                let share = if text.contains("middle") { 0.5 } else { 1.0 };
+                assert!(y < view[3] && x + share * 0.53 * size * letters < view[2], "{text}");
+            }
+            let outlined = outlined_svg(&svg).unwrap();
+            assert!(!outlined.contains("<text") && outlined.contains("<title>1.1 · Cartesian grid of rings</title>"));
+            assert_eq!(attribute(&outlined, "width"), format!("{width_mm}mm"));
+            let size = |svg: &str| {
+                let pixmap = resvg::tiny_skia::Pixmap::decode_png(&svg_to_png(svg, 1.0).unwrap()).unwrap();
+                let dark = pixmap.pixels().iter().filter(|p| p.red() < 128).count();
+                (pixmap.width(), pixmap.height(), dark)
+            };
+            let ((w, h, dark), (ow, oh, outlines)) = (size(&svg), size(&outlined));
+            assert!(w == ow && h == oh && dark.abs_diff(outlines) * 50 < dark, "{dark} {outlines}");
+        }
+    }
+}
+
+/// What a PDF says, without the compression of its page.
+fn pdf_page(pdf: &[u8]) -> String {
+    let find = |what: &[u8]| pdf.windows(what.len()).position(|window| window == what).unwrap();
+    let (begin, end) = (find(b"\nstream") + 8, find(b"\nendstream"));
+    let mut page = String::new();
+    std::io::Read::read_to_string(&mut flate2::read::ZlibDecoder::new(&pdf[begin..end]), &mut page).unwrap();
+    page
+}
+
+#[test]
+fn a_pdf_has_lines_areas_and_outlines() {
+    let svg = "<svg xmlns='http://www.w3.org/2000/svg' width='254mm' height='127mm' viewBox='0 0 1000 500'>\n<title>a &amp; b</title>\n\
+        <path d='M10 20L30 40' stroke='#ff0000' stroke-width='3' stroke-dasharray='5 4' fill='none'/>\
+        <rect x='100' y='100' width='50' height='60' fill='#00ff0040'/></svg>";
+    let pdf = svg_to_pdf(svg).unwrap();
+    let text = String::from_utf8_lossy(&pdf).into_owned();
+    assert!(text.starts_with("%PDF-1.") && text.contains("/MediaBox [0 0 720 360]") && text.contains("(a & b)"));
+    assert!(text.contains("/ca 0.2509"), "the opacity of the area: {text}");
+    let page = pdf_page(&pdf);
+    for words in ["1 0 0 RG", "10 20 m", "30 40 l", "[5 4] 0 d", "0 1 0 rg", "100 100 m", "150 160 l"] {
+        assert!(page.contains(words), "{words} is not in {page}");
+    }
+    let letters = |text: &str| {
+        let svg =
+            format!("<svg xmlns='http://www.w3.org/2000/svg' width='90' height='90'><text y='40'>{text}</text></svg>");
+        let pdf = svg_to_pdf(&svg).unwrap();
+        assert!(!String::from_utf8_lossy(&pdf).contains("/Font"));
+        pdf_page(&pdf).matches(" m\n").count()
+    };
+    // Outlines of l, o (two) and i (two).
+    assert_eq!((letters("l"), letters("lo"), letters("loi")), (1, 3, 5));
+    let picture = "<svg xmlns='http://www.w3.org/2000/svg' width='9' height='9'><g opacity='0.5'><rect width='5' height='5'/>\
+        <rect width='3' height='3'/></g></svg>";
+    assert!(svg_to_pdf(picture).is_err());
+}
+
+/// Ten records: what they share is said once, and nothing that the legend says is said again.
+#[test]
+fn notes_say_each_thing_once() {
+    let of_radius = |k: usize| {
+        let radius = 0.01 * (k + 1) as f64;
+        let rows = turn(0.0, if k < 2 { 30.0 } else { 1.0 });
+        let rows = rows.into_iter().map(|row| LimitRow { minor_radius: Some(radius), ..row }).collect();
+        record(&format!("out/{k}"), design(), rows)
+    };
+    let records: Vec<_> = (0..10).map(of_radius).collect();
+    let plot = PolarPlot::from_records(&records, Quantity::L1);
+    assert_eq!(plot.records.1[4], "r = 0.05");
+    assert!(plot.caption.len() <= 3, "{:?}", plot.caption);
+    let all = plot.caption.join("\n");
+    assert_eq!(all.matches("energy method").count(), 1);
+    assert!(!all.contains("r/R") && !all.contains("r = 0.05"), "{all}");
+    assert!(
+        all.contains("Gaps: r = 0.01: 1 of 13 searches gave no limit (1 l2-not-reached); r = 0.02: 1 of 13"),
+        "{all}"
+    );
+}
+
+/// Limits against the radius: the points of a curve are in the order of the radius, whatever that of the records.
+#[test]
+fn limits_are_drawn_against_the_radius() {
+    let of_radius = |radius: f64, bound: f64| {
+        let change = |row: LimitRow| LimitRow {
+            minor_radius: Some(radius),
+            l1: row.l1.map(|l1| l1 - radius),
+            bound_l1: Some(bound - radius),
+            bound_gap: Some(bound - 0.44),
+            status: if radius > 0.1 { Status::Local } else { Status::Global },
+            ..row
+        };
+        let keep = |row: &LimitRow| row.direction_deg == 0.0 || row.direction_deg == 45.0;
+        let rows = turn(0.0, if radius == 0.2 { 45.0 } else { 1.0 }).into_iter().filter(keep).map(change).collect();
+        record(&format!("out/{radius}"), design(), rows)
+    };
+    let records = [0.2, 0.05, 0.15].map(|radius| of_radius(radius, 0.445));
+    let svg = radius_svg(&records, Quantity::L1, Layout::Beside).unwrap();
+    for words in
+        [">0°<", ">45°<", "Minor radius by reference radius", ">proven bound<", ">not proved (local)<", ">no limit<"]
+    {
+        assert!(svg.contains(words), "{words} is not in {svg}");
+    }
+    // Two bounds, then the limits: 0° with three radii, 45° with two.
+    let points = |line: &&str| attribute(line, "d").matches(['M', 'L']).count();
+    assert_eq!(lines(&svg).iter().map(points).collect::<Vec<_>>(), [3, 3, 3, 2]);
+    let x: Vec<f64> =
+        attribute(lines(&svg)[2], "d").split(['M', 'L', ' ']).filter_map(|x| x.parse().ok()).step_by(2).collect();
+    assert!(x[0] < x[1] && x[1] < x[2], "{x:?}");
+    let far = [0.2, 0.05, 0.15].map(|radius| of_radius(radius, 0.9));
+    let far = radius_svg(&far, Quantity::L1, Layout::Beside).unwrap();
+    assert!(lines(&far).len() == 2 && far.contains(">proven bound, cut off at the edge<"), "{far}");
+    assert!(radius_svg(&records[..1], Quantity::L1, Layout::Beside).is_none());
+    svg_to_png(&svg, 1.0).unwrap();
+}
+
+/// A width that is not unique is a bar from end to end; a folded sheet is called one.
+#[test]
+fn a_free_width_is_a_bar() {
+    let of = |least: f64, most: f64| {
+        let free =
+            |row: LimitRow| LimitRow { lateral: Some("free".into()), l2_min: Some(least), l2_max: Some(most), ..row };
+        let rows = turn(0.0, 30.0).into_iter().map(free).collect();
+        poisson_svg(&[record("a", design(), rows)], Layout::Beside).unwrap()
+    };
+    let bars = |svg: &str| {
+        let vertical = |line: &&&str| {
+            let d: Vec<f64> = attribute(line, "d").split(['M', 'L', ' ']).filter_map(|x| x.parse().ok()).collect();
+            d.len() == 4 && d[0] == d[2]
+        };
+        lines(svg).iter().filter(vertical).count()
+    };
+    let (wide, narrow) = (of(-0.7, 0.2), of(-0.1004, -0.1));
+    assert_eq!((bars(&wide), bars(&narrow)), (12, 0));
+    assert!(wide.contains("12 of 12 limits are folded states") && wide.contains("30 %"));
+    assert!(!narrow.contains("folded") && wide.contains(">no limit, or no free width<"));
 }
 
 /// Value of an attribute of an SVG element.

@@ -90,8 +90,24 @@ def test_plot_has_a_curve_for_each_l2_all_round(by_program):
     assert axes.name == "polar" and len(axes.lines) == 2
     angle, radius = axes.lines[1].get_data()
     assert len(angle) == 13 and np.isclose(angle[-1], 2 * np.pi) and np.isclose(radius[0], 1.44)
+    # Black at l2 = 0, blue below; the centre is the sheet as it is written; all limits are proved, so no marker is hollow.
+    assert axes.lines[1].get_color() == "#222222" and axes.lines[0].get_color() not in ("#222222", "C0")
+    assert axes.get_rmin() == 1.0 and axes.lines[1].get_marker() == "o"
     with pytest.raises(maille.ArgumentError, match="quantity"):
         maille.read_record(by_program).plot("l7")
+
+
+def test_plot_tells_proved_limits_from_others_and_marks_gaps():
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    axes = maille.characterize("european-4-in-1", [0, 30, 45, 90], [-0.1], cell="1x1").plot()
+    labels = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert labels[0] == "l2 = -0.1" and "not proved (local)" in labels and "no limit found" in labels
+    hollow = next(line for line in axes.lines if line.get_markerfacecolor() == "white")
+    assert np.all(np.isfinite(hollow.get_ydata())) and "proven bound" in labels
+    # The bound lies further out than the limits, and does not set the scale.
+    limits = axes.lines[0].get_ydata()
+    assert axes.get_rmax() < np.nanmax(limits) + 0.2 * (np.nanmax(limits) - axes.get_rmin())
 
 
 def test_free_width_and_the_energy_method():

@@ -121,7 +121,7 @@ impl<'a> Closed<'a> {
     }
 
     /// The derivatives of its distance in all unknowns: six for each element, then those of the lattice.
-    fn gradient(&self, free: &Free) -> DVector<f64> {
+    pub fn gradient(&self, free: &Free) -> DVector<f64> {
         let (a, b, shift) = self.pair;
         let n = 6 * self.sheet.bodies.len();
         let mut out = DVector::zeros(n + free.0.len());

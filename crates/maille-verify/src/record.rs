@@ -150,7 +150,7 @@ pub(crate) struct Row {
 }
 
 /// One line of `states.jsonl`, in the file's unit.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Default, Deserialize)]
 pub(crate) struct State {
     pub direction_deg: f64,
     pub l2: f64,
@@ -209,7 +209,7 @@ fn complete(file: &'static str, text: &str) -> Result<(), Unreadable> {
     Err(Unreadable { file, line, problem: "the file ends within this line: it was cut off".into() })
 }
 
-fn json<T: DeserializeOwned>(file: &'static str, line: usize, text: &str) -> Result<T, Unreadable> {
+pub(crate) fn json<T: DeserializeOwned>(file: &'static str, line: usize, text: &str) -> Result<T, Unreadable> {
     serde_json::from_str(text).map_err(|e| Unreadable {
         file,
         line: if line == 0 { e.line() } else { line },

@@ -3,7 +3,7 @@
 use crate::{
     apart::some_distance,
     linking::linking_number,
-    record::{Run, State},
+    record::{Design, State},
     report::Verdict,
     sheet::{Cell, Pair, Ring, Sheet},
     tie::Linked,
@@ -20,8 +20,8 @@ pub(crate) struct Start {
 pub(crate) type Links = Vec<(Pair, i32)>;
 
 /// The start in `cell`, with the elements in the order of `poses`.
-pub(crate) fn start(run: &Run, cell: &Cell, names: &[&str]) -> Result<Start, String> {
-    let sheet = Sheet::start(&run.design, cell, names)?;
+pub(crate) fn start(design: &Design, cell: &Cell, names: &[&str]) -> Result<Start, String> {
+    let sheet = Sheet::start(design, cell, names)?;
     let mut links = Ok(Vec::new());
     match sheet.pairs(|_, _| 0.0) {
         Ok(pairs) => {

@@ -41,7 +41,7 @@ impl Verifier {
         for row in &rows {
             let Some(state) = states.get(&files::key(row.direction_deg, row.l2)) else { continue };
             starts.entry(row.cell.clone()).or_insert_with(|| match sheet::cell(&row.cell) {
-                Some(cell) => start(&run, &cell, &names(state)),
+                Some(cell) => start(&run.design, &cell, &names(state)),
                 None => Err(format!("\"{}\" is not a cell", row.cell)),
             });
         }
@@ -51,7 +51,7 @@ impl Verifier {
             None => ("1x1".to_owned(), [[1, 0], [0, 1]]),
         };
         let elements: Vec<&str> = run.design.elements.iter().map(|element| element.name.as_str()).collect();
-        let own = start(&run, &cell, &elements);
+        let own = start(&run.design, &cell, &elements);
         Ok(Verifier { run, rows, columns, states, files, starts, own_cell, own })
     }
 

@@ -9,6 +9,7 @@ use maille_io::{
     weave::{Rings, Weave, WeaveError},
     write_design,
 };
+use std::collections::BTreeMap;
 
 /// Sides of the cell of a single ring, in its major radii: room to draw a second one into it.
 const SIDE: f64 = 2.5;
@@ -52,6 +53,7 @@ fn single(name: &str, major: f64, minor: f64, unit: Option<String>) -> Design {
         reference_radius: major,
         allow_initial_overlap: false,
         lattice: LatticeSpec { a1: [SIDE * major, 0.0, 0.0], a2: [0.0, SIDE * major, 0.0] },
+        varied: BTreeMap::new(),
         elements: vec![ElementSpec { name: "ring-1".into(), center: [0.0; 3], rings: vec![ring] }],
     }
 }

@@ -1,7 +1,8 @@
 //! The surface of attainable strains: three sections through the written lattice, with the proven bound, and a view in space.
 
 use super::canvas::{Anchor, Canvas, Stroke};
-use super::frame::{Entry, Frame, GRID, INK, Layout, RIM, SOFT, style};
+use super::clip;
+use super::frame::{Area, Entry, Frame, GRID, INK, Layout, RIM, SOFT, style};
 use super::look::{self, Look};
 use super::scale::{Scale, range};
 use crate::boundary::{colour, point, triangles};
@@ -9,9 +10,26 @@ use maille::{lattice::Cell, record::Status, survey::surface::Boundary};
 
 /// Names of the coordinates.
 const NAMES: [&str; 3] = ["E_xx", "E_yy", "E_xy"];
-/// Side of a panel, and where the four of them begin.
-const SIDE: f64 = 240.0;
-const PANELS: [[f64; 2]; 4] = [[70.0, 122.0], [380.0, 122.0], [70.0, 430.0], [380.0, 430.0]];
+/// A square or a rectangle of the figure.
+#[derive(Clone, Copy)]
+struct Panel {
+    left: f64,
+    top: f64,
+    width: f64,
+    height: f64,
+}
+
+/// The three sections and the view; where the legend stands beside them, the view has the room below it.
+fn panels(area: Area) -> [Panel; 4] {
+    let side = 0.5 * (area.right - area.left - 2.0 * 58.0);
+    let columns = [area.left + 52.0, area.left + 52.0 + side + 58.0];
+    let rows = [area.top, area.top + side + 66.0];
+    let square = |column: usize, row: usize| Panel { left: columns[column], top: rows[row], width: side, height: side };
+    let view = square(1, 1);
+    let view = if area.print { view } else { Panel { width: 1.75 * side, ..view } };
+    [square(0, 0), square(1, 0), square(0, 1), view]
+}
+
 /// The coordinate that is 0 in each section, and the two that are drawn.
 const SECTIONS: [[usize; 3]; 3] = [[2, 0, 1], [1, 0, 2], [0, 1, 2]];
 /// Where the eye is: turned about E_xy, then raised.
@@ -20,32 +38,33 @@ const RAISE: f64 = 0.45;
 const BOUND: &str = "#8a8a8a";
 
 /// The figure, as SVG.
-pub fn boundary_svg(boundary: &Boundary, title: &str, caption: Vec<String>) -> String {
+pub fn boundary_svg(boundary: &Boundary, title: &str, caption: Vec<String>, layout: Layout) -> String {
     let solid: Vec<[f64; 3]> = boundary.vertices.iter().map(|v| point(v).unwrap_or_default()).collect();
-    let bound: Vec<[f64; 3]> =
-        boundary.vertices.iter().map(|v| v.point(v.bound.or(v.distance).unwrap_or_default())).collect();
     let sample = |color: String, width: f64, label: &str| {
         Entry::sample(&Look { color, width, ..look::hollow() }, true, false, label)
     };
     let statuses = [Status::Global, Status::Local, Status::Uncertified];
-    let labels = ["proved: the bound is attained", "certified", "not certified"];
+    let labels = ["proved: the bound is attained", "not proved (local)", "not certified"];
     let there = |status: Status| boundary.vertices.iter().any(|v| colour(v.status) == colour(status));
     let mut legend = vec![Entry::Heading("Surface".into())];
     let shown = statuses.into_iter().zip(labels).filter(|(status, _)| there(*status));
     legend.extend(shown.map(|(status, label)| sample(hex(colour(status)), 6.0, label)));
-    legend.push(sample(BOUND.into(), 1.4, "proven bounds of the rays, joined"));
+    let bounded = boundary.vertices.iter().any(|v| v.bound.is_some());
+    legend.extend(bounded.then(|| sample(BOUND.into(), 1.4, "proven bounds of rays, joined")));
     legend.push(Entry::Note("circle: the sheet as written".into()));
     let frame = Frame {
-        title: title.to_owned(),
-        subtitle: format!("{}: Green strain E, E_xy the tensor shear (no unit)", of_cells(boundary)),
+        title: format!("{title}: {}", of_cells(boundary)),
+        subtitle: "Green strain E, with E_xy the tensor shear".into(),
         legend,
         caption,
     };
-    frame.svg(Layout::Beside, PANELS[3][1] + SIDE + 46.0, |canvas| {
-        for (place, [zero, x, y]) in PANELS.into_iter().zip(SECTIONS) {
-            section(canvas, place, boundary, (&solid, &bound), [zero, x, y]);
+    let panels = panels(frame.area(layout));
+    let bottom = panels[2].top + panels[2].height + 40.0;
+    frame.svg(layout, bottom, |canvas| {
+        for (panel, of) in panels.into_iter().zip(SECTIONS) {
+            section(canvas, panel, boundary, &solid, of);
         }
-        view(canvas, PANELS[3], boundary, &solid);
+        view(canvas, panels[3], boundary, &solid);
     })
 }
 
@@ -58,11 +77,8 @@ fn of_cells(boundary: &Boundary) -> String {
         }
     }
     match cells.as_slice() {
-        [cell] => format!("All in-plane strains of the cell {cell}"),
-        _ => {
-            let most = cells.iter().map(Cell::copies).max().unwrap_or(1);
-            format!("In-plane strains in cells of up to {most} copies")
-        }
+        [cell] => format!("cell {}", cell.to_string().replace('x', " × ")),
+        _ => format!("cells of up to {} copies", cells.iter().map(Cell::copies).max().unwrap_or(1)),
     }
 }
 
@@ -71,9 +87,13 @@ fn hex([r, g, b]: [u8; 3]) -> String {
 }
 
 /// Where the triangles cross the plane on which coordinate `zero` is 0, with the corner nearest to each piece.
-fn cut(boundary: &Boundary, points: &[[f64; 3]], zero: usize) -> Vec<([[f64; 3]; 2], usize)> {
+fn cut<'a>(
+    corners: impl Iterator<Item = &'a [usize; 3]>,
+    points: &[[f64; 3]],
+    zero: usize,
+) -> Vec<([[f64; 3]; 2], usize)> {
     let mut out = Vec::new();
-    for corners in triangles(boundary) {
+    for corners in corners {
         let mut ends = Vec::new();
         for (a, b) in [(0, 1), (1, 2), (2, 0)].map(|(i, j)| (corners[i], corners[j])) {
             let (p, q) = (points[a], points[b]);
@@ -92,54 +112,58 @@ fn cut(boundary: &Boundary, points: &[[f64; 3]], zero: usize) -> Vec<([[f64; 3];
 
 fn section(
     canvas: &mut Canvas,
-    [left, top]: [f64; 2],
+    Panel { left, top, width: side, .. }: Panel,
     boundary: &Boundary,
-    (solid, bound): (&[[f64; 3]], &[[f64; 3]]),
+    solid: &[[f64; 3]],
     [zero, x, y]: [usize; 3],
 ) {
-    let pieces = cut(boundary, solid, zero);
+    let pieces = cut(triangles(boundary), solid, zero);
     // One unit is as long on both axes, and the surface fills the panel; of the bound what fits is shown.
     let of = |axis: usize| range(pieces.iter().flat_map(|(ends, _)| ends).map(|p| p[axis]).chain([0.0]));
     let (of_x, of_y) = (of(x), of(y));
     let span = 1.16 * (of_x.1 - of_x.0).max(of_y.1 - of_y.0).max(1e-9);
     let middle = [0.5 * (of_x.0 + of_x.1), 0.5 * (of_y.0 + of_y.1)];
-    let unit = SIDE / span;
+    let unit = side / span;
     let at =
-        |p: &[f64; 3]| [left + SIDE / 2.0 + (p[x] - middle[0]) * unit, top + SIDE / 2.0 - (p[y] - middle[1]) * unit];
-    let scale = Scale::new(0.0, [-span / 2.0, span / 2.0].into_iter(), 5);
+        |p: &[f64; 3]| [left + side / 2.0 + (p[x] - middle[0]) * unit, top + side / 2.0 - (p[y] - middle[1]) * unit];
+    let scale = Scale::new(0.0, [-span / 2.0, span / 2.0].into_iter(), 4);
     let step = scale.ticks.windows(2).map(|w| w[1] - w[0]).next().unwrap_or(span);
     for k in -40..=40 {
         let value = f64::from(k) * step;
         let mut p = [0.0; 3];
         (p[x], p[y]) = (value, value);
         let [px, py] = at(&p);
-        if px >= left && px <= left + SIDE {
-            canvas.line([px, top], [px, top + SIDE], Stroke::solid(GRID, 1.0));
-            canvas.text([px, top + SIDE + 15.0], style(11.0, INK, Anchor::Middle), &scale.label(value));
+        if px >= left && px <= left + side {
+            canvas.line([px, top], [px, top + side], Stroke::solid(GRID, 1.0));
+            canvas.text([px, top + side + 15.0], style(11.0, INK, Anchor::Middle), &scale.label(value));
         }
-        if py >= top && py <= top + SIDE {
-            canvas.line([left, py], [left + SIDE, py], Stroke::solid(GRID, 1.0));
+        if py >= top && py <= top + side {
+            canvas.line([left, py], [left + side, py], Stroke::solid(GRID, 1.0));
             canvas.text([left - 5.0, py + 4.0], style(11.0, INK, Anchor::End), &scale.label(value));
         }
     }
-    let inside = |[px, py]: [f64; 2]| (left..=left + SIDE).contains(&px) && (top..=top + SIDE).contains(&py);
-    for ([p, q], _) in cut(boundary, bound, zero) {
-        if inside(at(&p)) && inside(at(&q)) {
-            canvas.line(at(&p), at(&q), Stroke::solid(BOUND, 0.9));
+    let bound: Vec<[f64; 3]> = boundary.vertices.iter().map(|v| v.point(v.bound.unwrap_or_default())).collect();
+    let bounded = |corners: &&[usize; 3]| corners.iter().all(|&k| boundary.vertices[k].bound.is_some());
+    let inside = boundary.triangles.iter().filter(|corners| corners.iter().all(|k| *k < boundary.vertices.len()));
+    for ([p, q], _) in cut(inside.filter(bounded), &bound, zero) {
+        for part in clip::to_rectangle(&[at(&p), at(&q)], [left, top], [left + side, top + side]) {
+            canvas.path(&part, false, "none", Stroke::solid(BOUND, 1.2));
         }
     }
     for ([p, q], near) in &pieces {
         let color = hex(colour(boundary.vertices[*near].status));
-        canvas.line(at(p), at(q), Stroke::solid(&color, 2.0));
+        canvas.path(&[at(p), at(q)], false, "none", Stroke::solid(&color, 2.0));
     }
     canvas.circle(at(&[0.0; 3]), 3.0, "#ffffff", Stroke::solid(INK, 1.2));
-    canvas.text([left + SIDE / 2.0, top + SIDE + 32.0], style(12.0, INK, Anchor::Middle), NAMES[x]);
-    let label = format!("{} up, {} = 0", NAMES[y], NAMES[zero]);
-    canvas.text([left, top - 7.0], style(12.0, INK, Anchor::Start), &label);
+    let corners = [[left, top], [left + side, top], [left + side, top + side], [left, top + side]];
+    canvas.path(&corners, true, "none", Stroke::solid(RIM, 1.0));
+    canvas.text([left + side / 2.0, top + side + 33.0], style(13.0, INK, Anchor::Middle), NAMES[x]);
+    canvas.text_upward([left - 40.0, top + side / 2.0], 13.0, NAMES[y]);
+    canvas.text([left, top - 7.0], style(12.0, INK, Anchor::Start), &format!("Section {} = 0", NAMES[zero]));
 }
 
 /// The surface from the side, far triangles first, lit from the eye. Each axis is stretched to the same length.
-fn view(canvas: &mut Canvas, [left, top]: [f64; 2], boundary: &Boundary, points: &[[f64; 3]]) {
+fn view(canvas: &mut Canvas, Panel { left, top, width, height }: Panel, boundary: &Boundary, points: &[[f64; 3]]) {
     let ends: [(f64, f64); 3] = std::array::from_fn(|i| range(points.iter().map(|p| p[i]).chain([0.0])));
     let size = ends.map(|(low, high)| (high - low).max(1e-9));
     let center = ends.map(|(low, high)| 0.5 * (low + high));
@@ -149,10 +173,13 @@ fn view(canvas: &mut Canvas, [left, top]: [f64; 2], boundary: &Boundary, points:
         let (across, deep) = (x * TURN.cos() - y * TURN.sin(), x * TURN.sin() + y * TURN.cos());
         [across, z * RAISE.cos() + deep * RAISE.sin(), -deep * RAISE.cos() + z * RAISE.sin()]
     };
-    let unit = 0.72 * SIDE;
+    let ends: [(f64, f64); 2] = [0, 1].map(|i| range(points.iter().map(|p| seen(p)[i])));
+    let extent = ends.map(|(low, high)| (high - low).max(1e-9));
+    let unit = (0.94 * width / extent[0]).min(0.94 * height / extent[1]);
     let at = |p: &[f64; 3]| {
         let [u, v, _] = seen(p);
-        [left + SIDE / 2.0 + u * unit, top + SIDE / 2.0 - v * unit]
+        let [u, v] = [u - 0.5 * (ends[0].0 + ends[0].1), v - 0.5 * (ends[1].0 + ends[1].1)];
+        [left + width / 2.0 + u * unit, top + height / 2.0 - v * unit]
     };
     let mut faces: Vec<(f64, &[usize; 3])> =
         triangles(boundary).map(|c| (c.iter().map(|k| seen(&points[*k])[2]).sum(), c)).collect();
@@ -172,14 +199,14 @@ fn view(canvas: &mut Canvas, [left, top]: [f64; 2], boundary: &Boundary, points:
         let fill = hex(colour(boundary.vertices[worst].status).map(|x| (f64::from(x) * light).min(255.0) as u8));
         canvas.path(&corners.map(|k| at(&points[k])), true, &fill, Stroke::solid(&fill, 0.6));
     }
-    let corner = [left + 4.0, top + SIDE + 20.0];
+    let corner = [left + 4.0, top + height + 12.0];
     for (i, name) in NAMES.iter().enumerate() {
         let mut p = center;
         p[i] += 0.16 * size[i];
         let [u, v, _] = seen(&p);
-        let tip = [corner[0] + 8.0 + u * unit, corner[1] - v * unit];
+        let tip = [corner[0] + 8.0 + 170.0 * u, corner[1] - 170.0 * v];
         canvas.line([corner[0] + 8.0, corner[1]], tip, Stroke::solid(RIM, 1.4));
         canvas.text([tip[0] + 3.0, tip[1] + 3.0], style(11.0, SOFT, Anchor::Start), name);
     }
-    canvas.text([left, top - 7.0], style(12.0, INK, Anchor::Start), "in space, axes scaled alike");
+    canvas.text([left, top - 7.0], style(12.0, INK, Anchor::Start), "In space, each axis to its own scale");
 }

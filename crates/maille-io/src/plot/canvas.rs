@@ -47,11 +47,15 @@ pub(super) struct Canvas {
 }
 
 impl Canvas {
-    /// `top` is the least y that is shown.
-    pub(super) fn new(top: f64, width: f64, height: f64, title: &str) -> Self {
+    /// `top` is the least y that is shown. With `unit_mm` the picture has that size in print.
+    pub(super) fn new(top: f64, [width, height]: [f64; 2], unit_mm: Option<f64>, title: &str) -> Self {
         let (t, w, h) = (short(top), short(width), short(height));
+        let [across, down] = [width, height].map(|length| match unit_mm {
+            Some(unit) => format!("{}mm", short(length * unit)),
+            None => short(length),
+        });
         let mut out = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 {t} {w} {h}\" \
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{across}\" height=\"{down}\" viewBox=\"0 {t} {w} {h}\" \
              font-family=\"DejaVu Sans, Verdana, sans-serif\" role=\"img\">\n"
         );
         let _ = writeln!(out, "<title>{}</title>", escape(title));
@@ -77,10 +81,19 @@ impl Canvas {
         } else {
             ""
         };
-        let (x, y, size, text) = (short(at[0]), short(at[1]), short(size), escape(text));
+        let (x, y, text) = (short(at[0]), short(at[1]), with_subscripts(&escape(text), size));
+        let size = short(size);
         self.line_out(format!(
             "<text x=\"{x}\" y=\"{y}\" font-size=\"{size}\" fill=\"{color}\"{bold}{anchor}{halo}>{text}</text>"
         ));
+    }
+
+    /// Upward, with its middle at a point.
+    pub(super) fn text_upward(&mut self, [x, y]: [f64; 2], size: f64, text: &str) {
+        let style = TextStyle { size, color: "#222222", bold: false, anchor: Anchor::Middle, halo: false };
+        self.line_out(format!("<g transform=\"translate({} {}) rotate(-90)\">", short(x), short(y)));
+        self.text([0.0, 0.0], style, text);
+        self.line_out("</g>".into());
     }
 
     pub(super) fn line(&mut self, from: [f64; 2], to: [f64; 2], stroke: Stroke<'_>) {
@@ -124,6 +137,28 @@ fn escape(text: &str) -> String {
     let allowed = |c: &char| !c.is_control();
     let text: String = text.chars().map(|c| if c == '\n' || c == '\t' { ' ' } else { c }).filter(allowed).collect();
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
+
+/// Components of the strain with their letters below the line: `E_xx`.
+fn with_subscripts(text: &str, size: f64) -> String {
+    let (below, small) = (short(0.22 * size), short(0.75 * size));
+    let mut parts = text.split("E_");
+    let mut out = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (letters, rest) = part.split_at(part.len().min(2));
+        let _ = write!(
+            out,
+            "E<tspan font-size=\"{small}\" dy=\"{below}\">{letters}</tspan><tspan dy=\"-{below}\">{rest}</tspan>"
+        );
+    }
+    out
+}
+
+/// The title of an SVG, as it was given.
+pub(super) fn title_of(svg: &str) -> String {
+    let title =
+        svg.split_once("<title>").and_then(|(_, rest)| rest.split_once("</title>")).map_or("", |(title, _)| title);
+    title.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&")
 }
 
 /// Width of a text in pixels, by the widths of the font's letters, a little too large rather than too small.

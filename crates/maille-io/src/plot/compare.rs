@@ -158,18 +158,51 @@ fn labels(parts: &[(&str, Vec<String>)], count: usize) -> Vec<String> {
     (0..count).map(|i| label(i).join(", ")).collect()
 }
 
-/// A paragraph for each record: its label, inputs, directions, what it has no limits for, and which limits still grow.
+/// What records have in common in one paragraph, then what each has of its own that its label does not say, then what has
+/// no limit and what still grows. Nothing is said twice.
 pub(super) fn captions(records: &[NamedRecord], labels: &[String]) -> Vec<String> {
-    let caption = |(named, label): (&NamedRecord, &String)| {
+    let words = |named: &NamedRecord| {
         let (run, rows) = (&named.record.run, &named.record.rows);
-        let words = inputs(&run.design, rows, &parameter_words(run));
-        let told = missing(rows, |row| row.l1).into_iter().chain(growing(rows));
-        let told: String = told.map(|words| format!("  {words}")).collect();
-        let directions = directions(rows).map(|text| format!("  ·  {text}.")).unwrap_or_default();
-        let name = if records.len() > 1 { format!("{label}:  ") } else { String::new() };
-        format!("{name}{words}{directions}{told}")
+        let mut words = radii(&run.design, rows, records.len() == 1);
+        words.extend(distinct(rows, |row| &row.method).iter().map(|method| format!("{method} method")));
+        words.extend(cells(rows));
+        words.extend(parameter_words(run));
+        words.extend(directions(rows));
+        words
     };
-    records.iter().zip(labels).map(caption).collect()
+    let all: Vec<Vec<String>> = records.iter().map(words).collect();
+    let common = |word: &&String| all.iter().all(|words| words.contains(*word));
+    let shared: Vec<String> = all.first().into_iter().flatten().filter(common).cloned().collect();
+    let own = |(words, label): (&Vec<String>, &String)| {
+        let said = |word: &str| label.split(", ").any(|part| part == word || format!("{part} method") == word);
+        let own: Vec<&str> =
+            words.iter().map(String::as_str).filter(|word| !shared.iter().any(|s| s == word) && !said(word)).collect();
+        (!own.is_empty()).then(|| format!("{label}: {}", own.join(", ")))
+    };
+    let own: Vec<String> = all.iter().zip(labels).filter_map(own).collect();
+    let mut out: Vec<String> =
+        [shared.join("  ·  "), own.join("  ·  ")].into_iter().filter(|p| !p.is_empty()).collect();
+    out.extend(of_each(records, labels, |rows| missing(rows, |row| row.l1)));
+    out.extend(of_each(records, labels, growing));
+    out
+}
+
+/// A sentence `Heading: words.` of each record, as one paragraph with the heading once.
+fn of_each(
+    records: &[NamedRecord],
+    labels: &[String],
+    sentence: impl Fn(&[LimitRow]) -> Option<String>,
+) -> Option<String> {
+    let told = |(named, label): (&NamedRecord, &String)| Some((label.clone(), sentence(&named.record.rows)?));
+    let told: Vec<(String, String)> = records.iter().zip(labels).filter_map(told).collect();
+    let (_, first) = told.first()?;
+    if records.len() == 1 {
+        return Some(first.clone());
+    }
+    let heading = first.split_once(": ").map_or("", |(heading, _)| heading);
+    let words = |text: &str| text.split_once(": ").map_or(text, |(_, words)| words).trim_end_matches('.').to_owned();
+    let parts: Vec<String> = told.iter().map(|(label, text)| format!("{label}: {}", words(text))).collect();
+    Some(format!("{heading}: {}.", parts.join("; ")))
 }
 
 /// `13 directions computed, 0° to 180°`.

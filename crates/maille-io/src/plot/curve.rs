@@ -1,5 +1,7 @@
 //! Curves over the direction of the pull.
 
+use maille::record::Status;
+
 /// How a curve is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CurveKind {
@@ -20,14 +22,18 @@ pub struct Curve {
     pub l2: f64,
     /// How it is drawn.
     pub kind: CurveKind,
-    points: Vec<(f64, Option<f64>)>,
+    points: Vec<CurvePoint>,
 }
+
+/// Degrees, value, and what came of the search.
+pub(super) type CurvePoint = (f64, Option<f64>, Status);
 
 impl Curve {
     /// Directions in degrees, any order; `None` where no value was earned. A direction and its opposite are the same pull:
     /// of two values for one, the first that is there counts.
-    pub fn new(record: usize, l2: f64, kind: CurveKind, points: &[(f64, Option<f64>)]) -> Self {
-        let mut half: Vec<_> = points.iter().map(|&(degrees, value)| (half_turn(degrees), value)).collect();
+    pub fn new(record: usize, l2: f64, kind: CurveKind, points: &[(f64, Option<f64>, Status)]) -> Self {
+        let mut half: Vec<_> =
+            points.iter().map(|&(degrees, value, status)| (half_turn(degrees), value, status)).collect();
         half.sort_by(|a, b| a.0.total_cmp(&b.0).then(b.1.is_some().cmp(&a.1.is_some())));
         half.dedup_by(|later, kept| later.0 == kept.0);
         Self { record, l2, kind, points: half }
@@ -39,8 +45,8 @@ impl Curve {
     }
 
     /// Directions and values over the whole turn.
-    pub(super) fn turn(&self) -> Vec<(f64, Option<f64>)> {
-        let opposite = self.points.iter().map(|&(degrees, value)| (degrees + 180.0, value));
+    pub(super) fn turn(&self) -> Vec<CurvePoint> {
+        let opposite = self.points.iter().map(|&(degrees, value, status)| (degrees + 180.0, value, status));
         self.points.iter().copied().chain(opposite).collect()
     }
 
@@ -60,7 +66,7 @@ impl Curve {
         let gap = |i: usize| if (i + 1).is_multiple_of(half) { turn[0].0 + 180.0 - turn[half - 1].0 } else { 0.0 };
         let joined = |i: usize| turn[i].1.is_some() && turn[(i + 1) % n].1.is_some() && gap(i) <= widest + 1e-9;
         let Some(end) = (0..n).find(|&i| !joined(i)) else {
-            let closed = turn.into_iter().filter_map(|(degrees, value)| Some((degrees, value?))).collect();
+            let closed = turn.into_iter().filter_map(|(degrees, value, _)| Some((degrees, value?))).collect();
             return (vec![closed], true);
         };
         let mut runs = Vec::new();
@@ -86,8 +92,13 @@ fn half_turn(degrees: f64) -> f64 {
 mod tests {
     use super::*;
 
+    fn curve(points: &[(f64, Option<f64>)]) -> Curve {
+        let points: Vec<_> = points.iter().map(|&(degrees, value)| (degrees, value, Status::Local)).collect();
+        Curve::new(0, 0.0, CurveKind::Limits, &points)
+    }
+
     fn lengths(points: &[(f64, Option<f64>)]) -> (Vec<usize>, bool) {
-        let (runs, closed) = Curve::new(0, 0.0, CurveKind::Limits, points).runs();
+        let (runs, closed) = curve(points).runs();
         (runs.iter().map(Vec::len).collect(), closed)
     }
 
@@ -119,7 +130,8 @@ mod tests {
 
     #[test]
     fn opposite_directions_are_one_pull() {
-        let curve = Curve::new(0, 0.0, CurveKind::Limits, &[(0.0, None), (180.0, Some(2.0)), (-90.0, Some(3.0))]);
-        assert_eq!(curve.turn(), [(0.0, Some(2.0)), (90.0, Some(3.0)), (180.0, Some(2.0)), (270.0, Some(3.0))]);
+        let turn = curve(&[(0.0, None), (180.0, Some(2.0)), (-90.0, Some(3.0))]).turn();
+        let values: Vec<_> = turn.into_iter().map(|(degrees, value, _)| (degrees, value)).collect();
+        assert_eq!(values, [(0.0, Some(2.0)), (90.0, Some(3.0)), (180.0, Some(2.0)), (270.0, Some(3.0))]);
     }
 }

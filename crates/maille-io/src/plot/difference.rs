@@ -34,23 +34,18 @@ pub fn difference_svg(records: &[NamedRecord], quantity: Quantity, layout: Layou
     }
     caption.push("0 would be a sheet that locks at the same stretch in every direction that was computed.".into());
     let l2 = l2_values(records.iter().flat_map(|named| &named.record.rows));
-    Chart {
-        frame: Frame {
-            title: title(records),
-            subtitle: "How much the limit depends on the direction of the pull, for each l₂".into(),
-            legend,
-            caption,
-        },
-        x: Axis::of_l2(&l2),
-        y: Axis::linear(points().filter_map(|point| point.y)),
-        names: [
-            "l₂, stretch held across the pull, less 1 (no unit)".into(),
-            format!("Largest less smallest {} of all directions (no unit)", spread.symbol()),
-        ],
-        series,
-        bands: Vec::new(),
-    }
-    .svg(layout)
+    let frame = Frame {
+        title: title(records),
+        subtitle: "How much the limit depends on the direction of the pull, for each l₂".into(),
+        legend,
+        caption,
+    };
+    let axes = [Axis::of_l2(&l2), Axis::linear(points().filter_map(|point| point.y))];
+    let names = [
+        "l₂, stretch held across the pull, less 1".into(),
+        format!("Largest less smallest {} of all directions", spread.symbol()),
+    ];
+    Chart { gap: "fewer than two directions have a limit", ..Chart::of_lines(frame, axes, names, series) }.svg(layout)
 }
 
 /// Nothing where fewer than two directions have a limit; hollow where only some have.

@@ -62,9 +62,7 @@ impl Cost {
                 let totals: Vec<String> = records.iter().zip(labels).map(total).collect();
                 vec![
                     format!("Sum over all limits: {}.", totals.join("  ·  ")),
-                    "Times depend on the machine, on its load and on the number of threads. Images of other directions \
-                     take none."
-                        .into(),
+                    "Times depend on the machine, on its load and on the number of threads.".into(),
                 ]
             }
         }
@@ -97,18 +95,9 @@ pub fn cost_svg(records: &[NamedRecord], cost: Cost, layout: Layout) -> String {
         caption.push(format!("Not shown: {nothing} of {} limits that took none.", values.len()));
     }
     let directions: Vec<f64> = rows().map(|row| row.direction_deg).collect();
-    Chart {
-        frame: Frame {
-            title: title(records),
-            subtitle: cost.subtitle().into(),
-            legend: looks.full_legend(&apart),
-            caption,
-        },
-        x: Axis::of_directions(&directions),
-        names: ["Direction of the pull, counter-clockwise from x".into(), format!("{}{}", cost.axis(), y.words())],
-        y,
-        series,
-        bands: Vec::new(),
-    }
-    .svg(layout)
+    let frame =
+        Frame { title: title(records), subtitle: cost.subtitle().into(), legend: looks.full_legend(&apart), caption };
+    let names = ["Direction of the pull, counter-clockwise from x".into(), format!("{}{}", cost.axis(), y.words())];
+    let axes = [Axis::of_directions(&directions), y];
+    Chart { gap: "took none: image of another direction", ..Chart::of_lines(frame, axes, names, series) }.svg(layout)
 }

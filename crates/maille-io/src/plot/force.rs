@@ -103,21 +103,16 @@ pub fn force_svg(simulations: &[NamedSimulation], layout: Layout) -> Option<Stri
          and targets; at most 2000 τ on an element without loads)."
             .into(),
     );
-    let chart = Chart {
-        frame: Frame {
-            title: title_of(simulations.iter().map(|simulation| &simulation.record.design)),
-            subtitle: "Force against stretch of a finite sheet, pulled step by step".into(),
-            legend,
-            caption,
-        },
-        x: Axis::of_stretch(points().map(|point| point.x)),
-        y: Axis::linear(points().filter_map(|point| point.y)),
-        names: [
-            "Stretch: distance between the pulled place and the opposite one, by that at the start".into(),
-            "Mean force along the pull on a pulled element (βR/1000, the unit of --force)".into(),
-        ],
-        series,
-        bands: Vec::new(),
+    let frame = Frame {
+        title: title_of(simulations.iter().map(|simulation| &simulation.record.design)),
+        subtitle: "Force against stretch of a finite sheet, pulled step by step".into(),
+        legend,
+        caption,
     };
-    Some(chart.svg(layout))
+    let axes = [Axis::of_stretch(points().map(|point| point.x)), Axis::linear(points().filter_map(|point| point.y))];
+    let names = [
+        "Stretch: distance between the pulled place and the opposite one, by that at the start".into(),
+        "Mean force along the pull on a pulled element (βR/1000, the unit of --force)".into(),
+    ];
+    Some(Chart::of_lines(frame, axes, names, series).svg(layout))
 }

@@ -25,15 +25,24 @@ pub(super) struct Marker {
 }
 
 impl Marker {
-    /// Filled where the sheet is held compressed or as it is, hollow where it is held stretched.
     fn of_rank(rank: i32) -> Self {
-        Self { shape: palette::marker(rank), filled: rank <= 0, size: 1.0 }
+        Self { shape: palette::marker(rank), filled: true, size: 1.0 }
     }
 }
 
 impl Look {
     pub(super) fn stroke(&self) -> Stroke<'_> {
         Stroke { color: &self.color, width: self.width, dash: self.dash }
+    }
+
+    /// The same with a hollow marker if `hollow`.
+    pub(super) fn hollow_if(&self, hollow: bool) -> Look {
+        Look { marker: Marker { filled: !hollow, ..self.marker }, ..self.clone() }
+    }
+
+    /// The same with another shape of its marker, filled.
+    pub(super) fn with_shape(&self, shape: &'static [[f64; 2]]) -> Look {
+        Look { marker: Marker { shape, filled: true, size: 1.0 }, ..self.clone() }
     }
 
     pub(super) fn draw_marker(&self, canvas: &mut Canvas, at: [f64; 2], size: f64) {

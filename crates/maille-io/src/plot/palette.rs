@@ -39,38 +39,59 @@ fn color(ramp: &[[u8; 3]; 4], t: f64) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
-/// Shapes of the markers of records, as those of [`marker`].
-pub(super) fn record_marker(i: usize) -> &'static [[f64; 2]] {
-    const PLUS: &[[f64; 2]] = &[
-        [-0.4, -1.2],
-        [0.4, -1.2],
-        [0.4, -0.4],
-        [1.2, -0.4],
-        [1.2, 0.4],
-        [0.4, 0.4],
-        [0.4, 1.2],
-        [-0.4, 1.2],
-        [-0.4, 0.4],
-        [-1.2, 0.4],
-        [-1.2, -0.4],
-        [-0.4, -0.4],
-    ];
-    const HOURGLASS: &[[f64; 2]] = &[[-1.0, -1.1], [1.0, -1.1], [-1.0, 1.1], [1.0, 1.1]];
-    match i % 7 {
-        5 => PLUS,
-        6 => HOURGLASS,
-        i => marker(i as i32),
-    }
+type Shape = &'static [[f64; 2]];
+
+const CIRCLE: Shape = &[];
+const SQUARE: Shape = &[[-0.9, -0.9], [0.9, -0.9], [0.9, 0.9], [-0.9, 0.9]];
+const DIAMOND: Shape = &[[0.0, -1.3], [1.3, 0.0], [0.0, 1.3], [-1.3, 0.0]];
+const DOWN: Shape = &[[-1.2, -0.8], [1.2, -0.8], [0.0, 1.3]];
+const UP: Shape = &[[-1.2, 0.8], [1.2, 0.8], [0.0, -1.3]];
+const HOURGLASS: Shape = &[[-1.0, -1.1], [1.0, -1.1], [-1.0, 1.1], [1.0, 1.1]];
+const PLUS: Shape = &[
+    [-0.4, -1.2],
+    [0.4, -1.2],
+    [0.4, -0.4],
+    [1.2, -0.4],
+    [1.2, 0.4],
+    [0.4, 0.4],
+    [0.4, 1.2],
+    [-0.4, 1.2],
+    [-0.4, 0.4],
+    [-1.2, 0.4],
+    [-1.2, -0.4],
+    [-0.4, -0.4],
+];
+
+/// A thin ×: nothing was found.
+pub(super) const CROSS: Shape = &[
+    [0.67, -1.03],
+    [1.03, -0.67],
+    [0.35, 0.0],
+    [1.03, 0.67],
+    [0.67, 1.03],
+    [0.0, 0.35],
+    [-0.67, 1.03],
+    [-1.03, 0.67],
+    [-0.35, 0.0],
+    [-1.03, -0.67],
+    [-0.67, -1.03],
+    [0.0, -0.35],
+];
+
+/// A dash: there is nothing.
+pub(super) const DASH: Shape = &[[-1.3, -0.3], [1.3, -0.3], [1.3, 0.3], [-1.3, 0.3]];
+
+/// Shapes of the markers of records: a polygon around the origin; a circle if empty.
+pub(super) fn record_marker(i: usize) -> Shape {
+    [CIRCLE, SQUARE, DIAMOND, DOWN, UP, PLUS, HOURGLASS][i % 7]
 }
 
-/// Shape of a marker, as a polygon around the origin; a circle if empty.
-pub(super) fn marker(rank: i32) -> &'static [[f64; 2]] {
-    const SQUARE: &[[f64; 2]] = &[[-0.9, -0.9], [0.9, -0.9], [0.9, 0.9], [-0.9, 0.9]];
-    const DIAMOND: &[[f64; 2]] = &[[0.0, -1.3], [1.3, 0.0], [0.0, 1.3], [-1.3, 0.0]];
-    const DOWN: &[[f64; 2]] = &[[-1.2, -0.8], [1.2, -0.8], [0.0, 1.3]];
-    const UP: &[[f64; 2]] = &[[-1.2, 0.8], [1.2, 0.8], [0.0, -1.3]];
-    match rank {
-        0 => &[],
-        n => [SQUARE, DIAMOND, DOWN, UP][(n.unsigned_abs() as usize - 1) % 4],
-    }
+/// The same of l2 by its rank: 0 the sheet as it is, below and above it others.
+pub(super) fn marker(rank: i32) -> Shape {
+    let side = match rank.signum() {
+        0 => return CIRCLE,
+        -1 => [SQUARE, DOWN, HOURGLASS],
+        _ => [DIAMOND, UP, PLUS],
+    };
+    side[(rank.unsigned_abs() as usize - 1) % 3]
 }

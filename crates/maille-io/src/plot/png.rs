@@ -25,23 +25,31 @@ pub enum PlotError {
         /// Pixels per unit.
         scale: f32,
     },
-    /// The pixels could not be written as PNG.
-    #[error("the picture cannot be written as PNG: {0}")]
+    /// The pixels could not be written as PNG, or the page as PDF.
+    #[error("the picture cannot be written: {0}")]
     Encode(String),
+    /// The SVG has something that a PDF of lines and areas has not.
+    #[error("the picture cannot be written as PDF: it has {0}")]
+    Pdf(&'static str),
 }
 
 /// Draws an SVG; `scale` is the number of pixels per unit of the SVG (2 for screens and print).
 ///
 /// Uses only the embedded fonts: the same SVG gives the same pixels on every machine.
 pub fn svg_to_png(svg: &str, scale: f32) -> Result<Vec<u8>, PlotError> {
-    let options = Options { font_family: "DejaVu Sans".into(), fontdb: fonts(), ..Options::default() };
-    let tree = Tree::from_str(svg, &options).map_err(|e| PlotError::Svg(e.to_string()))?;
+    let tree = tree(svg)?;
     let (width, height) = (tree.size().width(), tree.size().height());
     let pixels = |length: f32| (length * scale).round() as u32;
     let pixmap = (scale > 0.0).then(|| Pixmap::new(pixels(width), pixels(height))).flatten();
     let mut pixmap = pixmap.ok_or(PlotError::Size { width, height, scale })?;
     resvg::render(&tree, Transform::from_scale(scale, scale), &mut pixmap.as_mut());
     pixmap.encode_png().map_err(|e| PlotError::Encode(e.to_string()))
+}
+
+/// The SVG with its texts set in the embedded fonts.
+pub(super) fn tree(svg: &str) -> Result<Tree, PlotError> {
+    let options = Options { font_family: "DejaVu Sans".into(), fontdb: fonts(), ..Options::default() };
+    Tree::from_str(svg, &options).map_err(|e| PlotError::Svg(e.to_string()))
 }
 
 fn fonts() -> Arc<Database> {

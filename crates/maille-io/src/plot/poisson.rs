@@ -5,7 +5,7 @@
 use super::chart::{Chart, Point, Series, legend_of_records};
 use super::compare::{captions, differences, title};
 use super::frame::{Frame, Layout};
-use super::look;
+use super::look::{self, Look};
 use super::scale::Axis;
 use crate::record::NamedRecord;
 use maille::record::LimitRow;
@@ -13,18 +13,40 @@ use maille::record::LimitRow;
 /// Below this l1 the ratio of the logarithms says nothing.
 const LEAST_L1: f64 = 1e-4;
 
+/// A range of l2 narrower than this is what the search leaves open, and is drawn as one value.
+const ONE_WIDTH: f64 = 1e-3;
+/// A sheet that is narrower than this share of its written width is called folded.
+const FOLDED: f64 = 0.5;
+
 /// Least and largest ratio of a row, where its width was free.
 fn ratios(row: &LimitRow) -> Option<[f64; 2]> {
     let (l1, least, most) = (row.l1?, row.l2_min?, row.l2_max?);
     let free = row.lateral.as_deref() == Some("free") && l1 > LEAST_L1 && least > -1.0;
-    free.then(|| [most, least].map(|l2| -l2.ln_1p() / l1.ln_1p()))
+    let ends = if most - least < ONE_WIDTH { [0.5 * (least + most); 2] } else { [most, least] };
+    free.then(|| ends.map(|l2| -l2.ln_1p() / l1.ln_1p()))
+}
+
+/// What limits the ratio is of: where the sheet is folded, no ratio of small strains.
+fn folded(rows: &[LimitRow]) -> Option<String> {
+    let shown: Vec<&LimitRow> = rows.iter().filter(|row| ratios(row).is_some()).collect();
+    let width = |row: &LimitRow| row.l2_min.map_or(1.0, |l2| 1.0 + l2);
+    let folded = shown.iter().filter(|row| width(row) < FOLDED).count();
+    let narrowest = shown.iter().map(|row| width(row)).fold(1.0, f64::min);
+    (folded > 0).then(|| {
+        format!(
+            "{folded} of {} limits are folded states, narrower than half the written width (down to {:.0} %): there the \
+             ratio is of a fold, and not a Poisson ratio of small strains.",
+            shown.len(),
+            100.0 * narrowest
+        )
+    })
 }
 
 /// The plot of one record or several, as SVG; `None` where no limit has a free width.
 pub fn poisson_svg(records: &[NamedRecord], layout: Layout) -> Option<String> {
     let (apart, labels) = differences(records);
     let looks = look::of_records(records.len());
-    let (mut series, mut bands) = (Vec::new(), Vec::new());
+    let (mut series, mut bars, mut bands) = (Vec::new(), Vec::new(), Vec::new());
     for (named, look) in records.iter().zip(&looks) {
         let mut rows: Vec<&LimitRow> = named.record.rows.iter().collect();
         rows.sort_by(|a, b| a.direction_deg.total_cmp(&b.direction_deg));
@@ -39,30 +61,29 @@ pub fn poisson_svg(records: &[NamedRecord], layout: Layout) -> Option<String> {
             let around = low.iter().chain(high.iter().rev()).copied().collect();
             bands.push((around, format!("{}40", look.color)));
         }
+        // A bar joins the two ends of a direction.
+        let ends = least.iter().zip(&most).filter(|(low, high)| low.y != high.y);
+        let thin = Look { width: 1.2, dash: "", ..look.clone() };
+        bars.extend(ends.map(|(low, high)| Series { look: thin.clone(), points: vec![*low, *high] }));
         series.extend([least, most].map(|points| Series { look: look.clone(), points }));
     }
     let values: Vec<f64> = series.iter().flat_map(|s| &s.points).filter_map(|point| point.y).collect();
     if values.is_empty() {
         return None;
     }
+    let rows: Vec<LimitRow> = records.iter().flat_map(|named| named.record.rows.clone()).collect();
     let mut caption = captions(records, &labels);
-    caption.push("Where the two curves of a record part, the width at the limit is not unique: the sheet was found at both ends.".into());
-    let directions: Vec<f64> = records.iter().flat_map(|n| &n.record.rows).map(|row| row.direction_deg).collect();
-    let chart = Chart {
-        frame: Frame {
-            title: title(records),
-            subtitle: "Kinematic Poisson ratio at the limit, width left to the sheet".into(),
-            legend: legend_of_records(apart, &labels),
-            caption,
-        },
-        x: Axis::of_directions(&directions),
-        y: Axis::linear(values.into_iter()),
-        names: [
-            "Direction of the pull, counter-clockwise from x".into(),
-            "ν = −ln(1 + l₂)/ln(1 + l₁) (no unit)".into(),
-        ],
-        series,
-        bands,
+    caption.push("Bar: at this limit the width is not unique; the sheet was found at both ends.".into());
+    caption.extend(folded(&rows));
+    let directions: Vec<f64> = rows.iter().map(|row| row.direction_deg).collect();
+    let frame = Frame {
+        title: title(records),
+        subtitle: "Kinematic Poisson ratio at the limit, width left to the sheet".into(),
+        legend: legend_of_records(apart, &labels),
+        caption,
     };
-    Some(chart.svg(layout))
+    let axes = [Axis::of_directions(&directions), Axis::linear(values.into_iter())];
+    let names = ["Direction of the pull, counter-clockwise from x".into(), "ν = −ln(1 + l₂)/ln(1 + l₁)".into()];
+    let chart = Chart::of_lines(frame, axes, names, series);
+    Some(Chart { bands, bare: bars, gap: "no limit, or no free width", ..chart }.svg(layout))
 }

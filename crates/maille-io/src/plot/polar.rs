@@ -1,14 +1,15 @@
 //! Polar plots of limits against the direction of the pull: 0° right, counter-clockwise.
 
-use super::canvas::{Anchor, Canvas, Stroke, TextStyle};
+mod figure;
+
+pub use figure::polar_svg;
+
 use super::compare::{
     captions, differences, directions, growing, heading, inputs, l2_label, l2_values, missing, title,
 };
 use super::curve::{Curve, CurveKind};
-use super::frame::{Entry, Frame, GRID, INK, Layout, MARGIN, RIM, SOFT, TOP, style};
-use super::look::{self, Look, MARKER};
+use super::look::{self, Look};
 use super::records::Looks;
-use super::scale::Scale;
 use crate::{
     quantity::Quantity,
     record::{NamedRecord, Reference, ReferenceCell},
@@ -26,7 +27,7 @@ impl Quantity {
     }
 
     /// The same of the proven bound: of λ1, the larger eigenvalue that F = diag(1 + bound, 1 + l2) has.
-    fn of_bound(self, row: &LimitRow) -> Option<f64> {
+    pub(super) fn of_bound(self, row: &LimitRow) -> Option<f64> {
         let bound = row.bound_l1?;
         Some(match self {
             Quantity::Stretch => 1.0 + bound,
@@ -36,7 +37,7 @@ impl Quantity {
     }
 
     /// The value of the sheet as it lies, in the centre of the plot.
-    fn base(self) -> f64 {
+    pub(super) fn base(self) -> f64 {
         match self {
             Quantity::Stretch => 1.0,
             Quantity::L1 | Quantity::Lambda1 => 0.0,
@@ -137,8 +138,8 @@ impl PolarPlot {
         // Where every limit attains its bound the two curves are one.
         let open = |l2: &&f64| rows.iter().any(|row| row.l2 == **l2 && row.bound_gap.is_some_and(|gap| gap > 1e-6));
         let bound = |&l2: &f64| {
-            let of_l2 = rows.iter().filter(|row| row.l2 == l2 && row.l1.is_some());
-            let points: Vec<_> = of_l2.map(|row| (row.direction_deg, quantity.of_bound(row))).collect();
+            let of_l2 = rows.iter().filter(|row| row.l2 == l2);
+            let points: Vec<_> = of_l2.map(|row| (row.direction_deg, quantity.of_bound(row), row.status)).collect();
             Curve::new(0, l2, CurveKind::Bound, &points)
         };
         let mut caption = vec![inputs(design, rows, parameters)];
@@ -274,7 +275,7 @@ impl PolarPlot {
 
 fn limits(record: usize, rows: &[LimitRow], l2: f64, quantity: Quantity) -> Curve {
     let of_l2 = rows.iter().filter(|row| row.l2 == l2);
-    let points: Vec<_> = of_l2.map(|row| (row.direction_deg, quantity.of(row))).collect();
+    let points: Vec<_> = of_l2.map(|row| (row.direction_deg, quantity.of(row), row.status)).collect();
     Curve::new(record, l2, CurveKind::Limits, &points)
 }
 
@@ -310,175 +311,4 @@ fn proven(rows: &[LimitRow]) -> Option<String> {
         0 => format!("All {limits} limits attain their proven bound: none can be larger."),
         _ => format!("{global} of {limits} limits attain their proven bound{WHERE_NOT}"),
     })
-}
-
-const RADIUS: f64 = 250.0;
-const CENTER: [f64; 2] = [MARGIN + 40.0 + RADIUS, TOP + RADIUS];
-
-/// The plot as SVG.
-pub fn polar_svg(input: &PolarPlot, layout: Layout) -> String {
-    let values = input.curves.iter().flat_map(Curve::values).chain(input.room_for.iter().copied());
-    let scale = Scale::new(input.quantity.base(), values, 6);
-    let of_all = input.looks();
-    let looks: Vec<Look> = input.curves.iter().map(|curve| input.look(&of_all, curve)).collect();
-    let frame = Frame {
-        title: input.title.clone(),
-        subtitle: input.subtitle(),
-        legend: legend(input, &of_all, &looks, &scale),
-        caption: input.caption.clone(),
-    };
-    // The widest line is furthest behind, of one width the largest l2.
-    let mut back_to_front: Vec<_> = input.curves.iter().zip(&looks).collect();
-    back_to_front.sort_by(|a, b| (a.0.record.cmp(&b.0.record)).then(b.0.l2.abs().total_cmp(&a.0.l2.abs())));
-    frame.svg(layout, CENTER[1] + RADIUS + 22.0, |canvas| {
-        draw_grid(canvas, &scale, input.quantity.base());
-        draw_rays(canvas, &input.rays);
-        for (curve, look) in back_to_front.iter().filter(|(curve, _)| curve.kind != CurveKind::Check) {
-            draw_line(canvas, curve, look, &scale);
-        }
-        draw_ticks(canvas, &scale, input);
-        let marked = if input.check.is_empty() { CurveKind::Limits } else { CurveKind::Check };
-        for (curve, look) in back_to_front.iter().filter(|(curve, _)| curve.kind == marked) {
-            draw_markers(canvas, curve, look, &scale, input.records.1.len());
-        }
-    })
-}
-
-/// Point of the canvas at a distance in pixels from the centre.
-fn polar(degrees: f64, distance: f64) -> [f64; 2] {
-    let (sin, cos) = degrees.to_radians().sin_cos();
-    [CENTER[0] + distance * cos, CENTER[1] - distance * sin]
-}
-
-/// Point of the canvas for a value in a direction.
-fn at(scale: &Scale, degrees: f64, value: f64) -> [f64; 2] {
-    polar(degrees, RADIUS * scale.fraction(value))
-}
-
-fn draw_grid(canvas: &mut Canvas, scale: &Scale, base: f64) {
-    for k in 0..12 {
-        let degrees = 30.0 * f64::from(k);
-        canvas.line(polar(degrees, 0.0), polar(degrees, RADIUS), Stroke::solid(GRID, 1.0));
-        let label = format!("{degrees}°");
-        let [x, y] = polar(degrees, RADIUS + 16.0);
-        let half_width = 3.4 * label.chars().count() as f64;
-        canvas.text(
-            [x + half_width * degrees.to_radians().cos() + 2.0, y + 5.0],
-            style(14.0, INK, Anchor::Middle),
-            &label,
-        );
-    }
-    for &tick in &scale.ticks {
-        let radius = RADIUS * scale.fraction(tick);
-        let stroke = if tick == scale.high {
-            Stroke::solid(RIM, 1.2)
-        } else if tick == base {
-            Stroke { color: SOFT, width: 1.2, dash: "1 3" }
-        } else {
-            Stroke::solid(GRID, 1.0)
-        };
-        canvas.circle(CENTER, radius, "none", stroke);
-    }
-}
-
-/// Along each direction and its opposite.
-fn draw_rays(canvas: &mut Canvas, rays: &[Ray]) {
-    for ray in rays {
-        let look = ray.kind.look();
-        let from = if ray.kind == RayKind::Least { 0.95 * RADIUS } else { 0.0 };
-        for degrees in [ray.degrees, ray.degrees + 180.0] {
-            canvas.line(polar(degrees, from), polar(degrees, RADIUS), look.stroke());
-        }
-    }
-}
-
-/// Labels of the circles, along the direction in which they are furthest from the curves.
-fn draw_ticks(canvas: &mut Canvas, scale: &Scale, input: &PolarPlot) {
-    const RAYS: [f64; 10] = [22.5, 37.5, 52.5, 67.5, 7.5, 82.5, 97.5, 112.5, 127.5, 142.5];
-    let places: Vec<[f64; 2]> = input.curves.iter().flat_map(|curve| line_points(curve, scale)).collect();
-    let ticks = || scale.ticks.iter().filter(|&&tick| scale.fraction(tick) > 0.1);
-    // How clear the labels stand on a ray: a sum, so that one label on a curve does not hide what the others gain.
-    let clear = |ray: f64| -> f64 {
-        let nearest = |tick: &f64| {
-            let label = at(scale, ray, *tick);
-            let gaps = places.iter().map(|p| ((p[0] - label[0]) / 1.6).hypot(p[1] - label[1]));
-            gaps.fold(18.0, f64::min)
-        };
-        ticks().map(nearest).sum()
-    };
-    let best = RAYS.into_iter().rev().max_by(|&a, &b| clear(a).total_cmp(&clear(b))).unwrap_or(RAYS[0]);
-    for &tick in ticks() {
-        let [x, y] = at(scale, best, tick);
-        let style = TextStyle { halo: true, ..style(12.0, SOFT, Anchor::Middle) };
-        canvas.text([x, y + 4.0], style, &scale.label(tick));
-    }
-}
-
-/// Straight between neighbouring directions.
-fn draw_line(canvas: &mut Canvas, curve: &Curve, look: &Look, scale: &Scale) {
-    let (runs, closed) = curve.runs();
-    for run in runs.iter().filter(|run| run.len() > 1) {
-        let points: Vec<_> = run.iter().map(|&(degrees, value)| at(scale, degrees, value)).collect();
-        canvas.path(&points, closed, "none", look.stroke());
-    }
-}
-
-/// Points along the drawn lines, close to each other.
-fn line_points(curve: &Curve, scale: &Scale) -> Vec<[f64; 2]> {
-    let (mut runs, closed) = curve.runs();
-    if closed {
-        let first = runs[0][0];
-        runs[0].push(first);
-    }
-    let ends = runs.iter().flat_map(|run| {
-        let next = run.iter().skip(1).chain(run.last());
-        run.iter().zip(next).map(|(&(d, v), &(e, w))| (at(scale, d, v), at(scale, e, w)))
-    });
-    let mix = |a: [f64; 2], b: [f64; 2], t: f64| [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])];
-    ends.flat_map(|(a, b)| (0..12).map(move |k| mix(a, b, f64::from(k) / 12.0))).collect()
-}
-
-/// Of several records each has its markers at other directions, so that they do not hide each other.
-fn draw_markers(canvas: &mut Canvas, curve: &Curve, look: &Look, scale: &Scale, records: usize) {
-    let turn = curve.turn();
-    let every = turn.len().div_ceil(if records > 1 { 24 } else { 72 }).max(1);
-    let first = (curve.record * every / records.max(1)) % every;
-    let size = MARKER * (24.0 / (turn.len() / every) as f64).sqrt().clamp(0.6, 1.0);
-    for &(degrees, value) in turn.iter().skip(first).step_by(every) {
-        if let Some(value) = value {
-            look.draw_marker(canvas, at(scale, degrees, value), size);
-        }
-    }
-}
-
-fn legend(input: &PolarPlot, of_all: &Looks, looks: &[Look], scale: &Scale) -> Vec<Entry> {
-    let empty =
-        |l2: f64| input.curves.iter().filter(|curve| curve.l2 == l2).all(|curve| curve.values().next().is_none());
-    let name = |l2: f64| if input.lateral_free { "free".into() } else { l2_label(l2) };
-    let label = |l2: f64| format!("{}{}", name(l2), if empty(l2) { ", no limit" } else { "" });
-    let mut out = of_all.legend(&input.records, if input.lateral_free { "" } else { "= " }, label);
-    let of_kind = |kind: CurveKind| input.curves.iter().zip(looks).filter(move |(curve, _)| curve.kind == kind);
-    if input.records.1.is_empty() {
-        let marker = input.check.is_empty();
-        out.extend(of_kind(CurveKind::Limits).map(|(curve, look)| Entry::sample(look, true, marker, &label(curve.l2))));
-        out.extend((!marker).then(|| Entry::sample(&look::hollow(), false, true, &input.check)));
-    }
-    if let Some((_, look)) = of_kind(CurveKind::Bound).next() {
-        out.push(Entry::sample(&Look { color: SOFT.into(), ..look.clone() }, true, false, "proven bound"));
-    }
-    let kinds = RayKind::ALL.into_iter().filter(|kind| input.rays.iter().any(|ray| ray.kind == *kind));
-    out.extend((!input.rays.is_empty()).then(|| Entry::Heading("Directions".into())));
-    out.extend(kinds.map(|kind| Entry::sample(&kind.look(), true, false, kind.label())));
-    out.push(Entry::Heading(format!("Radius: {}", input.symbol())));
-    let base = input.quantity.base();
-    let place = if scale.low < base { "dotted circle" } else { "centre" };
-    let undeformed = match input.reference {
-        Reference::Start => "undeformed".to_owned(),
-        _ => format!("{} cell", input.cell_word().to_lowercase()),
-    };
-    out.push(Entry::Note(format!("{place} {}: {undeformed}", scale.label(base))));
-    if scale.low < base {
-        out.push(Entry::Note(format!("centre {}", scale.label(scale.low))));
-    }
-    out
 }

@@ -88,13 +88,8 @@ pub fn run_svg(records: &[NamedRecord], shown: OfStep, layout: Layout) -> Option
         OfStep::Size => ("Size of each step of one run", "Size of the step (R"),
     };
     let longest = chosen.iter().map(|(_, _, steps)| steps.len()).max().unwrap_or(1);
-    let chart = Chart {
-        frame: Frame { title: title(&records), subtitle: subtitle.into(), legend, caption },
-        x: Axis::linear([0.0, longest as f64].into_iter()),
-        names: ["Step of the run (Newton iteration)".into(), format!("{axis}{})", y.words())],
-        y,
-        series,
-        bands: Vec::new(),
-    };
-    Some(chart.svg(layout))
+    let frame = Frame { title: title(&records), subtitle: subtitle.into(), legend, caption };
+    let names = ["Step of the run (Newton iteration)".into(), format!("{axis}{})", y.words())];
+    let axes = [Axis::linear([0.0, longest as f64].into_iter()), y];
+    Some(Chart::of_lines(frame, axes, names, series).svg(layout))
 }

@@ -65,22 +65,35 @@ impl Axis {
         Scale::new(1.0, values.map(|x| if x > 1.0 { 1.0 + 1.03 * (x - 1.0) } else { x }), 6).into()
     }
 
+    /// Round numbers around the values, wherever these lie.
+    pub(super) fn between(values: &[f64]) -> Self {
+        let (min, max) = range(values.iter().copied());
+        if min > max {
+            return Self::linear(std::iter::empty());
+        }
+        let step = round_step(if max > min { (max - min) / 6.0 } else { 0.1 * max.abs().max(0.1) });
+        Scale::new((min / step + 1e-9).floor() * step, [min, max].into_iter(), 7).into()
+    }
+
     /// Logarithmic where positive values differ by a large factor, else linear.
     pub(super) fn of_effort(values: &[f64]) -> Self {
         let (min, max) = range(values.iter().copied().filter(|x| *x > 0.0));
         if max < WIDE * min {
             return Self::linear(values.iter().copied());
         }
-        let (low, high) = (min.log10().floor() as i32, max.log10().ceil() as i32);
-        let label = |k: i32| {
-            if k < 0 {
-                format!("0.{}1", "0".repeat(k.unsigned_abs() as usize - 1))
-            } else {
-                format!("1{}", "0".repeat(k as usize))
-            }
-        };
-        let ticks = (low..=high).map(|k| (10f64.powi(k), label(k))).collect();
-        Self { low: 10f64.powi(low), high: 10f64.powi(high), logarithmic: true, ticks }
+        // From 1, 2 or 5 times a power of ten to another, so that no decade is empty.
+        let steps: Vec<(i32, u8)> = (min.log10().floor() as i32..=max.log10().ceil() as i32)
+            .flat_map(|power| [1, 2, 5].map(|digit| (power, digit)))
+            .collect();
+        let value = |(power, digit): (i32, u8)| format!("{digit}e{power}").parse::<f64>().unwrap_or(1.0);
+        let below = |step: &(i32, u8)| value(*step) <= min * (1.0 + 1e-9);
+        let first = steps.iter().rposition(below).unwrap_or(0);
+        let above = |step: &(i32, u8)| value(*step) >= max * (1.0 - 1e-9);
+        let last = steps.iter().position(above).unwrap_or(steps.len() - 1);
+        let few = last - first <= 7;
+        let shown = (first..=last).filter(|&k| few || steps[k].1 == 1).map(|k| value(steps[k]));
+        let ticks = shown.map(|tick| (tick, format!("{tick}"))).collect();
+        Self { low: value(steps[first]), high: value(steps[last]), logarithmic: true, ticks }
     }
 
     /// Ticks at the values themselves where these are few and apart, with room at both ends.
@@ -182,8 +195,12 @@ mod tests {
 
     #[test]
     fn axes_of_charts_fit_their_values() {
-        assert_eq!(ticks(&Axis::of_effort(&[3.0, 0.0, 1500.0])), ["1", "10", "100", "1000", "10000"]);
-        assert_eq!(ticks(&Axis::of_effort(&[0.004, 0.9])), ["0.001", "0.01", "0.1", "1"]);
+        assert_eq!(ticks(&Axis::of_effort(&[3.0, 0.0, 1500.0])), ["10", "100", "1000"]);
+        let axis = Axis::of_effort(&[3.0, 1500.0]);
+        assert!(axis.fraction(2.0) == 0.0 && (axis.fraction(2000.0) - 1.0).abs() < 1e-12);
+        assert_eq!(ticks(&Axis::of_effort(&[0.04, 0.9, 2.0])), ["0.02", "0.05", "0.1", "0.2", "0.5", "1", "2"]);
+        assert_eq!(ticks(&Axis::between(&[0.05, 0.2])), ["0.05", "0.10", "0.15", "0.20"]);
+        assert_eq!(ticks(&Axis::between(&[1.31, 1.52])), ["1.30", "1.35", "1.40", "1.45", "1.50", "1.55"]);
         assert_eq!(ticks(&Axis::of_effort(&[3.0, 7.0])), ["0", "2", "4", "6", "8"]);
         assert_eq!(ticks(&Axis::of_l2(&[-0.25, -0.125, 0.0])), ["−0.25", "−0.125", "0"]);
         assert_eq!(ticks(&Axis::of_l2(&[0.0])), ["0"]);

@@ -89,7 +89,7 @@ impl RecordError {
     }
 
     /// What is wrong with JSON that ends in this line of the file.
-    pub(super) fn json(file: &str, line: usize, error: &serde_json::Error) -> Self {
+    pub(crate) fn json(file: &str, line: usize, error: &serde_json::Error) -> Self {
         let reason = error.to_string();
         let reason = reason.split(" at line ").next().unwrap_or_default();
         Self::malformed(file, line, format!("{reason} (character {})", error.column()))

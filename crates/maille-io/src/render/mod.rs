@@ -27,7 +27,7 @@ pub use camera::View;
 pub use color::{FORCE, KINDS, LOADS, UNLOADED};
 pub use error::RenderError;
 pub use film::film;
-pub use options::{Background, ColorBy, Extent, Forces, RenderOptions};
+pub use options::{Background, Caption, ColorBy, Extent, Forces, RenderOptions};
 pub use picture::{Picture, render, render_frames};
 pub use scene::{Subject, kinds};
 pub use torus::{Ray, first_hit};

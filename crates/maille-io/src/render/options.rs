@@ -39,8 +39,11 @@ pub enum Forces {
     /// They are not.
     #[default]
     None,
-    /// As arrows, seen through the rings: at each contact, the force on either ring.
+    /// As arrows, seen through the rings: at each contact, the force on either ring. In one cell where all would hide the
+    /// sheet.
     Arrows,
+    /// As arrows in the whole patch.
+    AllArrows,
 }
 
 /// What is behind the sheet.
@@ -53,6 +56,15 @@ pub enum Background {
     Transparent,
     /// A dark slide.
     Dark,
+}
+
+/// What stands above the sheet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Caption {
+    /// In words.
+    pub text: String,
+    /// The direction of the pull, shown as an arrow along both ways.
+    pub pull_deg: Option<f64>,
 }
 
 /// How a picture is taken.
@@ -72,6 +84,8 @@ pub struct RenderOptions {
     pub color: ColorBy,
     /// Contact forces.
     pub forces: Forces,
+    /// Above the sheet.
+    pub caption: Option<Caption>,
     /// Draw the outline of the cell.
     pub cell: bool,
     /// Draw a scale bar.
@@ -91,6 +105,7 @@ impl RenderOptions {
             background: Background::default(),
             color: ColorBy::default(),
             forces: Forces::default(),
+            caption: None,
             cell: false,
             scale_bar: true,
             shadow: true,

@@ -1,6 +1,12 @@
 //! What is written over the picture: scale bar, outline of the cell, what colours and arrows mean.
 
-use super::{camera::Camera, color, options::Background, scene::Scene};
+use super::{
+    camera::Camera,
+    color,
+    options::{Background, Caption},
+    scene::Scene,
+};
+use maille_geometry::Vec3;
 use std::fmt::Write;
 
 /// Words and lines over the picture, as SVG.
@@ -12,6 +18,7 @@ pub(super) struct Overlay<'a> {
     /// Lengths of the scene in one of the shown unit, and the unit's name; none without a scale bar.
     pub(super) scale: Option<(f64, String)>,
     pub(super) perspective: bool,
+    pub(super) caption: Option<&'a Caption>,
 }
 
 /// Size of letters for a picture of this size.
@@ -22,6 +29,11 @@ pub(super) fn letters(size: [u32; 2]) -> f64 {
 /// Height of the strip below the sheet for scale bar and keys.
 pub(super) fn strip(size: [u32; 2]) -> f64 {
     3.0 * letters(size)
+}
+
+/// Height of the strip above the sheet for a caption.
+pub(super) fn heading(size: [u32; 2]) -> f64 {
+    2.0 * letters(size)
 }
 
 /// Distance of everything from the picture's edge.
@@ -40,6 +52,9 @@ impl Overlay<'_> {
             self.scale_bar(&mut out, *length, unit);
         }
         self.keys(&mut out);
+        if let Some(caption) = self.caption {
+            self.heading(&mut out, caption);
+        }
         if out.is_empty() {
             return None;
         }
@@ -119,9 +134,51 @@ impl Overlay<'_> {
                 y - half,
                 y + half,
             );
-            let label = format!("contact force per unit of pull, longest {}", significant(most));
+            let of = if self.scene.forces_of_cell { " (of one cell)" } else { "" };
+            let label = format!("contact force per unit of pull{of}, longest {}", significant(most));
             text(out, [right, y - 0.75 * size], size, ink, "end", &label);
         }
+    }
+
+    /// The caption at the left, the pull at the right: an arrow along both ways of D as the camera sees it.
+    fn heading(&self, out: &mut String, caption: &Caption) {
+        let (ink, size, margin) = (self.ink(), letters(self.size), margin(self.size));
+        text(out, [margin, margin + 0.8 * size], size, ink, "start", &caption.text);
+        let Some(degrees) = caption.pull_deg else { return };
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let [from, to] = [Vec3::zeros(), Vec3::new(cos, sin, 0.0)].map(|p| self.camera.project(&p));
+        let along = [to[0] - from[0], to[1] - from[1]];
+        let length = along[0].hypot(along[1]);
+        // Seen along the pull, it has no direction in the picture.
+        if length * self.camera.pixel < 0.1 {
+            return;
+        }
+        let [x, y] = along.map(|part| part / length);
+        let middle = [f64::from(self.size[0]) - margin - 3.0 * size, margin + 2.6 * size];
+        let at = |forward: f64, aside: f64| {
+            [middle[0] + size * (forward * x - aside * y), middle[1] + size * (forward * y + aside * x)]
+        };
+        let mut path = String::new();
+        for way in [1.0, -1.0] {
+            let points = [at(way * 1.4, 0.0), at(way * 1.2, 0.42), at(way * 2.4, 0.0), at(way * 1.2, -0.42)];
+            let corner = |(k, [x, y]): (usize, &[f64; 2])| format!("{}{x:.2} {y:.2}", if k == 0 { "M" } else { "L" });
+            path += &points.iter().enumerate().map(corner).collect::<String>();
+            path.push('Z');
+        }
+        let [[x1, y1], [x2, y2]] = [at(-1.5, 0.0), at(1.5, 0.0)];
+        for (color, thick, edge) in [("#ffffff", 0.6, 0.36), (ink, 0.24, 0.0)] {
+            let _ = writeln!(
+                out,
+                "<path d=\"M{x1:.2} {y1:.2}L{x2:.2} {y2:.2}\" stroke=\"{color}\" stroke-width=\"{:.2}\"/>\
+                 <path d=\"{path}\" fill=\"{color}\" stroke=\"{color}\" stroke-width=\"{:.2}\" stroke-linejoin=\"round\"/>",
+                thick * size,
+                edge * size
+            );
+        }
+        // Beside the arrow, on the side that is higher.
+        let side = if x >= 0.0 { -1.3 } else { 1.3 };
+        let [x, y] = at(0.0, side);
+        text(out, [x, y + 0.35 * size], size, ink, "middle", "D");
     }
 
     fn cell(&self, out: &mut String, corners: [[f64; 2]; 4]) {

@@ -76,7 +76,8 @@ fn camera(scenes: &[Scene], options: &RenderOptions) -> Result<Camera, RenderErr
     let written = |scene: &Scene| scene.most_load.is_some() || scene.most_force.is_some();
     let written = options.scale_bar || scenes.iter().any(written);
     let strip = if written { overlay::strip(options.size) } else { 0.0 };
-    let frame = [margin, margin, f64::from(width) - margin, f64::from(height) - margin - strip];
+    let top = margin + if options.caption.is_some() { overlay::heading(options.size) } else { 0.0 };
+    let frame = [margin, top, f64::from(width) - margin, f64::from(height) - margin - strip];
     let tori: Vec<Torus> = scenes.iter().flat_map(|scene| &scene.tori).copied().collect();
     Camera::fit(options.view, options.perspective, &tori, frame)
 }
@@ -107,6 +108,7 @@ fn draw(
         background: options.background,
         scale: options.scale_bar.then_some(scale),
         perspective: options.perspective,
+        caption: options.caption.as_ref(),
     };
     if let Some(svg) = overlay.svg() {
         let fail = |e: &dyn std::fmt::Display| RenderError::Encode(e.to_string());

@@ -45,24 +45,36 @@ pub(super) struct Scene {
     pub(super) most_load: Option<f64>,
     /// Largest force of a contact, where arrows show it.
     pub(super) most_force: Option<f64>,
+    /// Whether the arrows are those of one cell alone.
+    pub(super) forces_of_cell: bool,
 }
 
 /// Length of the longest arrow, and radius of its shaft, in reference radii.
 const ARROW: (f64, f64) = (1.0, 0.05);
+/// More arrows than this on the area R² hide the sheet: those of one cell are shown then, with thinner shafts.
+const DENSE: f64 = 0.8;
+const THIN: f64 = 0.035;
 /// Forces below this fraction of the largest are not shown.
 const FORCE_SHOWN: f64 = 1e-3;
 
 impl Scene {
     pub(super) fn new(subject: &Subject<'_>, options: &RenderOptions) -> Result<Self, RenderError> {
         let Subject { model, state, contacts, .. } = *subject;
-        let arrows_shown = options.forces == Forces::Arrows;
+        let arrows_shown = options.forces != Forces::None;
         if contacts.is_empty() && (options.color == ColorBy::Load || arrows_shown) {
             return Err(RenderError::NoForces);
         }
         let (members, middle) = members(model, state, options.extent)?;
         let (colors, most_load) = colors_of_elements(model, contacts, options.color);
-        let mut scene =
-            Scene { tori: Vec::new(), colors: Vec::new(), arrows: Vec::new(), cell: None, most_load, most_force: None };
+        let mut scene = Scene {
+            tori: Vec::new(),
+            colors: Vec::new(),
+            arrows: Vec::new(),
+            cell: None,
+            most_load,
+            most_force: None,
+            forces_of_cell: false,
+        };
         for &(element, shift) in &members {
             for ring in model.elements[element].rings.clone() {
                 let circle = state.circle(model, ring, shift);
@@ -74,7 +86,8 @@ impl Scene {
             return Err(RenderError::Nothing);
         }
         if arrows_shown {
-            scene.add_arrows(subject, &members);
+            let only = (options.forces == Forces::Arrows).then_some(middle);
+            scene.add_arrows(subject, &members, only);
         }
         if options.cell {
             let corner = state.poses[0].position + state.translation(middle);
@@ -84,26 +97,32 @@ impl Scene {
         Ok(scene)
     }
 
-    /// Two arrows for each contact within the patch, from where the wires touch: what each ring feels from the other.
-    fn add_arrows(&mut self, subject: &Subject<'_>, members: &[(usize, Shift)]) {
+    /// Two arrows for each contact within the patch, from where the wires touch: what each ring feels from the other. Where
+    /// they are dense, those of the cell `only`.
+    fn add_arrows(&mut self, subject: &Subject<'_>, members: &[(usize, Shift)], only: Option<Shift>) {
         let Subject { model, state, contacts, .. } = *subject;
         let most = contacts.iter().map(|c| c.force).fold(0.0, f64::max);
         self.most_force = Some(most);
         let there: BTreeSet<_> = members.iter().copied().collect();
-        for contact in contacts.iter().filter(|c| c.force > FORCE_SHOWN * most) {
+        let shown = || contacts.iter().filter(|c| c.force > FORCE_SHOWN * most);
+        let dense = model.periodic && 2.0 * shown().count() as f64 > DENSE * state.a1.cross(&state.a2).norm();
+        let only = only.filter(|_| dense);
+        self.forces_of_cell = only.is_some();
+        let thickness = if dense { THIN } else { ARROW.1 };
+        for contact in shown() {
             let [a, b] = [contact.ring_a, contact.ring_b].map(|ring| model.rings[ring].element);
             let normal = Vec3::from(contact.normal);
             let on_a = Vec3::from(contact.point_a) / model.unit + normal * model.rings[contact.ring_a].minor_radius;
             let on_b = Vec3::from(contact.point_b) / model.unit - normal * model.rings[contact.ring_b].minor_radius;
-            for &(_, shift) in members.iter().filter(|m| m.0 == a) {
+            for &(_, shift) in members.iter().filter(|m| m.0 == a && only.is_none_or(|cell| cell == m.1)) {
                 let image = [shift[0] + contact.shift[0], shift[1] + contact.shift[1]];
                 if !there.contains(&(b, image)) {
                     continue;
                 }
                 let from = 0.5 * (on_a + on_b) + state.translation(shift);
                 let length = ARROW.0 * contact.force / most;
-                self.arrows.push(Arrow::new(from, normal, length, ARROW.1));
-                self.arrows.push(Arrow::new(from, -normal, length, ARROW.1));
+                self.arrows.push(Arrow::new(from, normal, length, thickness));
+                self.arrows.push(Arrow::new(from, -normal, length, thickness));
             }
         }
     }

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _native
+from . import _native, _polar
 from .design import Design, DesignLike, chosen
 from .errors import ArgumentError
 from .sheet import Sheet
@@ -119,37 +119,28 @@ class Record(Columns):
         return table
 
     def plot(self, quantity: Quantity = "stretch", *, ax: PolarAxes | None = None, **line: Any) -> PolarAxes:
-        """Draws the limits against the direction of pull, a curve for each l2, and gives the axes.
+        """Draws the limits against the direction of pull, a curve for each l2, as `maille plot` does, and gives the axes.
 
-        `quantity`: stretch (1 + l1), l1, or lambda1 (the larger eigenvalue of C, less 1). Directions without a limit are gaps.
-        A map to 180 degrees is drawn all round: a pull is the same in the opposite direction.
+        `quantity`: stretch (1 + l1), l1, or lambda1 (the larger eigenvalue of C, less 1). The centre is the sheet as it
+        is written, or below it if a limit is. Filled markers are limits that attain their proven bound, dashed lines bounds
+        that others do not; a cross marks a direction in which no limit was found. A map to 180 degrees is drawn all
+        round: a pull is the same in the opposite direction.
         """
+        label = {"stretch": "1 + l1", "l1": "l1", "lambda1": "lambda1 - 1"}.get(quantity)
+        if label is None:
+            raise ArgumentError("quantity", f"{quantity!r} is none", "give stretch, l1 or lambda1")
         if ax is None:
             from matplotlib import pyplot
             from matplotlib.projections import polar
 
             # Constrained: the legend beside the axes stays in the picture.
-            made = pyplot.figure(layout="constrained").add_subplot(projection="polar")
+            made = pyplot.figure(figsize=(7.5, 5.0), layout="constrained").add_subplot(projection="polar")
             assert isinstance(made, polar.PolarAxes)
             ax = made
-        table = self.to_numpy()
-        label = {"stretch": "1 + l1", "l1": "l1", "lambda1": "lambda1 - 1"}.get(quantity)
-        if label is None:
-            raise ArgumentError("quantity", f"{quantity!r} is none", "give stretch, l1 or lambda1")
-        values = table["lambda1"] - 1 if quantity == "lambda1" else table["l1"] + (quantity == "stretch")
-        for l2 in dict.fromkeys(table["l2"].tolist()):
-            chosen = table["l2"] == l2
-            direction, value = table["direction_deg"][chosen], values[chosen]
-            order = np.argsort(direction, kind="stable")
-            direction, value = direction[order], value[order]
-            if direction.size > 1 and direction[0] == 0 and direction[-1] == 180:
-                direction = np.concatenate([direction, direction[1:] + 180])
-                value = np.concatenate([value, value[1:]])
-            free = bool(np.all(table["lateral"][chosen] == "free"))
-            ax.plot(np.deg2rad(direction), value, **{"label": "width free" if free else f"l2 = {l2:g}", **line})
+        _polar.draw(ax, self.to_numpy(), quantity, line)
         ax.set_rlabel_position(67.5)
-        ax.set_title(f"{self.design.name}: {label}")
-        ax.legend(loc="upper left", bbox_to_anchor=(1.05, 1.0))
+        ax.set_title(f"{self.design.name}: {label}", loc="left", pad=24)
+        ax.legend(loc="upper left", bbox_to_anchor=(1.1, 1.0), frameon=False)
         return ax
 
     def save(self, folder: str | os.PathLike[str], *, quantity: Quantity = "stretch", overwrite: bool = False) -> None:
