@@ -131,7 +131,10 @@ fn a_surface_is_plotted_tabulated_and_verified() {
     let found: serde_json::Value = serde_json::from_str(&out).unwrap();
     let found = &found["surfaces"][0];
     let (proved, certified) = (found["proved"].as_u64().unwrap(), found["certified"].as_u64().unwrap());
-    assert!(matches!(code, Some(0 | 5)) && certified > 100 && 10 * proved > 8 * certified, "{proved} of {certified} {err}");
+    assert!(
+        matches!(code, Some(0 | 5)) && certified > 100 && 10 * proved > 8 * certified,
+        "{proved} of {certified} {err}"
+    );
     // A ring moved by a tenth of R: its state, whose checksum is made right again, is refuted.
     let (states, head) = (text("s/surface.jsonl"), text("s/surface.json"));
     let first = states.lines().next().unwrap();
@@ -157,7 +160,19 @@ fn a_radius_study_is_drawn() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     for radius in ["0.05", "0.1"] {
-        let map = ["characterize", "1.1", "--minor-radius", radius, "--directions", "0,45", "--l2", "0", "--quiet", "--out", radius];
+        let map = [
+            "characterize",
+            "1.1",
+            "--minor-radius",
+            radius,
+            "--directions",
+            "0,45",
+            "--l2",
+            "0",
+            "--quiet",
+            "--out",
+            radius,
+        ];
         done(folder, &map);
     }
     done(folder, &["plot", "0.1", "0.05", "--kind", "radius", "-o", "r.svg", "-o", "r.pdf"]);
