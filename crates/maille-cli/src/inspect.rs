@@ -167,6 +167,11 @@ fn once(args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::from(exit::DONE))
 }
 
+/// A ring as JSON names it: without the quotes that set its element off in a sentence.
+fn ring_name(model: &Model, ring: usize, shift: Shift) -> String {
+    model.ring_label(ring, shift).replace('"', "")
+}
+
 fn inspection(input: &Input, model: &Model, args: &Args) -> Result<Inspection> {
     let design = &input.design;
     let (a1, a2) = (model.start.a1, model.start.a2);
@@ -193,7 +198,7 @@ fn inspection(input: &Input, model: &Model, args: &Args) -> Result<Inspection> {
     };
     let gap = topology::smallest_gap(model, &model.start).map(|(gap, pair)| Gap {
         gap: gap * model.unit,
-        rings: [model.ring_label(pair.ring_a, [0, 0]), model.ring_label(pair.ring_b, pair.shift)],
+        rings: [ring_name(model, pair.ring_a, [0, 0]), ring_name(model, pair.ring_b, pair.shift)],
     });
     let binding_vectors = topology::binding_vectors(model);
     let (chains, bounds) = if binding_vectors.is_empty() { Default::default() } else { bounds(model) };
@@ -265,7 +270,7 @@ fn bounds(model: &Model) -> (Vec<Chain>, Vec<Bound>) {
     let chains = chain.chains().map(|binding| Chain {
         vector: binding.vector,
         length: binding.length * model.unit,
-        rings: binding.rings.iter().map(|(ring, shift)| model.ring_label(*ring, *shift)).collect(),
+        rings: binding.rings.iter().map(|(ring, shift)| ring_name(model, *ring, *shift)).collect(),
     });
     let bounds = BOUND_DIRECTIONS.map(|direction_deg| {
         let bound = best_bound(&chain, Some(&link), Direction::of_degrees(direction_deg), 0.0);

@@ -199,7 +199,7 @@ fn view(canvas: &mut Canvas, Panel { left, top, width, height }: Panel, boundary
         let fill = hex(colour(boundary.vertices[worst].status).map(|x| (f64::from(x) * light).min(255.0) as u8));
         canvas.path(&corners.map(|k| at(&points[k])), true, &fill, Stroke::solid(&fill, 0.6));
     }
-    let corner = [left + 4.0, top + height + 12.0];
+    let corner = [left + 4.0, top + height + 22.0];
     for (i, name) in NAMES.iter().enumerate() {
         let mut p = center;
         p[i] += 0.16 * size[i];
@@ -208,5 +208,5 @@ fn view(canvas: &mut Canvas, Panel { left, top, width, height }: Panel, boundary
         canvas.line([corner[0] + 8.0, corner[1]], tip, Stroke::solid(RIM, 1.4));
         canvas.text([tip[0] + 3.0, tip[1] + 3.0], style(11.0, SOFT, Anchor::Start), name);
     }
-    canvas.text([left, top - 7.0], style(12.0, INK, Anchor::Start), "In space, each axis to its own scale");
+    canvas.text([left, top - 7.0], style(12.0, INK, Anchor::Start), "In space (axes scaled)");
 }
