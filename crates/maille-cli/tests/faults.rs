@@ -282,9 +282,9 @@ fn a_surface_that_was_edited_is_refused_and_one_that_was_cut_goes_on() {
 fn a_simulation_that_was_cut_or_edited_is_refused_and_none_is_a_mixture() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    let simulate = "simulate 1.1 --tile 2x2 --fix left --pull right=3,0,0 --steps 4 --out out --quiet";
+    let simulate = "simulate 1.1 --tile 2x2 --fix left --pull right=3,0,0 --steps 4 --out out --overwrite --quiet";
     assert_eq!(said(&maille(folder, simulate)).0, 0);
-    let read = "export --from out --out sheet.obj";
+    let read = "export --from out --out sheet.obj --overwrite";
     assert_eq!(said(&maille(folder, read)).0, 0);
     for name in ["simulation.json", "frames.jsonl", "forces.csv"] {
         let path = folder.join("out").join(name);

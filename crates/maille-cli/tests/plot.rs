@@ -29,11 +29,11 @@ fn every_kind_is_drawn_from_records() {
     assert_eq!(text("maille-out/polar-1.1.svg"), text("a/polar.svg"));
     for kind in ["polar", "difference", "steps", "times"] {
         let png = format!("new/{kind}.png");
-        done(folder, &["plot", "a", "1.2", "--kind", kind, "-o", "x.svg", "-o", &png]);
+        done(folder, &["plot", "a", "1.2", "--kind", kind, "--overwrite", "-o", "x.svg", "-o", &png]);
         assert!(text("x.svg").contains(">1.1 and 1.2<") && text("x.svg").contains(">1.2<"), "{kind}");
         assert!(std::fs::read(folder.join(png)).unwrap().starts_with(b"\x89PNG"));
     }
-    done(folder, &["plot", "a", "--where", "l2=0", "--quantity", "l1", "-o", "x.svg"]);
+    done(folder, &["plot", "a", "--where", "l2=0", "--quantity", "l1", "--overwrite", "-o", "x.svg"]);
     assert!(!text("x.svg").contains(">−0.25<"));
 
     let wrong = |arguments: &[&str]| {
@@ -58,12 +58,15 @@ fn a_reference_cell_is_drawn() {
     for (reference, word) in
         [("largest-cell", "Largest cell"), ("smallest-cell", "Smallest cell"), ("tightest", "Smallest cell")]
     {
-        done(folder, &["plot", "a", "--reference", reference, "--where", "l2=0", "-o", "r.svg", "-o", "r.png"]);
+        done(
+            folder,
+            &["plot", "a", "--reference", reference, "--where", "l2=0", "--overwrite", "-o", "r.svg", "-o", "r.png"],
+        );
         assert!(text("r.svg").contains(word) && text("r.svg").contains('λ'), "{reference}");
         assert!(std::fs::read(folder.join("r.png")).unwrap().starts_with(b"\x89PNG"));
     }
     let curve = |record: &str, reference: &str| {
-        done(folder, &["plot", record, "--reference", reference, "--where", "l2=0", "-o", "c.svg"]);
+        done(folder, &["plot", record, "--reference", reference, "--where", "l2=0", "--overwrite", "-o", "c.svg"]);
         text("c.svg")
     };
     assert!(

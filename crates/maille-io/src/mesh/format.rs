@@ -115,22 +115,22 @@ impl MeshFile {
         // A torus has half as many vertices, and as many quadrilaterals, as triangles.
         let corners = triangles / 2;
         let shapes = scene.shapes.iter().map(|shape| shape.triangle_count() as u64).sum::<u64>();
-        let fixed = 1_000;
-        fixed
-            + match self {
-                MeshFile::Stl => 50 * triangles,
-                MeshFile::Ply => 15 * corners + 13 * triangles,
-                MeshFile::Obj => {
-                    let index = u64::from(corners.max(1).ilog10()) + 2;
-                    32 * corners + (3 * index + 1) * triangles
-                }
-                // Deflated text: meshes once, a line for each ring.
-                MeshFile::ThreeMf => 10 * shapes + 4 * rings,
-                MeshFile::Glb => 18 * shapes + 130 * rings,
-                MeshFile::VtkRings => (24 + 20 + 20) * corners,
-                MeshFile::VtkPoses => 60 * rings,
-                MeshFile::VtkContacts => 56 * scene.contacts.len() as u64,
+        let head =
+            if matches!(self, MeshFile::VtkRings | MeshFile::VtkPoses | MeshFile::VtkContacts) { 2_500 } else { 1_000 };
+        head + match self {
+            MeshFile::Stl => 50 * triangles,
+            MeshFile::Ply => 15 * corners + 13 * triangles,
+            MeshFile::Obj => {
+                let index = u64::from(corners.max(1).ilog10()) + 2;
+                32 * corners + (3 * index + 1) * triangles
             }
+            // Deflated text: meshes once, a line for each ring.
+            MeshFile::ThreeMf => 17 * shapes / 2 + 7 * rings / 2,
+            MeshFile::Glb => 18 * shapes + 130 * rings,
+            MeshFile::VtkRings => (24 + 20 + 20) * corners,
+            MeshFile::VtkPoses => 60 * rings,
+            MeshFile::VtkContacts => 56 * scene.contacts.len() as u64,
+        }
     }
 
     /// Writes `scene`. The same scene gives the same bytes.
