@@ -7,7 +7,11 @@ use maille::{answer::Answer, solver::certificate::Certificate};
 pub fn search(found: &Answer) -> String {
     let (starts, distinct) = (found.n_starts.unwrap_or(0), found.n_distinct.unwrap_or(0));
     let kept = if found.links_ok == Some(true) { "kept" } else { "LOST" };
-    format!("{} led to {}; links {kept}", counted(starts as usize, "start"), counted(distinct as usize, "certified value"))
+    format!(
+        "{} led to {}; links {kept}",
+        counted(starts as usize, "start"),
+        counted(distinct as usize, "certified value")
+    )
 }
 
 /// One line of what was checked.

@@ -119,7 +119,8 @@ mod tests {
         let mut program = Args::command();
         program.build();
         let mut known: Vec<&str> = program.get_subcommands().map(Command::get_name).collect();
-        let mut grouped: Vec<&str> = GROUPS.iter().flat_map(|(_, commands)| commands.iter().map(|(name, _)| *name)).collect();
+        let mut grouped: Vec<&str> =
+            GROUPS.iter().flat_map(|(_, commands)| commands.iter().map(|(name, _)| *name)).collect();
         known.sort_unstable();
         grouped.sort_unstable();
         assert_eq!(known, grouped);

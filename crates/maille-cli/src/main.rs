@@ -52,7 +52,11 @@ use std::process::ExitCode;
 ///
 /// Each limit has a certificate, and many have a proof that nothing stretches further.
 #[derive(Parser)]
-#[command(name = "maille", version, arg_required_else_help = true, after_help = "\
+#[command(
+    name = "maille",
+    version,
+    arg_required_else_help = true,
+    after_help = "\
 Examples:
   maille characterize 1.1            the limits of a built-in design
   maille characterize my-weave.toml --directions 0:90:5 --l2 0
@@ -77,7 +81,8 @@ Exit codes:
   130  interrupted by Ctrl-C or SIGTERM; the same command continues
 
 NO_COLOR=1 turns colours off. Where standard error is not a terminal, progress
-is plain lines.")]
+is plain lines."
+)]
 struct Args {
     #[command(subcommand)]
     command: Command,

@@ -16,10 +16,7 @@ use maille_io::{
     run::{Map, MapError, OpenMap, run_all},
 };
 use miette::{IntoDiagnostic, Report, Result, WrapErr};
-use std::{
-    path::Path,
-    sync::atomic::Ordering,
-};
+use std::{path::Path, sync::atomic::Ordering};
 
 /// How a run writes and ends, and on how many threads.
 #[derive(clap::Args)]

@@ -69,7 +69,8 @@ impl State {
         }
         long.retain(|(time, _)| *time >= LONG);
         for (k, (time, name)) in long.iter().take(NAMED).enumerate() {
-            let _ = write!(line, "{}{name} for {}", if k == 0 { "; at work: " } else { ", " }, FormattedDuration(*time));
+            let _ =
+                write!(line, "{}{name} for {}", if k == 0 { "; at work: " } else { ", " }, FormattedDuration(*time));
         }
         if long.len() > NAMED {
             let _ = write!(line, " and {} more", long.len() - NAMED);

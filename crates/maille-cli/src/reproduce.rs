@@ -132,8 +132,9 @@ fn chosen(names: &[String], folder: Option<&Path>) -> Result<Vec<Chosen>> {
 fn given(folder: &Path) -> Result<Vec<PathBuf>> {
     let names =
         || format!("name its files as in the thesis: {}", DESIGNS.map(|name| format!("{name}.toml")).join(", "));
-    let entries = std::fs::read_dir(folder)
-        .map_err(|e| wrong(exit::USAGE, format!("{} is not a folder that can be read: {e}", folder.display()), names()))?;
+    let entries = std::fs::read_dir(folder).map_err(|e| {
+        wrong(exit::USAGE, format!("{} is not a folder that can be read: {e}", folder.display()), names())
+    })?;
     let mut files = Vec::new();
     for entry in entries {
         let file = entry.into_diagnostic()?.path();

@@ -161,7 +161,11 @@ impl SourceArgs {
     fn of_record(&self, at: At, input: Option<&Input>, folder: &Path) -> Result<Source> {
         if at.frame.is_some() {
             let help = "frames are those of `maille simulate`; a limit is named as --at direction=30,l2=-0.125";
-            return Err(wrong(exit::USAGE, format!("{} is not a simulation: it has no frames", folder.display()), help));
+            return Err(wrong(
+                exit::USAGE,
+                format!("{} is not a simulation: it has no frames", folder.display()),
+                help,
+            ));
         }
         let record = match input {
             Some(input) if self.from.is_none() && !holds_record(folder) => {

@@ -141,7 +141,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         say!("all rows are in {}", out.join("limits.csv").display());
         if unanswered > 0 {
             let (limits, folder) = (counted(unanswered, "limit"), out.display());
-            say!("{limits} not found: `maille table {folder} --where l1=none` shows which, docs/guide/certificates.md what to try");
+            say!(
+                "{limits} not found: `maille table {folder} --where l1=none` shows which, docs/guide/certificates.md what to try"
+            );
         }
     }
     let code = if unused.is_empty() { args.run.code(unanswered > 0) } else { exit::LEFT_OUT };

@@ -114,8 +114,7 @@ mod with_viewer {
             let cancel = interrupt::flag(false)?;
             let total = map.question.tasks().len();
             let progress = Progress::new("limits", 0, total, false);
-            let record =
-                pool(args.threads)?.install(|| solve_map(&opened, &map, &cancel, &|_| progress.step()));
+            let record = pool(args.threads)?.install(|| solve_map(&opened, &map, &cancel, &|_| progress.step()));
             progress.finish();
             if cancel.load(Ordering::Relaxed) {
                 return Err(wrong(exit::INTERRUPTED, "interrupted", "nothing was written"));

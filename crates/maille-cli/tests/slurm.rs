@@ -47,8 +47,7 @@ fn tasks_of_a_job_array_are_stopped_and_requeued_until_they_are_done() {
     fs::write(folder.join("studies.txt"), studies.join("\n") + "\n").unwrap();
     let stand_in = here.join("tests/sbatch.sh");
     let task = |k: usize| shell(folder, &format!("sh '{}' job.sh {k} 0.2", stand_in.display())).spawn().unwrap();
-    let tasks: Vec<Output> =
-        [task(1), task(2)].into_iter().map(|child| child.wait_with_output().unwrap()).collect();
+    let tasks: Vec<Output> = [task(1), task(2)].into_iter().map(|child| child.wait_with_output().unwrap()).collect();
     for (done, r) in tasks.iter().zip(radii) {
         let (said, errors) = (String::from_utf8_lossy(&done.stdout), String::from_utf8_lossy(&done.stderr));
         assert_eq!(done.status.code(), Some(0), "{said}{errors}");

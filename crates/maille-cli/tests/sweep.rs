@@ -65,7 +65,9 @@ fn designs_that_cannot_be_used_stop_nothing() {
     let ended = maille(folder, "sweep some.toml -q");
     assert_eq!(ended.status.code(), Some(6));
     let said = String::from_utf8_lossy(&ended.stderr).into_owned();
-    for words in ["missing.toml could not be used", "there is no file", "broken.toml could not be used", "broken.toml:1:"] {
+    for words in
+        ["missing.toml could not be used", "there is no file", "broken.toml could not be used", "broken.toml:1:"]
+    {
         assert!(said.contains(words), "{words}: {said}");
     }
     assert_eq!(fs::read_to_string(folder.join("maille-out/some/limits.csv")).unwrap().lines().count(), 3);
@@ -85,7 +87,8 @@ fn a_folder_of_a_sweep_stands_for_its_records() {
                  [[designs]]\ndesign = \"1.1\"\nname = \"free\"\nlateral = \"free\"\ndirections = 30\n";
     fs::write(folder.join("wide.toml"), study).unwrap();
     done(folder, "sweep wide.toml -q");
-    let table = done(folder, "table wide --columns spacing,elements.standing-*.rings.major_radius,lateral,l1 --format csv");
+    let table =
+        done(folder, "table wide --columns spacing,elements.standing-*.rings.major_radius,lateral,l1 --format csv");
     let rows: Vec<&str> = table.lines().skip(1).collect();
     let count = |start: &str| rows.iter().filter(|row| row.starts_with(start)).count();
     assert_eq!((rows.len(), count("0.95,1,fixed,"), count("1,1,fixed,"), count(",,free,")), (17, 8, 8, 1), "{table}");
@@ -111,6 +114,9 @@ fn limits_that_are_not_found_may_be_allowed() {
     let said = String::from_utf8_lossy(&ended.stdout).into_owned();
     assert!(said.contains("1 not-converged: raise --max-iterations"), "{said}");
     assert!(said.contains("`maille table maille-out/1.1 --where l1=none` shows"), "{said}");
-    assert_eq!(done(folder.path(), "table maille-out/1.1 --where l1=none --columns status --format csv"), "status\nnot-converged\n");
+    assert_eq!(
+        done(folder.path(), "table maille-out/1.1 --where l1=none --columns status --format csv"),
+        "status\nnot-converged\n"
+    );
     done(folder.path(), &format!("{hard} --allow-incomplete"));
 }

@@ -156,7 +156,10 @@ enum Held {
 }
 
 #[derive(Deserialize)]
-#[serde(untagged, expecting = "this is neither a number, nor a list such as [0.05, 0.1], nor a range such as \"0:180:15\"")]
+#[serde(
+    untagged,
+    expecting = "this is neither a number, nor a list such as [0.05, 0.1], nor a range such as \"0:180:15\""
+)]
 enum List {
     One(f64),
     Several(Vec<f64>),
@@ -232,7 +235,9 @@ impl RawStudy {
 /// Refuses l2 beside a width that is left to the sheet.
 fn held_and_free(lateral: &Spanned<Held>, l2: &Spanned<List>) -> Result<(), Wrong> {
     match lateral.get_ref() {
-        Held::Free => Err(wrong(l2, "l2 holds the width that lateral = \"free\" leaves to the sheet", "leave one of them out")),
+        Held::Free => {
+            Err(wrong(l2, "l2 holds the width that lateral = \"free\" leaves to the sheet", "leave one of them out"))
+        }
         Held::Fixed => Ok(()),
     }
 }
@@ -259,10 +264,8 @@ impl RawDesign {
         let free = |own: &Option<Spanned<Held>>, of_study: &Option<Spanned<Held>>| {
             own.as_ref().or(of_study.as_ref()).is_some_and(|held| *held.get_ref() == Held::Free)
         };
-        let across = Across {
-            lateral_free: free(&self.lateral, &study.lateral),
-            shear_free: free(&self.shear, &study.shear),
-        };
+        let across =
+            Across { lateral_free: free(&self.lateral, &study.lateral), shear_free: free(&self.shear, &study.shear) };
         if let (Some(lateral), Some(l2)) = (self.lateral.as_ref().or(study.lateral.as_ref()), &self.l2) {
             held_and_free(lateral, l2)?;
         }

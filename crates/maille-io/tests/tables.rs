@@ -105,7 +105,8 @@ fn what_a_study_varies_is_a_column() {
     let mut chosen = Table::new(&records, Field::parse_list("record,spacing,l2").unwrap());
     chosen.keep(&Condition::parse_list("spacing=0.75").unwrap());
     assert_eq!(chosen.csv(), "record,spacing,l2\nout/b,0.75,0.25\n");
-    let json: Value = serde_json::from_str(&Table::new(&records[1..], Field::all(&records[1..], false)).json()).unwrap();
+    let json: Value =
+        serde_json::from_str(&Table::new(&records[1..], Field::all(&records[1..], false)).json()).unwrap();
     let units: Vec<&Value> = json["columns"].as_array().unwrap().iter().rev().take(2).map(|c| &c["unit"]).collect();
     assert_eq!(units, ["1", "mm"]);
     let shown = Table::new(&records, Field::first_look(&records)).text(Extent::default());

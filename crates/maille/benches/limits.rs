@@ -48,11 +48,17 @@ fn medians() {
             let mut best = [f64::INFINITY; L2.len()];
             for _ in 0..5 {
                 let mut begun = Instant::now();
-                method.limits(Direction::of_degrees(direction), &L2, &AtomicBool::new(false), &|_| (), &mut |k, limit| {
-                    best[k] = best[k].min(begun.elapsed().as_secs_f64());
-                    drop(divan::black_box(limit));
-                    begun = Instant::now();
-                });
+                method.limits(
+                    Direction::of_degrees(direction),
+                    &L2,
+                    &AtomicBool::new(false),
+                    &|_| (),
+                    &mut |k, limit| {
+                        best[k] = best[k].min(begun.elapsed().as_secs_f64());
+                        drop(divan::black_box(limit));
+                        begun = Instant::now();
+                    },
+                );
             }
             times.extend(best);
         }
@@ -79,10 +85,16 @@ fn scaling() {
         let mut global = 0;
         for direction in [0.0, 15.0, 30.0, 75.0, 100.0, 140.0] {
             let begun = Instant::now();
-            method.limits(Direction::of_degrees(direction), &[0.0], &AtomicBool::new(false), &|_| (), &mut |_, limit| {
-                found.push((begun.elapsed().as_secs_f64(), limit.iterations));
-                global += usize::from(limit.status == Status::Global);
-            });
+            method.limits(
+                Direction::of_degrees(direction),
+                &[0.0],
+                &AtomicBool::new(false),
+                &|_| (),
+                &mut |_, limit| {
+                    found.push((begun.elapsed().as_secs_f64(), limit.iterations));
+                    global += usize::from(limit.status == Status::Global);
+                },
+            );
         }
         let mut times: Vec<f64> = found.iter().map(|f| f.0).collect();
         let mut programs: Vec<u64> = found.iter().map(|f| f.1).collect();
