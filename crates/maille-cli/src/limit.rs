@@ -32,7 +32,7 @@ use std::{process::ExitCode, str::FromStr, time::Instant};
 Examples:
   maille limit european-4-in-1 --maximize eyy --free exx,exy
   maille limit 1.1 --maximize exx --fix eyy=0.05 --free exy
-  maille limit 1.1 --minimize exx --direction 30 --free eyy,exy      pushed together along 30 degrees
+  maille limit 1.1 --minimize exx --direction 30 --free eyy,exy      compressed along 30 degrees
   maille limit european-4-in-1 --minimize eyy --free exx,exy --cell 1x5 --starts 64
   maille limit 3.1 --maximize exy --json
 

@@ -28,13 +28,14 @@ Examples:
   maille table 1.1 3.1 --where 'l2<0,status=local' --sort=-l1 --rows 10
   maille table 1.1 --columns direction,l2,l1,bound_gap --where 'bound_gap>1e-6'
   maille table maille-out/* -o limits.parquet             for polars, pandas, DuckDB
+  maille table radius --where spacing=1                   of the study radius.toml
   maille table 1.1 --where l1=none --format csv
 
-Conditions: = != < <= > >=, divided by commas, all must hold. a|b is either, none is an empty value, and what has a \
+Conditions: = != < <= > >=, separated by commas; all must hold. a|b means either, none an empty value. What has a \
 comma stands in double quotes: 'cell=\"1,0;-1,2\"'. Numbers are equal if nine digits are. direction is short for \
 direction_deg, r for minor_radius; record is the folder that a row comes from.")]
 pub struct Args {
-    /// Folders of records, or the folder of one surface; NAME stands for maille-out/NAME
+    /// Folders of records, of a sweep for all its records, or of one surface; NAME stands for maille-out/NAME
     #[arg(required = true, value_name = "RECORD")]
     records: Vec<PathBuf>,
     /// Only rows that meet these conditions; may be given several times

@@ -32,24 +32,24 @@ pub fn fuse(close: &mesh::TooClose, clearance: f64, mm: f64, source: &Source) ->
         n => format!("{n} pairs of the cell are"),
     };
     let thinner = match (close.minor_radius_factor, design.minor_radius) {
-        (None, _) => "no minor radius would leave it in this state".to_owned(),
+        (None, _) => "no minor radius gives that in this state".to_owned(),
         (Some(f), Some(r)) if design.elements.iter().flat_map(|e| &e.rings).all(|ring| ring.minor_radius.is_none()) => {
-            format!("minor_radius = {} would leave it (now {r})", down(f * r))
+            format!("minor_radius = {} would give that (now {r})", down(f * r))
         }
-        (Some(f), _) => format!("{} times every minor_radius would leave it", down(f)),
+        (Some(f), _) => format!("{} times every minor_radius would give that", down(f)),
     };
     let larger = match close.scale_factor {
-        Some(f) => format!("--scale {} would leave it (now {mm})", up(f * mm)),
-        None => "rings touch, so no --scale would leave it".to_owned(),
+        Some(f) => format!("--scale {} would give that (now {mm})", up(f * mm)),
+        None => "rings touch, so no --scale gives that".to_owned(),
     };
     let finer =
-        close.segments.map_or(String::new(), |s| format!("\n--segments {}x{} would leave it", s.around, s.across));
+        close.segments.map_or(String::new(), |s| format!("\n--segments {}x{} would give that", s.around, s.across));
     let state = match (&source.locked, &source.extreme) {
         (Some(_), _) => "\nin a locked state rings touch: print the starting state",
         (None, None) => "\n--at roomiest is the state with the widest gaps",
         (None, Some(_)) => "",
     };
-    let help = format!("{thinner}\n{larger}{finer}\n--warn writes all the same{state}");
+    let help = format!("{thinner}\n{larger}{finer}\n--warn writes the file anyway{state}");
     wrong(
         exit::USAGE,
         format!(

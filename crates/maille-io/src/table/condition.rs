@@ -44,7 +44,7 @@ const UNEQUAL: &str = "!=";
 const EMPTY: &str = "none";
 
 impl Condition {
-    /// Reads conditions that must all hold, divided by commas: `direction=30,l2=-0.125`. A value with a comma stands in
+    /// Reads conditions that must all hold, separated by commas: `direction=30,l2=-0.125`. A value with a comma stands in
     /// double quotes; `none` is a value that is not there; `a|b` is either.
     pub fn parse_list(text: &str) -> Result<Vec<Self>, TableError> {
         let mut quoted = false;
