@@ -3,7 +3,7 @@
 use crate::{
     api::{Listed, Palette, Shown, Start},
     error::ViewError,
-    records::{self, Recorded, USUAL},
+    records::{self, Opened, Recorded, USUAL},
     refusal::Refusal,
     sheet, simulated,
     work::Work,
@@ -14,19 +14,6 @@ use maille_io::{
     weave::Weave,
 };
 use std::{path::PathBuf, sync::Arc};
-
-/// A design to open.
-#[derive(Clone, Debug)]
-pub struct Opened {
-    /// The name that errors show: a built-in name or a path.
-    pub name: String,
-    /// The design file, if it is one that may be written again.
-    pub file: Option<PathBuf>,
-    /// Its text.
-    pub text: String,
-    /// A record of it, with its name.
-    pub record: Option<(String, Recorded)>,
-}
 
 /// What a server knows.
 #[derive(Debug)]

@@ -20,9 +20,9 @@ mod simulated;
 mod solve;
 mod work;
 
-pub use app::{App, Opened};
+pub use app::App;
 pub use error::ViewError;
-pub use records::Recorded;
+pub use records::{Opened, Recorded};
 pub use refusal::Refusal;
 pub use routes::router;
 

@@ -1,6 +1,6 @@
 //! Folders that the page may open: records of limits and of simulations, alone or in the folder of a sweep.
 
-use crate::{api::Listed, app::Opened};
+use crate::api::Listed;
 use maille_io::{
     record::{Record, RecordError, SIMULATION, SimulationFiles, open_simulation},
     write_design,
@@ -13,6 +13,19 @@ pub const USUAL: &str = "maille-out";
 const OF_SWEEP: &str = "records";
 /// File that a record of limits has.
 const RUN: &str = "run.json";
+
+/// A design to open.
+#[derive(Clone, Debug)]
+pub struct Opened {
+    /// The name that errors show: a built-in name or a path.
+    pub name: String,
+    /// The design file, if it is one that may be written again.
+    pub file: Option<PathBuf>,
+    /// Its text.
+    pub text: String,
+    /// A record of it, with its name.
+    pub record: Option<(String, Recorded)>,
+}
 
 /// What a record holds.
 #[derive(Clone, Debug)]

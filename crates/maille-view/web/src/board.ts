@@ -196,7 +196,9 @@ export class Board {
       return resized(design, index, radius);
     }
     const from = attitude(normal, this.selection.turn);
-    const to = handle === "turn" ? { ...from, turn: directionOf([dx, dy]) } : { ...from, tilt: tiltOf(from.turn, [dx / R, dy / R]) };
+    const to = { ...from };
+    if (handle === "turn") to.turn = directionOf([dx, dy]);
+    else to.tilt = tiltOf(from.turn, [dx / R, dy / R]);
     this.selection.turn = to.turn;
     this.said.textContent = `${element.name}: turn ${short(to.turn, 2)}°, tilt ${short(to.tilt, 2)}°`;
     return turned(design, index, from, to);

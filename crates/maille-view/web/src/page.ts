@@ -41,6 +41,7 @@ export class Page {
     this.editor = new Editor(state.a, start.weaves);
     this.drawing = new DrawPanel(state.a, start.palette);
     const boxes = { a: h("div", { class: "stage" }), b: h("div", { class: "stage second", hidden: true }) };
+    const board = start.bundle ? [] : [this.drawing.board.node];
     const info = new ElementInfo(state);
     const legend = new ColorLegend(state);
     const scrubber = new Scrubber(state);
@@ -55,7 +56,7 @@ export class Page {
         h(
           "section",
           { class: "view", "aria-label": "Sheet" },
-          h("div", { class: "stages" }, ...(start.bundle ? [] : [this.drawing.board.node]), boxes.a, boxes.b, info.node, legend.node, this.notice),
+          h("div", { class: "stages" }, ...board, boxes.a, boxes.b, info.node, legend.node, this.notice),
           scrubber.node,
         ),
         h(

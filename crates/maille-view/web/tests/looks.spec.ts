@@ -90,6 +90,7 @@ for (const width of [1440, 1024, 390]) {
     await clickMap(page, 45, 0.6);
     await expect(page.locator("data.l1")).toBeVisible();
     await page.evaluate(() => scrollTo(0, 0));
+    await page.mouse.move(1, 1); // no hint of what lies under the pointer
     const shot = (name: string) =>
       page.screenshot({ path: `test-results/${name}-${width}.png`, fullPage: width === 390 });
     await page.waitForTimeout(300);
