@@ -16,6 +16,7 @@ mod exit;
 mod export;
 mod extreme;
 mod figure;
+mod findings;
 mod help;
 mod input;
 mod inspect;

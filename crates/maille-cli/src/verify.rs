@@ -2,6 +2,7 @@
 
 use crate::{
     exit::{self, wrong},
+    findings::{marked, say_checks, text},
     map, output,
     progress::Progress,
     records,
@@ -10,13 +11,11 @@ use crate::{
     verify_proof::{self, VerifiedProof},
     verify_surface::{self, VerifiedSurface, is_surface},
 };
-use maille_verify::{Check, Finding, RowReport, Texts, Verdict, Verifier};
-use miette::{IntoDiagnostic, Result, WrapErr};
+use maille_verify::{Finding, RowReport, Texts, Verdict, Verifier};
+use miette::Result;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::{
-    fs,
-    io::ErrorKind,
     path::{Path, PathBuf},
     process::ExitCode,
 };
@@ -137,19 +136,6 @@ fn verified(folder: &Path, pool: &rayon::ThreadPool, quiet: bool) -> Result<Veri
     Ok(out)
 }
 
-/// A file of a folder, if it is there.
-pub fn text(folder: &Path, name: &str) -> Result<Option<String>> {
-    let path = folder.join(name);
-    match fs::read_to_string(&path) {
-        Ok(text) => Ok(Some(text)),
-        Err(e) if e.kind() == ErrorKind::NotFound => Ok(None),
-        Err(e) if e.kind() == ErrorKind::InvalidData => {
-            Err(wrong(exit::RECORD, format!("{} is not a text file", path.display()), DAMAGED))
-        }
-        Err(e) => Err(e).into_diagnostic().wrap_err_with(|| format!("cannot read {}", path.display())),
-    }
-}
-
 impl Verified {
     fn code(&self) -> u8 {
         let of_files = self.files.iter().map(|f| f.verdict).max();
@@ -186,45 +172,5 @@ fn tell(record: &Verified, all: bool) {
     }
     if rows.len() > most {
         output::say!("  {} more rows: --rows lists all", rows.len() - most);
-    }
-}
-
-/// A line for each check of all rows.
-pub fn say_checks<'a>(rows: impl Iterator<Item = &'a [Finding]> + Clone) {
-    for check in Check::ALL.into_iter().filter(|check| *check != Check::Files) {
-        let of = |findings: &'a [Finding]| findings.iter().find(|finding| finding.check == check);
-        let findings: Vec<&Finding> = rows.clone().filter_map(of).collect();
-        if findings.is_empty() {
-            continue;
-        }
-        let verdicts = [(Verdict::Proved, "proved"), (Verdict::Open, "could not be shown"), (Verdict::False, "false")];
-        let count = |verdict: Verdict| findings.iter().filter(|f| f.verdict == verdict).count();
-        let words = verdicts.iter().map(|(verdict, word)| (count(*verdict), word)).filter(|(n, _)| *n > 0);
-        let words: Vec<String> = words.map(|(n, word)| format!("{n} {word}")).collect();
-        output::say!("  {:<12} {}{}", check.name(), words.join(", "), extreme(check, &findings));
-    }
-}
-
-/// A finding in words.
-pub fn marked(finding: &Finding) -> String {
-    let mark = match finding.verdict {
-        Verdict::Proved | Verdict::Consistent => "",
-        Verdict::Open => "could not be shown: ",
-        Verdict::False => "FALSE: ",
-    };
-    format!("{mark}{}", finding.words)
-}
-
-/// The figure of all proved rows that is nearest to its tolerance.
-fn extreme(check: Check, findings: &[&Finding]) -> String {
-    let figures = findings.iter().filter(|f| f.verdict == Verdict::Proved).filter_map(|f| f.figure);
-    match check {
-        Check::Deformation => format!("; largest difference {:.1e}", figures.fold(0.0, f64::max)),
-        Check::Overlap => {
-            let least = figures.fold(f64::INFINITY, f64::min);
-            if least.is_finite() { format!("; smallest gap {least:.1e} R") } else { String::new() }
-        }
-        Check::Balance => format!("; largest residual {:.1e}", figures.fold(0.0, f64::max)),
-        _ => String::new(),
     }
 }

@@ -2,11 +2,11 @@
 
 use crate::{
     exit::{self, wrong},
+    findings::{marked, say_checks, text},
     output,
     progress::Progress,
     records,
     remedy::DAMAGED,
-    verify::{marked, say_checks, text},
 };
 use maille_io::boundary::{SURFACE, SURFACE_STATES};
 use maille_verify::{Finding, SurfaceTexts, SurfaceVerifier, Verdict, VertexReport};

@@ -195,10 +195,9 @@ fn shells_and_man_know_every_command() {
     let help = String::from_utf8(done(folder.path(), "--help", b"")).unwrap();
     let commands: Vec<&str> = help
         .lines()
-        .skip_while(|l| *l != "Commands:")
-        .skip(1)
-        .take_while(|l| !l.is_empty())
-        .filter(|l| !l.starts_with("   ")) // a long description goes on there
+        .skip_while(|l| *l != "Designs:")
+        .take_while(|l| *l != "Options:")
+        .filter(|l| l.starts_with("  "))
         .filter_map(|l| l.split_whitespace().next())
         .filter(|c| *c != "help")
         .collect();

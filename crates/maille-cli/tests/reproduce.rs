@@ -131,7 +131,7 @@ fn own_coordinates_take_the_place_of_ours() {
     fs::write(own.join("1.4.toml"), &text).unwrap();
     let refused = run(&[]);
     let words = String::from_utf8_lossy(&refused.stderr).into_owned();
-    assert!(refused.status.code() == Some(2) && words.contains("1.4.toml is no design of chapter 6"), "{words}");
+    assert!(refused.status.code() == Some(2) && words.contains("1.4.toml is not a design of chapter 6"), "{words}");
     fs::remove_file(own.join("1.4.toml")).unwrap();
     fs::remove_file(own.join("1.1.toml")).unwrap();
     let refused = run(&[]);

@@ -91,7 +91,11 @@ fn a_folder_of_a_sweep_stands_for_its_records() {
         done(folder, "table wide --columns spacing,elements.standing-*.rings.major_radius,lateral,l1 --format csv");
     let rows: Vec<&str> = table.lines().skip(1).collect();
     let count = |start: &str| rows.iter().filter(|row| row.starts_with(start)).count();
-    assert_eq!((rows.len(), count("0.95,1.0,fixed,"), count("1.0,1.0,fixed,"), count(",,free,")), (17, 8, 8, 1), "{table}");
+    assert_eq!(
+        (rows.len(), count("0.95,1.0,fixed,"), count("1.0,1.0,fixed,"), count(",,free,")),
+        (17, 8, 8, 1),
+        "{table}"
+    );
     // 1.1 is straight along 0°: of 0.95 of the spacing it stretches to (1.44 / 0.95).
     let own = done(folder, "table wide --where spacing=0.95,r=0.1,direction=0,l2=0 --columns l1 --format csv");
     let l1: f64 = own.lines().nth(1).unwrap().parse().unwrap();

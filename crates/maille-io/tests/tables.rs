@@ -136,6 +136,7 @@ fn the_page_of_columns_says_what_the_program_says() {
     let page = document("docs/record.md");
     let (page, forces) = page.split_once("\n## The forces of a simulated sheet\n").unwrap();
     let (page, statuses) = page.split_once("\n## Statuses\n").unwrap();
+    let statuses = statuses.split("\n## ").next().unwrap();
     let lines: Vec<&str> = page.lines().filter(|line| line.starts_with("| `")).collect();
     let line = |c: &Column| {
         let unit = c.unit.name(None).map(|unit| format!(" {unit}")).unwrap_or_default();

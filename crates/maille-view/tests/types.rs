@@ -34,6 +34,7 @@ fn name(format: &Format) -> String {
             Format::Option(_) => format!("({})[]", name(inner)),
             _ => format!("{}[]", name(inner)),
         },
+        Format::Map { value, .. } => format!("Record<string, {}>", name(value)),
         Format::Tuple(all) => format!("[{}]", all.iter().map(name).collect::<Vec<_>>().join(", ")),
         Format::TupleArray { content, size } => format!("[{}]", vec![name(content); *size].join(", ")),
         Format::I8

@@ -139,7 +139,9 @@ impl PolarPlot {
         let open = |l2: &&f64| rows.iter().any(|row| row.l2 == **l2 && row.bound_gap.is_some_and(|gap| gap > 1e-6));
         let bound = |&l2: &f64| {
             let of_l2 = rows.iter().filter(|row| row.l2 == l2);
-            let points: Vec<_> = of_l2.map(|row| (row.direction_deg, quantity.of_bound(row), row.status)).collect();
+            // A bound without its limit is a line to nowhere.
+            let of_limit = |row: &LimitRow| quantity.of(row).and(quantity.of_bound(row));
+            let points: Vec<_> = of_l2.map(|row| (row.direction_deg, of_limit(row), row.status)).collect();
             Curve::new(0, l2, CurveKind::Bound, &points)
         };
         let mut caption = vec![inputs(design, rows, parameters)];

@@ -36,6 +36,7 @@ export interface Design {
   allow_initial_overlap: boolean;
   lattice: LatticeSpec;
   elements: ElementSpec[];
+  varied?: Record<string, number>;
 }
 
 export interface DualRecord {

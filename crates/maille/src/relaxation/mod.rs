@@ -7,6 +7,7 @@ pub mod flat;
 pub mod limit;
 #[doc(hidden)]
 pub mod load;
+mod options;
 pub mod simulate;
 #[doc(hidden)]
 pub mod target;
