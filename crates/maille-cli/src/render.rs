@@ -202,8 +202,13 @@ fn parse_patch(text: &str) -> Result<[f64; 2], String> {
     }
 }
 
-/// How long a film shows a frame.
-const FRAME_CENTISECONDS: u16 = 8;
+/// How long a film lasts at least, before its last frame, and a frame of it, in hundredths of a second.
+const LEAST_CENTISECONDS: [usize; 2] = [250, 8];
+
+fn frame_centiseconds(frames: usize) -> u16 {
+    let [film, frame] = LEAST_CENTISECONDS;
+    (film / frames.max(1)).max(frame) as u16
+}
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
@@ -221,6 +226,9 @@ pub fn run(args: &Args) -> Result<()> {
         ..options(args, size, extent(args, &source, size, piece)?, !contacts.is_empty())
     };
     let frames = source.frames(args.frames);
+    if let Some(asked) = args.frames.filter(|asked| (frames.len() as u32) < *asked && !args.quiet) {
+        eprintln!("note: {asked} frames were asked; the simulation has recorded {} states", frames.len());
+    }
     let unit = source.design.unit.as_deref();
     let subjects: Vec<Subject<'_>> =
         frames.iter().map(|frame| Subject { model: &source.model, state: &frame.state, contacts, unit }).collect();
@@ -230,7 +238,7 @@ pub fn run(args: &Args) -> Result<()> {
         e => Report::new(e),
     })?;
     let bytes = match (&pictures[..], args.frames, args.palette) {
-        (pictures, Some(_), _) => film(pictures, FRAME_CENTISECONDS).into_diagnostic()?,
+        (pictures, Some(_), _) => film(pictures, frame_centiseconds(pictures.len())).into_diagnostic()?,
         ([picture], None, true) => with_palette(&picture.to_png()?).into_diagnostic()?,
         (pictures, None, _) => pictures.first().map_or(Ok(Vec::new()), Picture::to_png)?,
     };
@@ -304,7 +312,7 @@ fn caption(source: &Source) -> Option<Caption> {
 /// The file to write, or `-`.
 fn destination(out: Option<&Path>, source: &Source, kind: &str) -> Result<PathBuf> {
     let Some(out) = out else {
-        return Ok(PathBuf::from("maille-out").join(format!("{}.{kind}", source.stem())));
+        return Ok(PathBuf::from("maille-out").join(format!("{}.{kind}", source.stem(kind == "gif"))));
     };
     let right = out.extension().is_some_and(|e| e.eq_ignore_ascii_case(kind));
     match right || output::is_standard(out) {

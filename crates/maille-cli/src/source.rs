@@ -306,10 +306,13 @@ impl Source {
         self.locked.as_ref().map_or(&[], |(record, _)| &record.contacts)
     }
 
-    /// How files of this state are named.
-    pub fn stem(&self) -> String {
+    /// How files of this state are named; `film` is of all states of a simulation.
+    pub fn stem(&self, film: bool) -> String {
         let name = file_name(&self.design.name);
         if let Some((_, shown)) = self.simulated {
+            if film {
+                return format!("{name}-simulate");
+            }
             return format!("{name}-simulate_frame{shown}");
         }
         if let Some((word, _)) = self.extreme {

@@ -284,6 +284,9 @@ fn a_simulated_sheet_is_exported_and_drawn() {
     assert_eq!(fs::read_to_string(&pvd[0]).unwrap().matches("<DataSet").count(), 5);
     let draw = |frame: usize| done(folder, &format!("render --from run --at frame={frame} --size 96x72 --out -"), b"");
     assert!(draw(0).starts_with(b"\x89PNG") && draw(0) != draw(2));
+    // A film of all states is not named after one of them.
+    done(folder, "render --from run --frames 3 --size 48x36 --quiet", b"");
+    assert!(folder.join("maille-out/1.1-simulate.gif").is_file());
     // Six rings, not a tile of the periodic sheet.
     let text = String::from_utf8(done(folder, "export --from run --format obj --out -", b"")).unwrap();
     assert_eq!(text.lines().filter(|l| l.starts_with("g ") || l.starts_with("o ")).count(), 6, "{}", &text[..400]);

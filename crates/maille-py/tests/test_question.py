@@ -28,7 +28,7 @@ def test_extremes_are_those_of_the_program(program):
     mine = maille.tightest("european-4-in-1", starts=2)
     its = by_program(program, "tightest", "european-4-in-1", "--starts", "2")
     assert mine.sizes[0].tolist() == [its["sizes"][0][k] for k in ("major_radius", "minor_radius", "aspect_ratio")]
-    assert mine.design.name == "european-4-in-1 tightest"
+    assert mine.design.name == "european-4-in-1-tightest"
     mine.design.check()
     roomy = maille.roomiest("1.1", starts=1)
     assert roomy.gap == by_program(program, "roomiest", "1.1", "--starts", "1")["gap"] > 0

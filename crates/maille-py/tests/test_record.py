@@ -107,7 +107,8 @@ def test_plot_tells_proved_limits_from_others_and_marks_gaps():
     assert np.all(np.isfinite(hollow.get_ydata())) and "proven bound" in labels
     # The bound lies further out than the limits, and does not set the scale.
     limits = axes.lines[0].get_ydata()
-    assert axes.get_rmax() < np.nanmax(limits) + 0.2 * (np.nanmax(limits) - axes.get_rmin())
+    highest = max(np.nanmax(limits), axes.get_rmin() + 0.1)
+    assert axes.get_rmax() < highest + 0.2 * (highest - axes.get_rmin())
 
 
 def test_free_width_and_the_energy_method():

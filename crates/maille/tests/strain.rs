@@ -290,7 +290,7 @@ fn free_width_along_nearly_straight_chains() {
     assert!(row.l1.is_some_and(|l1| (0.445262..0.445501).contains(&l1)), "{:?}", row.l1);
 }
 
-/// European 4-in-1 pushed together along x folds in a larger cell, to which an unstable wave leads; a neighbouring ray goes on from that state
+/// European 4-in-1 compressed along x folds in a larger cell, to which an unstable wave leads; a neighbouring ray goes on from that state
 /// in its cell, without a wave of its own.
 #[test]
 fn states_of_larger_cells_are_handed_on() {

@@ -77,7 +77,7 @@ pub fn destination(
     formats.extend(formats.is_empty().then_some(named.unwrap_or(FormatArg::ThreeMf)));
     let Some(out) = out else {
         let folder = format!("{}-export", file_name(&source.design.name));
-        return Ok((Destination::Files(PathBuf::from("maille-out").join(folder).join(source.stem())), formats));
+        return Ok((Destination::Files(PathBuf::from("maille-out").join(folder).join(source.stem(false))), formats));
     };
     if output::is_standard(out) {
         return match formats[..] {
@@ -90,7 +90,7 @@ pub fn destination(
         };
     }
     if out.as_os_str().to_string_lossy().ends_with(std::path::is_separator) || out.is_dir() {
-        return Ok((Destination::Files(out.join(source.stem())), formats));
+        return Ok((Destination::Files(out.join(source.stem(false))), formats));
     }
     match named {
         None => Ok((Destination::Files(out.to_owned()), formats)),

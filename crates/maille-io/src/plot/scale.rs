@@ -59,7 +59,7 @@ impl Axis {
         Scale::new(0.0, values, 6).into()
     }
 
-    /// Stretches: from 1, or from below it where a sheet is pushed together, with room behind the largest, where curves rise
+    /// Stretches: from 1, or from below it where a sheet is compressed, with room behind the largest, where curves rise
     /// straight up.
     pub(super) fn of_stretch(values: impl Iterator<Item = f64>) -> Self {
         Scale::new(1.0, values.map(|x| if x > 1.0 { 1.0 + 1.03 * (x - 1.0) } else { x }), 6).into()

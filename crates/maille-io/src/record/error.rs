@@ -64,7 +64,7 @@ pub enum RecordError {
     /// A number that JSON and the table's readers cannot hold.
     #[error("direction {direction_deg}°, l2 {l2}: {field} is {value}")]
     #[diagnostic(help(
-        "a record holds finite numbers only, and nothing where a number was not earned; please report this"
+        "a record holds finite numbers only, and nothing where a number could not be computed; please report this"
     ))]
     NotFinite {
         /// Direction of the row.

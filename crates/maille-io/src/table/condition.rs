@@ -21,7 +21,7 @@ type Holds = fn(Ordering) -> bool;
 
 #[derive(Clone, Debug, PartialEq)]
 enum Value {
-    /// Nothing: a number that was not earned.
+    /// Nothing: a number that could not be computed.
     Empty,
     Number(f64),
     Text(String),

@@ -85,7 +85,8 @@ def draw(ax: PolarAxes, table: dict[str, NDArray[Any]], shown: str, line: dict[s
         if np.any(np.isfinite(value) & ~open_):
             kinds.add("proved")
         if np.nanmax(np.where(np.isfinite(value), bound - value, 0.0), initial=0.0) > 1e-6:
-            ax.plot(angle, bound, linestyle=(0, (5, 4)), linewidth=1.0, color=style["color"], label="_nolegend_")
+            beside = np.where(np.isfinite(value), bound, np.nan)
+            ax.plot(angle, beside, linestyle=(0, (5, 4)), linewidth=1.0, color=style["color"], label="_nolegend_")
             bounded = True
         missing = ~np.isfinite(value)
         impossible = np.isin(status, _NO_STATE)

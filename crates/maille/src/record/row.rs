@@ -109,7 +109,7 @@ impl Unit {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Entry<'a> {
-    /// Nothing: it was not earned.
+    /// Nothing: it could not be computed.
     Empty,
     /// A name or a word.
     Text(&'a str),
@@ -238,7 +238,7 @@ pub struct Column {
 /// Declares [`LimitRow`] and its columns: name, type, unit and meaning of each.
 macro_rules! columns {
     ($($name:ident: $type:ty, $unit:ident, $meaning:literal;)*) => {
-        /// One row of `limits.csv`: the field order is the column order. A number that was not earned is `None` and stays
+        /// One row of `limits.csv`: the field order is the column order. A number that could not be computed is `None` and stays
         /// empty.
         #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
         pub struct LimitRow {
