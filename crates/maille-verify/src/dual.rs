@@ -74,6 +74,11 @@ pub(crate) fn bound(starts: Starts<'_>, forces: &[Dual], direction_deg: f64, hel
             Ok((of.tie(&dual.tie, &dual.rings)?, Vec3::from(dual.force)))
         })
         .collect::<Result<_, String>>()?;
+    // Smaller ones vanish when they are squared, larger ones overflow.
+    let sizes = ties.iter().map(|(_, y)| y.amax()).filter(|size| *size != 0.0);
+    if let Some(size) = sizes.into_iter().find(|size| !(1e-100..=1e100).contains(size)) {
+        return Err(format!("a force of the bound is {size:e}, for a unit pull"));
+    }
     let own = starts.own.sheet;
     let (d, side) = axes(direction_deg);
     let (d, side) = (Vec3::new(d.x, d.y, 0.0), Vec3::new(side.x, side.y, 0.0));

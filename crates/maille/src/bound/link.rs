@@ -87,7 +87,7 @@ pub struct LinkBound {
 /// Cells with more elements get the bound of the chains alone: the program is dense, and grows with the cube of their number.
 const MOST_ELEMENTS: usize = 400;
 /// Cells with more elements get no bound by normals: each of its steps balances all forces.
-const MOST_TURNED: usize = 40;
+const MOST_BALANCED: usize = 40;
 
 impl LinkBound {
     /// Prepares the program of `model`; its chain bound is used to charge rounding and to recognise free directions.
@@ -186,7 +186,7 @@ impl LinkBound {
     /// The bound with one normal for each ring, `docs/theory/bounds.md`, "Normals of the rings": lower where the forces at a ring
     /// pull out of a plane. It takes longer, and is not solved to the last digit.
     pub fn limit_by_normals(&self, direction: Direction, l2: f64, free: Across) -> LinkSolution {
-        let linked = self.ties.iter().any(Tie::is_link) && self.turn.len() <= MOST_TURNED;
+        let linked = self.ties.iter().any(Tie::is_link) && self.turn.len() <= MOST_BALANCED;
         let query = self.query(direction, l2, free).filter(|_| linked);
         let found = query.and_then(|query| query.descend().map(|(l1, forces)| (query.pull(&forces), l1, forces)));
         let Some((pull, l1, forces)) = found else { return LinkSolution::nothing() };

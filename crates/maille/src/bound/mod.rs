@@ -8,7 +8,7 @@
 //! | [`ChainBound`] | a lattice vector is no longer than the chain of links that joins its ends | microseconds |
 //! | [`LinkBound`] | all links at once, poses relaxed to a convex set; the value of a dual solution | a millisecond |
 //!
-//! A third, [`ImageBound`], tells from the shapes of the elements alone how near own images can come. It proves for a
+//! Where a limit stays below both, the [normals](LinkBound::limit_by_normals) of the rings tighten the link bound. Another one, [`ImageBound`], tells from the shapes of the elements alone how near own images can come. It proves for a
 //! single cell that an l2 is out of reach.
 //!
 //! The lemma behind the first two. Let the circles a and b be linked, their tori disjoint: core distance ≥ r_a + r_b. Then a

@@ -1,4 +1,4 @@
-//! A lower bound from the normals of the rings: forces of ties whose proof counts each ring with one normal.
+//! A tighter upper bound from the normals of the rings: forces of ties whose proof counts each ring with one normal.
 //!
 //! **Lemma.** Let the rings a, b with normals N_a, N_b be linked, their tori disjoint. For every vector y
 //!

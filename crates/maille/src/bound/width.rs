@@ -69,7 +69,7 @@ impl Ord for Patch {
     }
 }
 
-/// A number that Σ |y_k × N| does not exceed for any unit vector N, and seldom falls short of by more than 1e-10 of it.
+/// An upper bound of Σ |y_k × N| over unit vectors N, within 1e-10 of the maximum unless the forces are nearly parallel.
 pub(super) fn largest_width(forces: &[Vec3]) -> f64 {
     let all: f64 = forces.iter().map(Vec3::norm).sum();
     let f = |normal: &Vec3| width(forces, normal);

@@ -206,10 +206,15 @@ impl<'a> ExactMethod<'a> {
             return ended(Status::L2Unreachable, Some(note), &bound);
         }
         let bound = self.lowered(bound, stretch, &found.result);
-        let upper_bound = bound.l1().filter(|_| !least).unwrap_or(upper_bound);
-        if found.result.best.is_none() && matches!(bound, Bound::L2Unreachable { .. }) {
-            return ended(Status::L2Unreachable, None, &bound);
-        }
+        let upper_bound = match bound {
+            Bound::Finite { l1, .. } if !least => l1,
+            Bound::L2Unreachable { .. } if found.result.best.as_ref().is_none_or(|best| !best.certified) => {
+                return ended(Status::L2Unreachable, None, &bound);
+            }
+            // A certificate against a proof: the verdict says so.
+            Bound::L2Unreachable { .. } => -1.0,
+            _ => upper_bound,
+        };
         let (model, wave) = (found.model(self.models).clone(), found.wave);
         let kept = if least || found.by_cell.len() > 1 { found.by_cell } else { Vec::new() };
         // What was maximised is −l1 where the least is sought.
