@@ -25,9 +25,11 @@ use maille_io::{
     },
     plot::{Layout, boundary_svg, svg_to_png},
 };
-use miette::{IntoDiagnostic, Result, WrapErr};
+use miette::{IntoDiagnostic, Report, Result, WrapErr};
 use std::{
     collections::{BTreeMap, btree_map::Entry},
+    fs,
+    io::ErrorKind,
     path::{Path, PathBuf},
     process::ExitCode,
     sync::{Mutex, atomic::Ordering},
@@ -98,6 +100,13 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let head = BoundaryHead::new(&input.design, &options);
     output::folder(&out, "the surface is a folder")?;
     let (folder, known) = SurfaceFolder::open(&out, &head, args.run.overwrite)?;
+    // Until all files are of this run, there is no surface to read.
+    match fs::remove_file(out.join(SURFACE)) {
+        Err(e) if e.kind() != ErrorKind::NotFound => {
+            return Err(Report::msg(e).wrap_err(format!("cannot replace {}", out.join(SURFACE).display())));
+        }
+        _ => {}
+    }
     if !known.is_empty() && !args.quiet {
         eprintln!("{} already in {}", counted(known.len(), "ray"), out.display());
     }

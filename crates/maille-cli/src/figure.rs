@@ -87,13 +87,14 @@ impl FigureArgs {
 
     /// The formats of the files that are named; checked before anything is drawn.
     pub fn check(&self) -> Result<()> {
-        self.output.iter().try_for_each(|file| format(file).map(|_| ()))
+        self.output.iter().try_for_each(|file| format(file).and_then(|_| self.replace.check(file)))
     }
 
     /// Writes the figure to each file; if none is named, as `usual` with two endings.
     pub fn write(&self, svg: &str, usual: &str) -> Result<()> {
         let endings = if self.style == Style::Paper { ["svg", "pdf"] } else { ["svg", "png"] };
-        let default = endings.map(|ending| PathBuf::from(format!("{usual}.{ending}")));
+        let style = if self.style == Style::Paper { "-paper" } else { "" };
+        let default = endings.map(|ending| PathBuf::from(format!("{usual}{style}.{ending}")));
         let files = if self.output.is_empty() { &default[..] } else { &self.output };
         files.iter().try_for_each(|file| self.replace.check(file))?;
         for file in files {

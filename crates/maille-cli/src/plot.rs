@@ -30,7 +30,7 @@ Examples:
   maille plot exact-3.1 energy-3.1 --kind steps -o steps.png
   maille plot 1.1 -o small.png --scale 0.75 --palette   645 pixels wide, in few bytes
   maille plot 1.1 --style paper -o fig1.pdf             one column of a journal, 89 mm wide, letters of 7 points
-  maille plot 1.1 --style paper --width 183mm --font-size 8 -o fig1.pdf    two columns
+  maille plot 1.1 --style paper --width 183mm --font-size 8 -o fig2.pdf    two columns
   maille plot r-0.05 r-0.1 r-0.2 --kind difference --quantity l1 -o spread.svg -o spread.png
   maille plot 1.1-free --kind poisson                  of `maille characterize 1.1 --lateral free --out maille-out/1.1-free`
   maille plot r-0.05 r-0.1 r-0.2 --kind radius --where 'direction=0|45,l2=0'    limits against the minor radius
@@ -160,7 +160,11 @@ pub fn run(args: &Args) -> Result<()> {
     if let [path] = &args.records[..]
         && let Some((record, surface)) = records::surface(path)?
     {
-        if args.kind != Kind::Polar || !args.conditions.is_empty() || args.quantity.is_some() {
+        if args.kind != Kind::Polar
+            || !args.conditions.is_empty()
+            || args.quantity.is_some()
+            || args.reference != MeasuredFrom::Start
+        {
             let help = "give the folder alone, with --style and --output";
             return Err(wrong(exit::USAGE, "the surface of all strains has one kind of plot, of all its rays", help));
         }

@@ -46,7 +46,7 @@ pub fn name(folder: &Path) -> String {
 }
 
 /// The records of a folder that `maille sweep` writes, in the order of their names; of any other, the folder itself.
-fn of_sweep(folder: PathBuf) -> Vec<PathBuf> {
+pub fn of_sweep(folder: PathBuf) -> Vec<PathBuf> {
     let is_record = |folder: &Path| folder.join("run.json").is_file();
     let inside = match is_record(&folder) {
         true => None,

@@ -121,7 +121,10 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         match map::open(&planned.map, &planned.input) {
             Ok(map) => open.push((&planned.name, map)),
             Err(report) if remedy::code(&report) == exit::DESIGN => unused.push((planned.name.clone(), report)),
-            Err(report) => return Err(report),
+            Err(report) => {
+                tell(unused);
+                return Err(report);
+            }
         }
     }
     let used: Vec<PathBuf> = open.iter().filter_map(|(_, map)| map.folder().map(Path::to_owned)).collect();

@@ -27,7 +27,7 @@ Examples:
   maille table 1.1 --where 'direction=30,l2=-0.125'
   maille table 1.1 3.1 --where 'l2<0,status=local' --sort=-l1 --rows 10
   maille table 1.1 --columns direction,l2,l1,bound_gap --where 'bound_gap>1e-6'
-  maille table maille-out/* -o limits.parquet             for polars, pandas, DuckDB
+  maille table 1.1 1.2 -o limits.parquet                  for polars, pandas, DuckDB
   maille table radius --where spacing=1                   of the study radius.toml
   maille table 1.1 --where l1=none --format csv
 
@@ -166,20 +166,28 @@ fn of_surface(args: &Args, surface: &Boundary, format: Format) -> Result<Vec<u8>
     }
     let csv = boundary_csv(surface);
     let rows = args.rows.unwrap_or(usize::MAX);
-    let kept: Vec<Vec<&str>> = csv.lines().take(rows.saturating_add(1)).map(|line| line.split(',').collect()).collect();
+    let parsed: Vec<csv::StringRecord> = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .from_reader(csv.as_bytes())
+        .into_records()
+        .take(rows.saturating_add(1))
+        .collect::<Result<_, _>>()
+        .into_diagnostic()?;
+    let kept: Vec<Vec<&str>> = parsed.iter().map(|row| row.iter().collect()).collect();
     let text = match (format, &kept[..]) {
         (Format::Text, kept) => aligned(kept),
         (Format::Json, [names, rows @ ..]) => {
-            let value = |text: &&str| match (text.is_empty(), text.parse::<f64>()) {
-                (true, _) => serde_json::Value::Null,
-                (_, Ok(number)) => number.into(),
+            let value = |text: &&str| match (text.is_empty(), text.parse::<u64>(), text.parse::<f64>()) {
+                (true, ..) => serde_json::Value::Null,
+                (_, Ok(count), _) => count.into(),
+                (_, _, Ok(number)) => number.into(),
                 _ => (*text).into(),
             };
             let row = |row: &Vec<&str>| names.iter().map(|n| n.to_string()).zip(row.iter().map(value)).collect();
             let rows: Vec<serde_json::Map<String, serde_json::Value>> = rows.iter().map(row).collect();
             format!("{}\n", serde_json::json!({ "columns": names, "rows": rows }))
         }
-        (_, kept) => kept.iter().map(|row| row.join(",") + "\n").collect(),
+        (_, kept) => csv.lines().take(kept.len()).map(|line| format!("{line}\n")).collect(),
     };
     Ok(text.into_bytes())
 }

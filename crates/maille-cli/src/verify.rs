@@ -30,7 +30,7 @@ use std::{
 #[command(after_help = "\
 Examples:
   maille verify 1.1                       maille-out/1.1
-  maille verify maille-out/*              many, with one line for each check
+  maille verify 1.1 1.2 radius            many, and all records of a sweep
   maille verify 1.1 --rows                a line for each row
   maille verify 1.1 --json
   maille verify 1.1-boundary              a surface of `maille boundary`: each vertex
@@ -81,7 +81,11 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         match verify_proof::is_proof(named) {
             true => proofs.push(verify_proof::verified(named, &pool, args.quiet)?),
             false if is_surface(named) => surfaces.push(verify_surface::verified(named, &pool, args.quiet)?),
-            false => all.push(verified(&records::folder(named), &pool, args.quiet)?),
+            false => {
+                for folder in records::of_sweep(records::folder(named)) {
+                    all.push(verified(&folder, &pool, args.quiet)?);
+                }
+            }
         }
     }
     if args.json {

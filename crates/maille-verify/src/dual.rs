@@ -212,7 +212,7 @@ fn stretch(start: Linked<'_>) -> f64 {
 }
 
 /// Closed walks: along a tree of shortest ways from a ring to both ends of each link that closes one.
-fn walks(start: Linked<'_>) -> Vec<(Vector2<f64>, f64)> {
+pub(crate) fn walks(start: Linked<'_>) -> Vec<(Vector2<f64>, f64)> {
     let rings = &start.sheet.rings;
     let edges = edges(start);
     let mut out = Vec::new();

@@ -8,6 +8,7 @@ use crate::{
     apart::Arc,
     balance::{Closed, Free, RESIDUAL, balance},
     curvature::{ZERO_MODE, curvature},
+    dual::walks,
     files::sha256,
     gaps::gaps_and_links,
     record::{Design, Pose, Row, State, Unreadable, json},
@@ -15,6 +16,7 @@ use crate::{
     sheet::{self, Sheet, Vec3},
     start::{Start, start},
     strain,
+    tie::Linked,
 };
 use nalgebra::{DMatrix, DVector, Matrix2};
 use serde::{Deserialize, Serialize};
@@ -27,6 +29,10 @@ const TABLE: &str = "boundary.csv";
 const SAME: f64 = 1e-9;
 /// A point with a smaller gap is closed, in reference radii.
 const CLOSED: f64 = 1e-8;
+/// A smaller force is none, per unit of pull.
+const CARRIED: f64 = 1e-9;
+/// Statuses of a vertex.
+const STATUSES: [&str; 4] = ["global", "local", "uncertified", "l2-not-reached"];
 /// Places of a ring from which its nearest points to another are sought.
 const PLACES: usize = 128;
 /// Distances along a ray that are one.
@@ -187,6 +193,7 @@ fn in_order(known: Vec<Vertex>, table: &str) -> Result<(Vec<Vertex>, Finding), U
         differs = differs.or(other.map(|name| format!("{TABLE}:{}: {name} is not that of {STATES}", k + 2)));
         out.push(vertex);
     }
+    let differs = differs.or(by_ray.keys().next().map(|_| format!("{STATES} has rays that {TABLE} lacks")));
     let finding = match differs {
         Some(words) => say(Verdict::False, words),
         None => say(Verdict::Proved, format!("{TABLE} has the figures of {STATES}")),
@@ -202,6 +209,7 @@ fn status(vertex: &Vertex, certified: bool) -> Finding {
         (Some(far), bound) if vertex.status == "global" && bound.is_none_or(|bound| bound - far > ATTAINED) => {
             of(Verdict::False, "a global vertex does not attain its bound")
         }
+        _ if !STATUSES.contains(&vertex.status.as_str()) => of(Verdict::Open, "nothing is derived of this status"),
         _ => of(Verdict::Proved, "the vertex has what its status says"),
     }
 }
@@ -239,15 +247,36 @@ fn of_state(vertex: &Vertex, distance: f64, start: &Start, certified: bool) -> V
     };
     let verdict = if fits { Verdict::Proved } else { Verdict::False };
     let mut out = vec![Finding::new(Check::Deformation, verdict, Some(off), words)];
-    let row = Row { status: vertex.status.clone(), ..Row::default() };
+    let row = Row { status: vertex.status.clone(), links_ok: Some(true), ..Row::default() };
     out.extend(gaps_and_links(&row, &here, start, 1.0));
     if certified {
         out.extend(forces(&here, start, &f, &ray));
     }
-    if vertex.status == "global" {
-        out.push(Finding::new(Check::Bound, Verdict::Open, None, "the bound of a ray is not derived anew"));
-    }
+    out.extend(vertex.bound.map(|written| bound(written, distance, start, &ray)));
     out
+}
+
+/// The bound of a ray. A closed walk of links with the lattice vector v and length d says xᵀ (1 + 2 t E) x ≤ 1 for x = v/d, so
+/// t ≤ (1 − |x|²)/(2 xᵀ E x).
+fn bound(written: f64, distance: f64, start: &Start, ray: &Matrix2<f64>) -> Finding {
+    let linked = match &start.links {
+        Ok(links) => Linked { sheet: &start.sheet, links },
+        Err(words) => return Finding::new(Check::Bound, Verdict::Open, None, words.clone()),
+    };
+    let along = walks(linked).into_iter().filter_map(|(v, length)| {
+        let x = v / length;
+        let rate = 2.0 * x.dot(&(ray * x));
+        (rate > 0.0).then(|| (1.0 - x.norm_squared()) / rate)
+    });
+    let most = along.fold(f64::INFINITY, f64::min);
+    let of = |verdict, words: String| Finding::new(Check::Bound, verdict, Some(most), words);
+    if distance > most + ATTAINED {
+        of(Verdict::False, format!("a chain of links ends the ray at {most:?}, the state is at {distance:?}"))
+    } else if written >= most - ATTAINED {
+        of(Verdict::Proved, "a chain of links proves the bound".into())
+    } else {
+        of(Verdict::Open, format!("the chains that are tried prove {most:?}, the bound is {written:?}"))
+    }
 }
 
 /// Forces that hold the sheet at the end of the ray, and the curvature with them.
@@ -271,7 +300,7 @@ fn forces(here: &Sheet, start: &Start, f: &Matrix2<f64>, ray: &Matrix2<f64>) -> 
     pull[matrix.nrows() - 1] = -1.0;
     let found = non_negative(&matrix, &pull);
     let loaded: Vec<(Closed<'_>, f64)> =
-        closed.into_iter().zip(found.iter().copied()).filter(|(_, y)| *y > 0.0).collect();
+        closed.into_iter().zip(found.iter().copied()).filter(|(_, y)| *y > CARRIED).collect();
     let balance = balance(here, &loaded, &free);
     let residual = balance.residual.max(balance.slope).max(balance.complementarity);
     if residual.is_nan() || residual > RESIDUAL {

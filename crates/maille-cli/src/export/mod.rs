@@ -220,6 +220,9 @@ fn refuse_existing(args: &Args, prefix: &Path, formats: &[FormatArg], frames: &[
             args.replace.check(&with_ending(prefix, &format!("{}{}", frame.suffix, file.ending())))?;
         }
     }
+    if args.frames.is_some() && formats.iter().any(|f| f.format().all_files().contains(&MeshFile::VtkRings)) {
+        COLLECTIONS.iter().try_for_each(|(_, ending)| args.replace.check(&with_ending(prefix, ending)))?;
+    }
     Ok(())
 }
 
@@ -315,6 +318,9 @@ fn interpolation_note(source: &Source, frames: &[Frame], mm: f64) -> Option<Stri
     overlap.then(|| format!("interpolated frames overlap, most by {:.3} mm at {:.0} % of the way", -gap, 100.0 * time))
 }
 
+/// What a list of VTK frames is of, and the end of its name.
+const COLLECTIONS: [(MeshFile, &str); 2] = [(MeshFile::VtkRings, ".pvd"), (MeshFile::VtkPoses, "-poses.pvd")];
+
 /// The files that list a series of VTK frames, with their texts.
 fn collections(prefix: &Path, series: &[(MeshFile, f64, PathBuf)]) -> Vec<(PathBuf, String)> {
     let of = |wanted: MeshFile, part: usize| {
@@ -322,7 +328,7 @@ fn collections(prefix: &Path, series: &[(MeshFile, f64, PathBuf)]) -> Vec<(PathB
             (*time, part, path.file_name().unwrap_or_default().to_string_lossy().into_owned())
         })
     };
-    [(MeshFile::VtkRings, ".pvd"), (MeshFile::VtkPoses, "-poses.pvd")]
+    COLLECTIONS
         .map(|(file, ending)| {
             let files: Vec<_> = of(file, 0).chain(of(MeshFile::VtkContacts, 1)).collect();
             (with_ending(prefix, ending), mesh::write_pvd(&files))
