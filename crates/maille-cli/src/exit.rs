@@ -69,7 +69,7 @@ pub fn ended(interrupted: bool, code: u8, quiet: bool) -> ExitCode {
 /// How a single question ends.
 pub fn of_answer(status: Status) -> ExitCode {
     ExitCode::from(match status {
-        Status::Global | Status::Local | Status::L2Unreachable | Status::Unbounded => DONE,
+        Status::Global | Status::Local | Status::L2Unreachable => DONE,
         Status::Interrupted => INTERRUPTED,
         _ => INCOMPLETE,
     })

@@ -133,11 +133,16 @@ fn a_surface_is_plotted_tabulated_and_verified() {
     let (code, out, err) = maille(folder, &["verify", "s", "--json", "--quiet"]);
     let found: serde_json::Value = serde_json::from_str(&out).unwrap();
     let found = &found["surfaces"][0];
-    let (proved, certified) = (found["proved"].as_u64().unwrap(), found["certified"].as_u64().unwrap());
-    assert!(
-        matches!(code, Some(0 | 5)) && certified > 100 && 10 * proved > 8 * certified,
-        "{proved} of {certified} {err}"
-    );
+    let certified = found["certified"].as_u64().unwrap();
+    let findings = found["vertices"].as_array().unwrap().iter().flat_map(|v| v["findings"].as_array().unwrap());
+    let of = |check: &str, verdict: &str| {
+        findings.clone().filter(|f| f["check"] == check && f["verdict"] == verdict).count() as u64
+    };
+    assert!(matches!(code, Some(0 | 5)) && certified > 100, "{certified} {err}");
+    for (check, tenths) in [("overlap", 10), ("links", 10), ("balance", 9), ("curvature", 9), ("bound", 8)] {
+        let proved = of(check, "proved");
+        assert!(of(check, "false") == 0 && 10 * proved >= tenths * certified, "{check}: {proved} of {certified}");
+    }
     // A ring moved by a tenth of R: its state, whose checksum is made right again, is refuted.
     let (states, head) = (text("s/surface.jsonl"), text("s/surface.json"));
     let first = states.lines().next().unwrap();

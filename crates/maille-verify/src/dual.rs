@@ -249,7 +249,7 @@ pub(crate) fn walks(start: Linked<'_>) -> Vec<(Vector2<f64>, f64)> {
     out
 }
 
-fn edges(start: Linked<'_>) -> Vec<(Place, Place, f64)> {
+pub(crate) fn edges(start: Linked<'_>) -> Vec<(Place, Place, f64)> {
     let rings = &start.sheet.rings;
     let mut out = Vec::new();
     for ((a, b, s), _) in start.links {

@@ -8,7 +8,7 @@ use crate::{
     apart::Arc,
     balance::{Closed, Free, RESIDUAL, balance},
     curvature::{ZERO_MODE, curvature},
-    dual::walks,
+    dual::{edges, walks},
     files::sha256,
     gaps::gaps_and_links,
     record::{Design, Pose, Row, State, Unreadable, json},
@@ -257,18 +257,27 @@ fn of_state(vertex: &Vertex, distance: f64, start: &Start, certified: bool) -> V
 }
 
 /// The bound of a ray. A closed walk of links with the lattice vector v and length d says xᵀ (1 + 2 t E) x ≤ 1 for x = v/d, so
-/// t ≤ (1 − |x|²)/(2 xᵀ E x).
+/// t ≤ (1 − |x|²)/(2 xᵀ E x). And no metric 1 + 2 t E has a negative eigenvalue.
 fn bound(written: f64, distance: f64, start: &Start, ray: &Matrix2<f64>) -> Finding {
     let linked = match &start.links {
         Ok(links) => Linked { sheet: &start.sheet, links },
         Err(words) => return Finding::new(Check::Bound, Verdict::Open, None, words.clone()),
     };
-    let along = walks(linked).into_iter().filter_map(|(v, length)| {
+    let edges = edges(linked);
+    let back_and_forth = edges.iter().flat_map(|&((a, p), (b, s), one)| {
+        let back = edges.iter().filter(move |((c, _), (d, t), _)| (*c, *d) == (a, b) && *t != s);
+        back.map(move |&(_, (_, t), other)| {
+            (start.sheet.translation([s[0] - p[0] - t[0], s[1] - p[1] - t[1]]).xy(), one + other)
+        })
+    });
+    let along = walks(linked).into_iter().chain(back_and_forth).filter_map(|(v, length)| {
         let x = v / length;
         let rate = 2.0 * x.dot(&(ray * x));
         (rate > 0.0).then(|| (1.0 - x.norm_squared()) / rate)
     });
-    let most = along.fold(f64::INFINITY, f64::min);
+    let least = ray.symmetric_eigenvalues().min();
+    let shrunk = if least < 0.0 { -0.5 / least } else { f64::INFINITY };
+    let most = along.fold(shrunk, f64::min);
     let of = |verdict, words: String| Finding::new(Check::Bound, verdict, Some(most), words);
     if distance > most + ATTAINED {
         of(Verdict::False, format!("a chain of links ends the ray at {most:?}, the state is at {distance:?}"))
