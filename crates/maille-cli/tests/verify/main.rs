@@ -367,6 +367,15 @@ fn a_link_bound_that_its_forces_do_not_prove_is_found() {
         *force = json!(force.as_f64().unwrap() + 1e-3);
     });
     specimen.found_by(4, "bound", of_forces);
+    // Forces whose squares vanish would prove anything.
+    let specimen = global();
+    specimen.forge_state(|state| {
+        for dual in state["dual"].as_array_mut().unwrap() {
+            let force = dual["force"].as_array_mut().unwrap();
+            force.iter_mut().for_each(|y| *y = json!(y.as_f64().unwrap() * 1e-170));
+        }
+    });
+    specimen.found_by(4, "bound", "a force of the bound is");
     let specimen = global();
     specimen.forge_state(|state| state["dual"][0]["rings"][0][1] = json!([7, 0]));
     specimen.found_by(4, "bound", "which are not linked");
