@@ -157,6 +157,18 @@ fn limits_that_are_not_found_have_an_exit_code_of_their_own() {
     assert_eq!(replayed.status.code(), Some(0), "{}", String::from_utf8_lossy(&replayed.stdout));
 }
 
+/// One of the usual l2 may be more than a sheet can reach; one that was asked for is a hole in the table.
+#[test]
+fn an_l2_that_nobody_asked_for_may_be_out_of_reach() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    done(folder, "new shirt --weave european-4-in-1 --wire 16swg --id 5/16in", b"");
+    let said = done(folder, "characterize shirt.toml --cell 1x1 --directions 90", b"");
+    assert!(String::from_utf8_lossy(&said).contains("1 l2-not-reached"));
+    let asked = maille(folder, "characterize shirt.toml --cell 1x1 --directions 90 --l2 0.25 --out asked", b"");
+    assert_eq!(asked.status.code(), Some(5));
+}
+
 #[test]
 fn watch_runs_again_when_the_file_is_saved() {
     let folder = tempfile::tempdir().unwrap();

@@ -2,7 +2,7 @@
 //! holds.
 
 use super::{
-    options::{FEASIBLE, RESTART_SIZE, ROUNDS},
+    options::{FEASIBLE, RESTART_SIZE, ROUNDS, STALLED_GAIN},
     starts::perturbed,
 };
 use crate::{
@@ -134,8 +134,11 @@ impl Rounds<'_> {
         let mut last = None;
         for round in 0..ROUNDS {
             let options = SqpOptions { pause_at, first_radius, ..SqpOptions::default() };
+            let before = program.value(&x);
             let end = maximize(program, x, known, &options, self.cancel);
             self.iterations += end.iterations as u64;
+            let used_up = self.model.cell.copies() > 1 && end.iterations >= options.max_iterations;
+            let stalled = used_up && program.value(&end.point) - before < STALLED_GAIN;
             let ((polished, mut certificate), last_resort) = polish(program, &end);
             self.keep(program, last_resort);
             let locked = certificate.holds();
@@ -164,7 +167,7 @@ impl Rounds<'_> {
                 (pause_at, first_radius) = (1e-2, 0.03);
                 continue;
             }
-            if end.settled && round > 0 {
+            if stalled || end.settled && round > 0 {
                 break;
             }
             pause_at *= 0.2;

@@ -82,6 +82,9 @@ pub(super) const STRAIGHT: f64 = 0.003;
 
 /// Rounds of maximising and polishing of one local maximisation.
 pub(super) const ROUNDS: usize = 10;
+/// A round in a larger cell that uses up its iterations for less than this is the last one: a perturbed state gets further in
+/// less time.
+pub(super) const STALLED_GAIN: f64 = 1e-3;
 /// A local maximisation without a certificate begins again from a perturbed state so often.
 pub(super) const RESTARTS: usize = 6;
 /// The same in larger cells, where it is costly.
