@@ -115,6 +115,16 @@ impl SourceArgs {
         }
     }
 
+    /// The closest cell of the design, whose gap the design and its unit tell.
+    pub fn closest(&self, what: impl FnOnce(&Design) -> Result<Extreme>) -> Result<Source> {
+        let input = self.design.as_deref().map(|name| Input::read(name, self.minor_radius)).transpose()?;
+        let Some(input) = input else {
+            return Err(wrong(exit::USAGE, "there is no design to find the closest cell of", "name one"));
+        };
+        let what = what(&input.design)?;
+        self.of_extreme(Some(&input), what, Wanted { locked: false, overlaps: false, threads: None })
+    }
+
     /// The extreme state is a design of its own, and the start of that one is shown.
     fn of_extreme(&self, input: Option<&Input>, what: Extreme, wanted: Wanted) -> Result<Source> {
         let Some(input) = input.filter(|_| self.from.is_none()) else {

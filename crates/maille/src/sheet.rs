@@ -85,6 +85,10 @@ impl Sheet {
             }
             Goal::Wire { lattice_free } => extreme(Extreme::ThickestWire, lattice_free),
             Goal::Clearance { lattice_free } => extreme(Extreme::LargestClearance, lattice_free),
+            Goal::Area { min_gap } => {
+                let gap = min_gap / self.model().unit;
+                extreme(Extreme::ClosestCell { gap }, true)
+            }
             Goal::Strain { .. } | Goal::Ray { .. } => self.strain(question, cancel)?,
         })
     }
