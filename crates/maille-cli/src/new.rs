@@ -137,10 +137,10 @@ pub fn run(args: &Args) -> Result<()> {
         });
         let file = out.display();
         output::say!(
-            "{file}  {}: {} rings and {} links per cell{gap}",
+            "{file}  {}: {} and {} per cell{gap}",
             design.title,
-            model.rings.len(),
-            model.links.len()
+            output::counted(model.rings.len(), "ring"),
+            output::counted(model.links.len(), "link")
         );
         output::say!("see it with   maille render {file}\nits limits    maille characterize {file}");
     }

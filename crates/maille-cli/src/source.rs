@@ -6,6 +6,7 @@ use crate::{
     extreme::{Lattice, as_design, word as extreme_word},
     input::{Input, file_name},
     numbers::positive,
+    output::counted,
 };
 use maille::{
     design::Design,
@@ -162,7 +163,11 @@ impl SourceArgs {
             (None, None) => last,
             _ => {
                 let help = format!("name one of its frames, --at frame=0 to --at frame={last}");
-                return Err(wrong(exit::USAGE, format!("{} has {} frames", folder.display(), last + 1), help));
+                return Err(wrong(
+                    exit::USAGE,
+                    format!("{} has {}", folder.display(), counted(last + 1, "frame")),
+                    help,
+                ));
             }
         };
         Ok(Source { design: record.design, model, locked: None, simulated: Some((states, shown)), extreme: None })

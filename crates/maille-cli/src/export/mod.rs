@@ -72,7 +72,7 @@ pub struct Args {
     /// A file, a folder (with a / at its end), how the files' names begin (with --format), or - for standard output [default: maille-out/DESIGN-export/DESIGN]
     #[arg(long)]
     out: Option<PathBuf>,
-    /// Most distance between mesh and torus, in the file's unit [default: a hundredth of the reference radius]
+    /// Maximum distance between mesh and torus, in the file's unit [default: a hundredth of the reference radius]
     #[arg(long, value_parser = positive, conflicts_with = "segments")]
     tolerance: Option<f64>,
     /// Segments around a ring, or around a ring and across its wire, as 48 or 48x16
@@ -276,7 +276,7 @@ fn write_frames(
             let problem = fuse(&close, wanted, mm, source);
             match args.warn {
                 false => return Err(problem),
-                true => eprintln!("{:?}", problem.wrap_err("warning: written all the same (--warn)")),
+                true => eprintln!("{:?}", problem.wrap_err("warning: written anyway (--warn)")),
             }
         }
         if k == 0 && !args.allow_large {
@@ -328,7 +328,7 @@ fn write_collections(prefix: &Path, series: &[(MeshFile, f64, PathBuf)], frames:
     for (path, text) in collections(prefix, series) {
         output::write(&path, text.as_bytes())?;
         if !quiet {
-            output::say!("{}  {frames} frames", path.display());
+            output::say!("{}  {}", path.display(), output::counted(frames, "frame"));
         }
     }
     Ok(())
