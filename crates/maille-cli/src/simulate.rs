@@ -333,13 +333,13 @@ fn summary(
         output::say!("  smallest gap {:.2e}; links {}", gap * model.unit, if end.links_ok { "kept" } else { "LOST" });
     }
     if end.unbalanced > 0 {
-        let steps = counted(end.unbalanced as usize, "step");
+        let steps = counted(end.unbalanced, "step");
         output::say!("  {steps} ended without a balance of forces; the next ones made up for it");
     }
     if let Some(note) = &end.note {
         output::say!("  {note}");
     }
-    let [frames, iterations] = [counted(frames, "frame"), counted(end.iterations as usize, "iteration")];
+    let [frames, iterations] = [counted(frames, "frame"), counted(end.iterations, "iteration")];
     output::say!("{}  {frames}, {iterations}, {wall_s:.1} s", out.display());
 }
 
