@@ -64,10 +64,12 @@ impl Target for LeastArea {
     }
 }
 
-/// The cell of least area in which every gap is at least `gap` (in reference radii), as [`extreme`] does: the value is its area
-/// as a share of the written one. Where no start led to such a cell, the answer has no value, and the state and the gap of the
-/// widest that was found.
-pub(super) fn closest_cell(model: &Model, gap: f64, options: &ExtremeOptions, cancel: &AtomicBool) -> Answer {
+/// Searches for the cell of least area in which every gap is at least `gap` (in reference radii), on the current thread pool. The
+/// result does not depend on the number of threads. The lattice is free, whatever the options say.
+///
+/// The value is the area as a share of the written one. The status is `local` with a complete certificate, else `uncertified`. Where no start led to such a cell, the answer is `not-converged`, with the state and the gap
+/// of the widest that was found.
+pub fn closest_cell(model: &Model, gap: f64, options: &ExtremeOptions, cancel: &AtomicBool) -> Answer {
     let mut thick = model.clone();
     thick.rings.iter_mut().for_each(|ring| ring.minor_radius += 0.5 * (gap + SPARED_GAP));
     let search = Multistart { target: &LeastArea, upper_bound: f64::INFINITY, seed: options.seed, cancel };

@@ -11,7 +11,6 @@
 //! the best of all, so the most that is claimed is `local`, with the number of starts and of distinct values they led to.
 
 use super::{
-    closest::closest_cell,
     local::LocalSolution,
     multistart::{Entered, Multistart, Target, verdict},
     options::THIN_WIRE,
@@ -196,13 +195,13 @@ impl Sought {
 
 /// Searches for an extreme of `model` on the current thread pool. The result does not depend on the number of threads.
 ///
-/// The value is the factor of the minor radii, the clearance in reference radii, or the area of the cell as a share of the written
-/// one. The status is `local` with a complete certificate, else `uncertified`; `not-converged` where no start led to a state without
-/// overlap, or none to gaps as wide as a closest cell asks for: then state and gap are the widest that was found.
+/// The value is the factor of the minor radii, or the clearance in reference radii. The status is `local` with a complete
+/// certificate, else `uncertified`; `not-converged` where no start led to a state without overlap.
+///
+/// # Panics
+/// For a closest cell, which [`closest_cell`](super::closest::closest_cell) searches.
 pub fn extreme(model: &Model, what: Extreme, options: &ExtremeOptions, cancel: &AtomicBool) -> Answer {
-    if let Extreme::ClosestCell { gap } = what {
-        return closest_cell(model, gap, options, cancel);
-    }
+    assert!(!matches!(what, Extreme::ClosestCell { .. }), "a closest cell is searched by closest_cell");
     let target = Sought { what, lattice_free: options.lattice_free };
     let search = Multistart { target: &target, upper_bound: f64::INFINITY, seed: options.seed, cancel };
     let straight = vec![Start::written(model.start.clone())];

@@ -4,7 +4,8 @@
 //! maximised and from where: `stretch` (with `stretch_lattices`, and `unlinked` where no chain of links binds), `strain`, `extreme`
 //! (wire and clearance), `closest` (the area of the cell). `waves` tells whether a limit can go on in a larger cell. `overlap` frees a start that overlaps. Every tolerance is in `options`.
 
-mod closest;
+#[doc(hidden)]
+pub mod closest;
 #[doc(hidden)]
 pub mod extreme;
 mod local;
