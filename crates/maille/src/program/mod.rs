@@ -52,7 +52,7 @@ pub struct Parameter {
     pub weight: f64,
     /// The parameter may not exceed this.
     pub most: Option<f64>,
-    /// The parameter may not exceed the share of the area that is saved, see [`area`].
+    /// The parameter may not exceed the share of the area that is saved, 1 − A/A₀; see `area.rs`.
     pub saves_area: bool,
 }
 
