@@ -186,7 +186,9 @@ pub fn surface_svg(record: &SurfaceRecord, surface: &Boundary, layout: Layout) -
 
 fn summary(out: &Path, record: &SurfaceRecord, surface: &Boundary, options: &BoundaryOptions, now: usize, wall_s: f64) {
     let vertices = &surface.vertices;
-    say!("{}: {} rays, {} triangles", record.design.name, vertices.len(), surface.triangles.len());
+    let [rays, triangles] =
+        [(vertices.len(), "ray"), (surface.triangles.len(), "triangle")].map(|(n, what)| counted(n, what));
+    say!("{}: {rays}, {triangles}", record.design.name);
     for (k, name) in ["exx", "eyy", "exy"].into_iter().enumerate() {
         let ends = vertices.iter().filter_map(|v| Some(v.point(v.distance?)[k]));
         let (least, most) = ends.fold((0.0f64, 0.0f64), |(low, high), x| (low.min(x), high.max(x)));
@@ -200,7 +202,10 @@ fn summary(out: &Path, record: &SurfaceRecord, surface: &Boundary, options: &Bou
     }
     let apart = |v: &&BoundaryVertex| v.distance.zip(v.first).is_some_and(|(far, first)| far - first > 1e-7);
     let count = vertices.iter().filter(apart).count();
-    say!("  on {count} rays the sheet gets past the point where a straight deformation path is first blocked");
+    say!(
+        "  on {} the sheet gets past the point where a straight deformation path is first blocked",
+        counted(count, "ray")
+    );
     let unstable = vertices.iter().filter(|v| v.wave_curvature.is_some_and(|least| least < 0.0)).count();
     if unstable > 0 && options.cells != CellChoice::Auto {
         say!("  {unstable} rays end where a wave through the sheet is unstable: --cell auto continues in larger cells");
@@ -211,7 +216,7 @@ fn summary(out: &Path, record: &SurfaceRecord, surface: &Boundary, options: &Bou
     }
     let holes = vertices.iter().filter(|v| v.distance.is_none()).count();
     if holes > 0 {
-        say!("  {holes} rays were not reached: holes in the mesh");
+        say!("  not reached: {}, holes in the mesh", counted(holes, "ray"));
     }
     say!("{} in {wall_s:.1} s; look at {}", counted(now, "ray"), out.join("boundary.png").display());
 }

@@ -133,5 +133,7 @@ fn words(found: &Found) -> String {
         1 => " with 1 warning".into(),
         n => format!(" with {n} warnings"),
     };
-    format!("OK{warnings}; {} rings, {} links per cell{gap}{unit}", found.rings, found.links)
+    let [rings, links] =
+        [(found.rings, "ring"), (found.links, "link")].map(|(count, what)| output::counted(count, what));
+    format!("OK{warnings}; {rings}, {links} per cell{gap}{unit}")
 }

@@ -26,6 +26,8 @@ Examples:
 pub struct ManArgs {
     /// The folder to write to
     folder: PathBuf,
+    #[command(flatten)]
+    replace: output::Replace,
 }
 
 /// Prints completions of `program`.
@@ -38,17 +40,20 @@ pub fn completions(args: &CompletionsArgs, mut program: Command) -> Result<()> {
 /// Writes manual pages of `program`.
 pub fn man(args: &ManArgs, mut program: Command) -> Result<()> {
     program.build();
+    let pages = || {
+        let commands = program.get_subcommands().filter(|sub| sub.get_name() != "help");
+        std::iter::once((&program, "maille".to_owned()))
+            .chain(commands.map(|sub| (sub, format!("maille-{}", sub.get_name()))))
+    };
+    let path = |name: &str| args.folder.join(format!("{name}.1"));
+    pages().try_for_each(|(_, name)| args.replace.check(&path(&name)))?;
     let page = |command: &Command, name: String| -> Result<()> {
         let mut bytes = Vec::new();
         clap_mangen::Man::new(command.clone()).title(name.to_uppercase()).render(&mut bytes).into_diagnostic()?;
-        let path = args.folder.join(format!("{name}.1"));
+        let path = path(&name);
         output::write(&path, &bytes)?;
         output::say!("{}", path.display());
         Ok(())
     };
-    page(&program, "maille".into())?;
-    for sub in program.get_subcommands().filter(|sub| sub.get_name() != "help") {
-        page(sub, format!("maille-{}", sub.get_name()))?;
-    }
-    Ok(())
+    pages().try_for_each(|(command, name)| page(command, name))
 }

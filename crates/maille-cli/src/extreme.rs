@@ -1,5 +1,5 @@
-//! `maille tightest` and `maille roomiest`: the thickest wire of a weave, and its state with the most room; the search of
-//! `--at roomiest` too.
+//! `maille tightest` and `maille roomiest`: the thickest wire of a weave, its state with the most room, and its closest cell with a
+//! gap; the search of `--at roomiest` and `--min-gap` too.
 
 use crate::{
     certificate,
@@ -10,6 +10,7 @@ use crate::{
     map::pool,
     numbers::positive,
     output::{self, Replace, say},
+    units::{Length, parse_length},
 };
 use maille::{
     answer::Answer,
@@ -22,7 +23,7 @@ use maille::{
     sheet::Sheet,
 };
 use maille_io::{answer, mesh::millimetres, write_design};
-use miette::Result;
+use miette::{Report, Result};
 use std::{path::PathBuf, process::ExitCode, time::Instant};
 
 /// The thickest wire with which a weave exists
@@ -46,18 +47,24 @@ pub struct TightestArgs {
 /// The state of a weave with the widest gaps
 ///
 /// The smallest gap between any two rings is made as large as can be, over all poses: how to print a sheet in place so
-/// that its rings do not fuse.
+/// that its rings do not fuse. With --min-gap it is the other way round: the gap is given, and the cell is made as small
+/// as can be.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   maille roomiest european-4-in-1
   maille roomiest 3.1 --lattice free --save roomy.toml
   maille export 3.1 --at roomiest --tile 8x8          the same state as a mesh, to print
+  maille roomiest shirt.toml --min-gap 0.3mm --save close.toml
 
 Exit codes: 0 certified, 5 no certified state was found, 130 interrupted.")]
 pub struct RoomiestArgs {
     #[command(flatten)]
     common: Common,
+    /// Find the closest cell instead: the smallest area with every gap at least this, as 0.3mm; the lattice is free. Where
+    /// the file has no unit of length, one unit is 1 mm
+    #[arg(long, value_name = "LENGTH", value_parser = parse_length, conflicts_with = "lattice")]
+    min_gap: Option<Length>,
 }
 
 #[derive(clap::Args)]
@@ -94,23 +101,40 @@ pub enum Lattice {
 
 /// Runs `tightest`.
 pub fn tightest(args: &TightestArgs) -> Result<ExitCode> {
-    run(&args.common, Extreme::ThickestWire)
+    run(&args.common, |_| Extreme::ThickestWire)
 }
 
 /// Runs `roomiest`.
 pub fn roomiest(args: &RoomiestArgs) -> Result<ExitCode> {
-    run(&args.common, Extreme::LargestClearance)
+    let millimetres = |design: &Design| {
+        design.unit.as_deref().and_then(millimetres).unwrap_or_else(|| {
+            eprintln!("note: the design has no unit of length: one unit of the file is taken as 1 mm");
+            1.0
+        })
+    };
+    run(&args.common, |design| match args.min_gap {
+        Some(gap) => closest(design, gap.mm / millimetres(design)),
+        None => Extreme::LargestClearance,
+    })
 }
 
-fn run(args: &Common, what: Extreme) -> Result<ExitCode> {
+/// The closest cell with this gap, in the file's unit.
+pub fn closest(design: &Design, gap: f64) -> Extreme {
+    Extreme::ClosestCell { gap: gap / design.reference_radius }
+}
+
+fn run(args: &Common, what: impl FnOnce(&Design) -> Extreme) -> Result<ExitCode> {
     args.save.iter().try_for_each(|file| args.replace.check(file))?;
     let input = Input::read(&args.design, args.minor_radius)?;
+    let what = what(&input.design);
     let begun = Instant::now();
     let answer = search(&input, what, args.lattice, args.search, args.threads)?;
     let found = &answer.found;
     if args.json {
         let document = answer::extreme(&input.design, answer.model(), what, answer.lattice_free, found);
         output::print_json(&output::timed(document, begun.elapsed().as_secs_f64()))?;
+    } else if let Some(problem) = answer.impossible() {
+        return Err(problem);
     } else {
         answer.print(begun.elapsed().as_secs_f64());
     }
@@ -134,12 +158,12 @@ pub fn search<'a>(
         let help = "`maille inspect` shows links; rings that hold each other bound the wire, and nothing else does";
         return Err(wrong(exit::DESIGN, "no rings of this design are linked", help));
     }
-    let lattice_free = lattice.map_or(what == Extreme::ThickestWire, |lattice| lattice == Lattice::Free);
-    let goal = match what {
-        Extreme::ThickestWire => Goal::Wire { lattice_free },
-        Extreme::LargestClearance => Goal::Clearance { lattice_free },
-    };
-    let question = search.of(Question::new(goal, Sense::Largest));
+    let lattice_free = lattice.map_or(what != Extreme::LargestClearance, |lattice| lattice == Lattice::Free);
+    let question = search.of(match what {
+        Extreme::ThickestWire => Question::new(Goal::Wire { lattice_free }, Sense::Largest),
+        Extreme::LargestClearance => Question::new(Goal::Clearance { lattice_free }, Sense::Largest),
+        Extreme::ClosestCell { gap } => Question::closest_cell(gap * sheet.model().unit),
+    });
     let cancel = interrupt::flag(false)?;
     let found = pool(threads)?.install(|| sheet.answer_until(&question, &cancel)).map_err(|e| refused(&e))?;
     Ok(Found { input, sheet, what, lattice_free, found })
@@ -153,6 +177,9 @@ pub fn as_design(
     threads: Option<u16>,
 ) -> Result<(Design, String)> {
     let answer = search(input, what, lattice, SearchArgs::USUAL, threads)?;
+    if let Some(problem) = answer.impossible() {
+        return Err(problem);
+    }
     let name = &input.design.name;
     match (answer.found.status, answer.found.value) {
         (Status::Interrupted, _) => Err(wrong(exit::INTERRUPTED, "interrupted", "nothing was written")),
@@ -161,10 +188,10 @@ pub fn as_design(
             Err(wrong(exit::INCOMPLETE, problem, "--lattice free, or a smaller --minor-radius"))
         }
         (status, Some(_)) => {
-            let unit = input.design.unit.as_deref().map(|unit| format!(" {unit}")).unwrap_or_default();
+            let unit = unit(&input.design);
             // The gap of the roomiest state is said where it is known in millimetres.
             let size = match what {
-                Extreme::LargestClearance => String::new(),
+                Extreme::LargestClearance | Extreme::ClosestCell { .. } => String::new(),
                 Extreme::ThickestWire => {
                     format!(": minor radius {:.9}{unit}", what.sizes(&answer.found, answer.model())[0].minor_radius)
                 }
@@ -182,7 +209,13 @@ pub fn word(what: Extreme) -> &'static str {
     match what {
         Extreme::ThickestWire => "tightest",
         Extreme::LargestClearance => "roomiest",
+        Extreme::ClosestCell { .. } => "closest",
     }
+}
+
+/// The file's unit, with a space before it.
+fn unit(design: &Design) -> String {
+    design.unit.as_deref().map(|unit| format!(" {unit}")).unwrap_or_default()
 }
 
 /// What was asked, and what was found.
@@ -202,17 +235,49 @@ impl Found<'_> {
 
     fn title(&self) -> String {
         let lattice = if self.lattice_free { "free" } else { "fixed" };
-        let words = if self.what == Extreme::ThickestWire { "thickest wire" } else { "widest gaps" };
+        let words = match self.what {
+            Extreme::ThickestWire => "thickest wire".to_owned(),
+            Extreme::LargestClearance => "widest gaps".to_owned(),
+            Extreme::ClosestCell { gap } => format!("closest cell with gaps of {}", self.length(gap)),
+        };
         format!("{}, {words}, lattice {lattice}", self.input.design.name)
+    }
+
+    /// A length in reference radii, in the file's unit, with up to six digits.
+    fn length(&self, radii: f64) -> String {
+        let length = radii * self.model().unit;
+        let decimals = (5.0 - length.abs().log10().floor()).clamp(0.0, 300.0) as usize;
+        let digits: f64 = format!("{length:.decimals$}").parse().unwrap_or(length);
+        format!("{digits}{}", unit(&self.input.design))
+    }
+
+    /// The error where no cell has the gap that was asked for: it names the widest that was found.
+    fn impossible(&self) -> Option<Report> {
+        let (Extreme::ClosestCell { gap }, model) = (self.what, self.model()) else { return None };
+        let widest = self.what.widest_instead(&self.found, model)?;
+        let problem = format!(
+            "no cell of {} with gaps of {} was found: the widest gap is {}",
+            self.input.design.name,
+            self.length(gap),
+            self.length(widest / model.unit)
+        );
+        Some(wrong(
+            exit::INCOMPLETE,
+            problem,
+            "give a smaller --min-gap, or take thinner wire or a larger inner diameter",
+        ))
     }
 
     fn print(&self, wall_s: f64) {
         let found = &self.found;
-        let unit = self.input.design.unit.as_deref().map(|unit| format!(" {unit}")).unwrap_or_default();
+        let unit = unit(&self.input.design);
         say!("{}: {}", self.title(), found.status.name());
         if found.value.is_none() {
             say!("  no start led to a state without overlap; try --effort thorough, or --lattice free");
             return;
+        }
+        if let Some(share) = self.what.area_share(found) {
+            say!("  area            {share:.9} of the written cell's");
         }
         if let Some(gap) = self.what.clearance(found, self.model()) {
             let mm = self.input.design.unit.as_deref().and_then(millimetres).filter(|mm| *mm != 1.0);

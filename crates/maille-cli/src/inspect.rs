@@ -296,7 +296,9 @@ impl Inspection {
             "area {:.4}{square}, angle {:.2}°, reference radius {}{unit}",
             self.area, self.angle_deg, self.reference_radius
         ));
-        line(format!("{} elements, {} rings, {} links per cell\n", self.elements.len(), self.rings, self.links));
+        let counts = [(self.elements.len(), "element"), (self.rings, "ring"), (self.links, "link")];
+        let [elements, rings, links] = counts.map(|(count, what)| output::counted(count, what));
+        line(format!("{elements}, {rings}, {links} per cell\n"));
         for element in &self.elements {
             line(format!("\"{}\"", element.name));
             for ring in &element.rings {

@@ -145,8 +145,8 @@ fn print(answer: &StrainAnswer<'_>, wall_s: f64) {
         Status::Unbounded => return say!("  nothing holds the sheet along this direction: it comes apart"),
         Status::InfeasibleStart => return say!("  the rings of the design overlap, and could not be freed of that"),
         Status::L2NotReached => {
-            let starts = found.n_starts.unwrap_or(0);
-            return say!("  {starts} starts did not reach the strains that are held; nothing is proved");
+            let starts = output::counted(found.n_starts.unwrap_or(0) as usize, "start");
+            return say!("  {starts} did not reach the strains that are held; nothing is proved");
         }
         Status::Uncertified if found.value.is_none() => {
             return say!("  no chain of links and no contact held it where the search was stopped; nothing is proved");

@@ -2,14 +2,16 @@
 
 use crate::{
     exit::{self, wrong},
-    input::file_name,
+    extreme,
+    input::{Input, file_name},
     numbers::positive,
     output,
     units::{Length, parse_length, parse_wire},
 };
-use maille::{lattice::Cell, model::Model, topology};
+use maille::{design::Design, lattice::Cell, model::Model, topology};
 use maille_io::{
     DESIGN_JSON_SCHEMA,
+    mesh::millimetres,
     weave::{Rings, Weave, WeaveError},
 };
 use miette::{Report, Result, miette};
@@ -29,6 +31,7 @@ Examples:
   maille new shirt --weave european-6-in-1 --wire 16swg --id 3/8in
   maille new cuff --weave japanese-12-in-2 --wire 0.8mm --id 6mm -o designs/cuff.toml
   maille new cuff --weave kings-mail --wire 16awg --id 7/16in -o - | maille inspect -
+  maille new swatch --weave european-4-in-1 --wire 1.6mm --id 8mm --min-gap 0.3mm
 
 Wires: a diameter as 1.6mm or 0.064in, or a gauge: 16swg (British), 16awg (American).
 
@@ -55,6 +58,9 @@ pub struct Args {
     /// Inner diameter of the rings, as 8mm or 5/16in
     #[arg(long, value_parser = parse_length, requires = "wire")]
     id: Option<Length>,
+    /// Place the rings in the closest cell with every gap at least this, as 0.3mm, and not with the largest gaps
+    #[arg(long, value_name = "LENGTH", value_parser = parse_length)]
+    min_gap: Option<Length>,
     /// The file, or - for standard output [default: NAME.toml]
     #[arg(long, short)]
     out: Option<PathBuf>,
@@ -108,6 +114,10 @@ pub fn run(args: &Args) -> Result<()> {
     if let Some(problem) = design.problems().first() {
         return Err(wrong(exit::USAGE, problem.to_string(), &problem.help));
     }
+    let (design, placed) = match args.min_gap {
+        Some(gap) => closest(design, gap)?,
+        None => (design, None),
+    };
     let model =
         Model::compile(&design, Cell::PRIMITIVE).map_err(|p| miette!("the new design cannot be used: {}", p[0]))?;
 
@@ -116,7 +126,7 @@ pub fn run(args: &Args) -> Result<()> {
     args.replace.check(&out)?;
     // On standard output no path of a schema would be true.
     let schema = (to_file && !args.no_schema).then(|| out.with_file_name(SCHEMA));
-    let text = weave.file(&design, schema.is_some().then_some(SCHEMA));
+    let text = weave.file(&design, placed.as_deref(), schema.is_some().then_some(SCHEMA));
     output::write(&out, text.as_bytes())?;
     if let Some(schema) = schema.filter(|path| !path.exists()) {
         output::write(&schema, DESIGN_JSON_SCHEMA.as_bytes())?;
@@ -127,14 +137,32 @@ pub fn run(args: &Args) -> Result<()> {
         });
         let file = out.display();
         output::say!(
-            "{file}  {}: {} rings and {} links per cell{gap}",
+            "{file}  {}: {} and {} per cell{gap}",
             design.title,
-            model.rings.len(),
-            model.links.len()
+            output::counted(model.rings.len(), "ring"),
+            output::counted(model.links.len(), "link")
         );
         output::say!("see it with   maille render {file}\nits limits    maille characterize {file}");
     }
     Ok(())
+}
+
+/// The same design in its closest cell with this gap, and what to say of the placement.
+fn closest(design: Design, gap: Length) -> Result<(Design, Option<String>)> {
+    let Some(mm) = design.unit.as_deref().and_then(millimetres) else {
+        let problem =
+            format!("--min-gap needs a unit of length, and \"{}\" is not known", design.unit.unwrap_or_default());
+        return Err(wrong(exit::USAGE, problem, "--unit takes mm, cm, m, um, in and ft"));
+    };
+    let input = Input::of(design);
+    let what = extreme::closest(&input.design, gap.mm / mm);
+    let (found, _) = extreme::as_design(&input, what, None, None)?;
+    let placement = format!(
+        "The placement is the closest cell: the smallest area that was found where every gap is at least {} mm",
+        gap.mm
+    );
+    let Design { name, title, .. } = input.design;
+    Ok((Design { name, title, ..found }, Some(placement)))
 }
 
 fn rings(args: &Args) -> Result<Rings> {

@@ -203,8 +203,8 @@ impl Told<'_> {
             }
         );
         if let (Some(answer), Some(l1)) = (self.found, claim.l1_found) {
-            let starts = answer.n_starts.unwrap_or(0);
-            say!("  found   l1  = {l1:.9}, by {starts} starts");
+            let starts = output::counted(answer.n_starts.unwrap_or(0) as usize, "start");
+            say!("  found   l1  = {l1:.9}, by {starts}");
         }
         say!("  proved  l1 <= {:.9} for the cell 1x1; larger cells may go further", self.proved());
         if !outcome.closed() {

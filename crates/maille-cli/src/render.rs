@@ -145,7 +145,7 @@ fn parse_size(text: &str) -> Result<SizeArg, String> {
         return Ok(SizeArg::Pixels([w, h]));
     }
     units::parse_size(text).map(SizeArg::Millimetres).map_err(|_| {
-        format!("\"{text}\" is no size; give pixels across and down, as 1600x1200, or a piece of sheet with its unit, as 100x100mm")
+        format!("\"{text}\" is not a size; give pixels across and down, as 1600x1200, or a piece of sheet with its unit, as 100x100mm")
     })
 }
 
@@ -246,7 +246,12 @@ pub fn run(args: &Args) -> Result<()> {
     if !args.quiet && !output::is_standard(&out) {
         let ([w, h], rings) = (size, pictures.first().map_or(0, |picture| picture.rings));
         let frames = args.frames.map_or(String::new(), |_| format!("{} frames, ", pictures.len()));
-        output::say!("{}  {frames}{w} × {h}, {rings} rings, {:.1} s", out.display(), begun.elapsed().as_secs_f64());
+        output::say!(
+            "{}  {frames}{w} × {h}, {}, {:.1} s",
+            out.display(),
+            output::counted(rings, "ring"),
+            begun.elapsed().as_secs_f64()
+        );
     }
     Ok(())
 }

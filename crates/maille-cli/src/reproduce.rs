@@ -4,7 +4,7 @@ use crate::{
     exit::{self, wrong},
     input::Input,
     map::{self, Solved, Tally, pool},
-    output::{self, say},
+    output::{self, counted, say},
     records,
 };
 use maille::design::Design;
@@ -15,6 +15,9 @@ use std::{
     path::{Path, PathBuf},
     process::ExitCode,
 };
+
+/// The folder of the records.
+const RECORDS: &str = "records";
 
 /// Chapter 6 of the thesis computed anew, as one page
 ///
@@ -51,6 +54,8 @@ pub struct Args {
     /// A folder of TOML files named as in the thesis, 1.1.toml to 5.2.toml: their coordinates are taken in place of ours
     #[arg(long, value_name = "FOLDER")]
     designs: Option<PathBuf>,
+    #[command(flatten)]
+    replace: output::Replace,
     /// No progress and no summary
     #[arg(long, short)]
     quiet: bool,
@@ -62,7 +67,11 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let usual = if args.quick { "reproduction-quick" } else { "reproduction" };
     let out = args.out.clone().unwrap_or_else(|| usual.into());
     output::folder(&out, "a folder is written")?;
-    let plan = plan(&chosen, args.quick, &out.join("records")).map_err(|e| miette!("{e:?}"))?;
+    // A folder with records of its own is continued; what it has been made into is made again.
+    if !out.join(RECORDS).is_dir() {
+        ["index.html", "statements.json"].iter().try_for_each(|name| args.replace.check(&out.join(name)))?;
+    }
+    let plan = plan(&chosen, args.quick, &out.join(RECORDS)).map_err(|e| miette!("{e:?}"))?;
     let _lock = FolderLock::take(&out)?;
     let open = |p: &Planned| map::open(&p.map, &Input::of(p.design.clone()));
     let open = plan.iter().map(|p| Ok((p.name.as_str(), open(p)?))).collect::<Result<Vec<_>>>()?;
@@ -87,7 +96,11 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         if unmeasured > 0 {
             say!("{unmeasured} need other designs than these");
         }
-        say!("{there} limits are in {} records, {now} of them now; {unanswered} were not found", plan.len());
+        say!(
+            "{} in {}, {now} of them now; {unanswered} not found",
+            counted(there, "limit"),
+            counted(plan.len(), "record")
+        );
         say!("look at {}", out.join("index.html").display());
     }
     Ok(ExitCode::from(if unanswered > 0 { exit::INCOMPLETE } else { exit::DONE }))

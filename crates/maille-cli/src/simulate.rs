@@ -5,7 +5,7 @@ use crate::{
     input::{Input, file_name},
     interrupt,
     numbers::positive,
-    output,
+    output::{self, counted},
     piece::{PieceArgs, known_millimetres},
     progress::Spinner,
 };
@@ -310,7 +310,7 @@ fn summary(
         End::NotConverged => format!("a step after {percent:.1} % of the pull did not converge"),
         End::Interrupted => format!("interrupted after {percent:.1} % of the pull"),
     };
-    output::say!("{}, {tile} cells, {} elements: {what}", model.name, model.elements.len());
+    output::say!("{}, {tile} cells, {}: {what}", model.name, counted(model.elements.len(), "element"));
     for pull in &args.pull {
         let way: Vec<Vec3> = pull.way.iter().map(|by| Vec3::from(*by)).collect();
         let by = along(&way, end.share);
@@ -333,12 +333,14 @@ fn summary(
         output::say!("  smallest gap {:.2e}; links {}", gap * model.unit, if end.links_ok { "kept" } else { "LOST" });
     }
     if end.unbalanced > 0 {
-        output::say!("  {} steps ended without a balance of forces; the next ones made up for it", end.unbalanced);
+        let steps = counted(end.unbalanced, "step");
+        output::say!("  {steps} ended without a balance of forces; the next ones made up for it");
     }
     if let Some(note) = &end.note {
         output::say!("  {note}");
     }
-    output::say!("{}  {frames} frames, {} iterations, {wall_s:.1} s", out.display(), end.iterations);
+    let [frames, iterations] = [counted(frames, "frame"), counted(end.iterations, "iteration")];
+    output::say!("{}  {frames}, {iterations}, {wall_s:.1} s", out.display());
 }
 
 #[cfg(test)]

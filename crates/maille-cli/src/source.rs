@@ -6,6 +6,7 @@ use crate::{
     extreme::{Lattice, as_design, word as extreme_word},
     input::{Input, file_name},
     numbers::positive,
+    output::counted,
 };
 use maille::{
     design::Design,
@@ -115,6 +116,16 @@ impl SourceArgs {
         }
     }
 
+    /// The closest cell of the design, whose gap the design and its unit tell.
+    pub fn closest(&self, what: impl FnOnce(&Design) -> Result<Extreme>) -> Result<Source> {
+        let input = self.design.as_deref().map(|name| Input::read(name, self.minor_radius)).transpose()?;
+        let Some(input) = input else {
+            return Err(wrong(exit::USAGE, "there is no design to find the closest cell of", "name one"));
+        };
+        let what = what(&input.design)?;
+        self.of_extreme(Some(&input), what, Wanted { locked: false, overlaps: false, threads: None })
+    }
+
     /// The extreme state is a design of its own, and the start of that one is shown.
     fn of_extreme(&self, input: Option<&Input>, what: Extreme, wanted: Wanted) -> Result<Source> {
         let Some(input) = input.filter(|_| self.from.is_none()) else {
@@ -152,7 +163,11 @@ impl SourceArgs {
             (None, None) => last,
             _ => {
                 let help = format!("name one of its frames, --at frame=0 to --at frame={last}");
-                return Err(wrong(exit::USAGE, format!("{} has {} frames", folder.display(), last + 1), help));
+                return Err(wrong(
+                    exit::USAGE,
+                    format!("{} has {}", folder.display(), counted(last + 1, "frame")),
+                    help,
+                ));
             }
         };
         Ok(Source { design: record.design, model, locked: None, simulated: Some((states, shown)), extreme: None })

@@ -6,7 +6,7 @@ use crate::{
 };
 use maille::survey::surface::Boundary;
 use maille_io::{
-    boundary::boundary_csv,
+    boundary::{boundary_csv, boundary_json},
     record::NamedRecord,
     table::{Condition, Extent, Field, SortKey, Table, TableError},
 };
@@ -176,17 +176,7 @@ fn of_surface(args: &Args, surface: &Boundary, format: Format) -> Result<Vec<u8>
     let kept: Vec<Vec<&str>> = parsed.iter().map(|row| row.iter().collect()).collect();
     let text = match (format, &kept[..]) {
         (Format::Text, kept) => aligned(kept),
-        (Format::Json, [names, rows @ ..]) => {
-            let value = |text: &&str| match (text.is_empty(), text.parse::<u64>(), text.parse::<f64>()) {
-                (true, ..) => serde_json::Value::Null,
-                (_, Ok(count), _) => count.into(),
-                (_, _, Ok(number)) => number.into(),
-                _ => (*text).into(),
-            };
-            let row = |row: &Vec<&str>| names.iter().map(|n| n.to_string()).zip(row.iter().map(value)).collect();
-            let rows: Vec<serde_json::Map<String, serde_json::Value>> = rows.iter().map(row).collect();
-            format!("{}\n", serde_json::json!({ "columns": names, "rows": rows }))
-        }
+        (Format::Json, _) => boundary_json(surface, rows),
         (_, kept) => csv.lines().take(kept.len()).map(|line| format!("{line}\n")).collect(),
     };
     Ok(text.into_bytes())

@@ -99,7 +99,7 @@ fn gauge_number(lower: &str) -> Option<usize> {
 
 /// Reads `400x600mm`, `40x60cm` or `16x24in`; gives both in millimetres.
 pub fn parse_size(text: &str) -> Result<[f64; 2], String> {
-    let wrong = || format!("\"{text}\" is no size; give width and height with their unit, as 400x600mm or 16x24in");
+    let wrong = || format!("\"{text}\" is not a size; give width and height with their unit, as 400x600mm or 16x24in");
     let (width, height) = text.trim().split_once(['x', '×']).ok_or_else(wrong)?;
     let [width, height] = [width, height].map(str::trim);
     let unit = height.trim_start_matches(|c: char| c.is_ascii_digit() || "./".contains(c));

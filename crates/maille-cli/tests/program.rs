@@ -215,6 +215,10 @@ fn shells_and_man_know_every_command() {
         .collect();
     assert!(commands.len() >= 11, "{commands:?}");
     done(folder.path(), "man pages", b"");
+    let again = maille(folder.path(), "man pages", b"");
+    assert_eq!(again.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&again.stderr).contains("is there already"));
+    done(folder.path(), "man pages --overwrite", b"");
     let bash = String::from_utf8(done(folder.path(), "completions bash", b"")).unwrap();
     for shell in ["zsh", "fish", "elvish", "powershell"] {
         assert!(!done(folder.path(), &format!("completions {shell}"), b"").is_empty());

@@ -112,7 +112,7 @@ impl<'a> StrainAnswer<'a> {
     }
 }
 
-/// The thickest wire or the largest clearance of a design, and the state.
+/// The thickest wire, the largest clearance or the closest cell of a design, and the state.
 pub fn extreme(design: &Design, model: &Model, what: Extreme, lattice_free: bool, found: &Answer) -> Value {
     let sizes = what.sizes(found, model).into_iter().map(|size| {
         json!({
@@ -126,6 +126,8 @@ pub fn extreme(design: &Design, model: &Model, what: Extreme, lattice_free: bool
         "status": found.status.name(),
         "lattice": if lattice_free { "free" } else { "fixed" },
         "gap": what.clearance(found, model),
+        "area_share": what.area_share(found),
+        "widest_gap": what.widest_instead(found, model),
         "sizes": sizes.collect::<Vec<_>>(),
         "a1": length(model, found.state.a1),
         "a2": length(model, found.state.a2),

@@ -13,6 +13,7 @@ use maille::{
     record::Status,
     survey::surface::{Boundary, BoundaryVertex},
 };
+use serde_json::{Value, json};
 use std::fmt::Write;
 
 /// A vertex's point; none where nothing was found.
@@ -20,11 +21,64 @@ pub(crate) fn point(vertex: &BoundaryVertex) -> Option<[f64; 3]> {
     Some(vertex.point(vertex.distance?))
 }
 
+/// Columns of the table: name, type, unit (1: a strain or another number without one), and meaning.
+const COLUMNS: [(&str, &str, Option<&str>, &str); 14] = [
+    ("vertex", "count", None, "number of the vertex, from 0"),
+    ("direction_xx", "number", Some("1"), "exx of the ray's unit vector"),
+    ("direction_yy", "number", Some("1"), "eyy of the ray's unit vector"),
+    ("direction_xy", "number", Some("1"), "exy of the ray's unit vector"),
+    ("status", "text", None, "how sure the end of the ray is, or why there is none"),
+    ("distance", "number", Some("1"), "distance of the end of the ray from the sheet in the file"),
+    ("exx", "number", Some("1"), "Green strain along x at the end of the ray"),
+    ("eyy", "number", Some("1"), "Green strain along y at the end of the ray"),
+    ("exy", "number", Some("1"), "tensor shear at the end of the ray"),
+    (
+        "first_exit",
+        "number",
+        Some("1"),
+        "distance at which the straight deformation path from the start is first blocked",
+    ),
+    ("bound", "number", Some("1"), "proven bound of the distance"),
+    ("n_distinct", "count", None, "number of distinct certified values"),
+    ("wave_curvature", "number", Some("1"), "least curvature found on waves through the sheet"),
+    ("cell", "text", None, "cell in which the end of the ray was found"),
+];
+
+/// The table as JSON, with `columns` and `rows` as other tables have them: the first `most` rows.
+pub fn boundary_json(boundary: &Boundary, most: usize) -> String {
+    let column = |(name, kind, unit, meaning): &(&str, &str, Option<&str>, &str)| json!({ "name": name, "type": kind, "unit": unit, "meaning": meaning });
+    let row = |(k, v): (usize, &BoundaryVertex)| {
+        let ([x, y, z], at) = (v.direction, v.distance.map(|distance| v.point(distance)));
+        let [exx, eyy, exy] = std::array::from_fn(|i| at.map(|p| p[i]));
+        let values: [Value; COLUMNS.len()] = [
+            json!(k),
+            json!(x),
+            json!(y),
+            json!(z),
+            json!(v.status.name()),
+            json!(v.distance),
+            json!(exx),
+            json!(eyy),
+            json!(exy),
+            json!(v.first),
+            json!(v.bound),
+            json!(v.n_distinct),
+            json!(v.wave_curvature),
+            json!(v.cell.to_string()),
+        ];
+        Value::Object(COLUMNS.iter().map(|(name, ..)| (*name).to_owned()).zip(values).collect())
+    };
+    let lines = |values: Vec<Value>| {
+        let lines: Vec<String> = values.iter().map(|value| format!("    {value}")).collect();
+        if lines.is_empty() { "[]".to_owned() } else { format!("[\n{}\n  ]", lines.join(",\n")) }
+    };
+    let rows = boundary.vertices.iter().enumerate().take(most).map(row).collect();
+    format!("{{\n  \"columns\": {},\n  \"rows\": {}\n}}\n", lines(COLUMNS.iter().map(column).collect()), lines(rows))
+}
+
 /// The table: a line a vertex.
 pub fn boundary_csv(boundary: &Boundary) -> String {
-    let mut out =
-        "vertex,direction_xx,direction_yy,direction_xy,status,distance,exx,eyy,exy,first_exit,bound,n_distinct,wave_curvature,cell\n"
-            .to_owned();
+    let mut out = COLUMNS.map(|(name, ..)| name).join(",") + "\n";
     for (k, v) in boundary.vertices.iter().enumerate() {
         let [x, y, z] = v.direction;
         let at = v.distance.map(|distance| v.point(distance));
@@ -151,5 +205,13 @@ mod tests {
         assert!(ply.contains("element vertex 3\n") && ply.contains("element face 1\n"));
         assert!(ply.contains("0 0.5 0 -1 ") && ply.contains("0 0 0.25 0.75 ") && ply.ends_with("3 0 2 1\n"));
         assert!(boundary_csv(&surface).contains("\n0,1.0,0.0,0.0,l2-not-reached,,,,,,,0,,1x1\n"));
+        let table: Value = serde_json::from_str(&boundary_json(&surface, 3)).unwrap();
+        let names: Vec<&str> =
+            table["columns"].as_array().unwrap().iter().map(|c| c["name"].as_str().unwrap()).collect();
+        assert_eq!(boundary_csv(&surface).lines().next(), Some(names.join(",").as_str()));
+        let rows = table["rows"].as_array().unwrap();
+        assert_eq!((rows.len(), &rows[0]["exx"], &rows[2]["exy"]), (3, &Value::Null, &json!(0.25)));
+        assert_eq!((&rows[2]["bound"], &rows[2]["cell"]), (&json!(0.75), &json!("1x1")));
+        assert!(names.iter().all(|name| rows[0].get(name).is_some()));
     }
 }

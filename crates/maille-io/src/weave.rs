@@ -268,22 +268,31 @@ impl Weave {
         Some((distance, [model.ring_label(pair.ring_a, [0, 0]), model.ring_label(pair.ring_b, pair.shift)]))
     }
 
-    /// The design as a file with comments. `schema`: path of the JSON Schema, for editors.
-    pub fn file(self, design: &Design, schema: Option<&str>) -> String {
+    /// The design as a file with comments. `placed`: words on how its rings were placed, where they have not the largest gaps;
+    /// `schema`: path of the JSON Schema, for editors.
+    pub fn file(self, design: &Design, placed: Option<&str>, schema: Option<&str>) -> String {
         let (major, minor) = (design.reference_radius, design.minor_radius.unwrap_or(f64::NAN));
         let mut out = schema.map_or(String::new(), |path| format!("#:schema {path}\n"));
         for line in self.comment() {
             out += &format!("# {line}\n");
         }
-        let thickest = self.clearance(design).map_or(f64::NAN, |(distance, _)| distance / 2.0);
+        let assembles = match placed {
+            // Of the placement with the largest gaps.
+            Some(_) => self.smallest_aspect_ratio(),
+            None => {
+                let thickest = self.clearance(design).map_or(f64::NAN, |(distance, _)| distance / 2.0);
+                (major - thickest) / thickest
+            }
+        };
         out += &format!(
             "#\n# Inner diameter {:.4}, wire {:.4}: aspect ratio {:.2}. The weave assembles above {:.2}.\n",
             2.0 * (major - minor),
             2.0 * minor,
             (major - minor) / minor,
-            (major - thickest) / thickest,
+            assembles,
         );
-        out += "# The placement is the one with the largest gaps; strains are relative to it.\n\n";
+        let placed = placed.unwrap_or("The placement is the one with the largest gaps");
+        out += &format!("# {placed}; strains are relative to it.\n\n");
         for line in write_design(design).lines() {
             out += match line.split(' ').next().unwrap_or_default() {
                 "unit" => "# The unit of all lengths in this file.\n",

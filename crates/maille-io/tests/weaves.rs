@@ -169,7 +169,7 @@ fn files_are_read_back_and_have_comments() {
     for weave in Weave::ALL {
         let rings = Rings { major: 5.5753, minor: 0.8128, unit: Some("mm".into()) };
         let design = weave.design("mine", &rings).unwrap();
-        let text = weave.file(&design, Some("maille.schema.json"));
+        let text = weave.file(&design, None, Some("maille.schema.json"));
         assert_eq!(read_design("mine", &text).unwrap(), design);
         assert!(text.starts_with("#:schema maille.schema.json\n# "));
     }

@@ -1,4 +1,4 @@
-//! Single questions: one strain as large or small as can be, the thickest wire, the widest gap.
+//! Single questions: one strain as large or small as can be, the thickest wire, the widest gap, the closest cell.
 
 use crate::{design::Design, error, wait::wait};
 use maille::{
@@ -8,8 +8,8 @@ use maille::{
 use maille_io::answer::{StrainAnswer, extreme as document_of_extreme};
 use pyo3::prelude::*;
 
-/// The answer to a question on a strain, a wire or a clearance, which is given as JSON: the document that the program prints, and of
-/// a wire or a clearance the state as a design.
+/// The answer to a question on a strain, a wire, a clearance or an area, which is given as JSON: the document that the program prints,
+/// and of all but a strain the state as a design.
 #[pyfunction]
 #[pyo3(signature = (design, question, *, cell, threads))]
 pub fn answer(
@@ -24,6 +24,7 @@ pub fn answer(
     let extreme = match question.goal {
         Goal::Wire { lattice_free } => Some((Extreme::ThickestWire, lattice_free)),
         Goal::Clearance { lattice_free } => Some((Extreme::LargestClearance, lattice_free)),
+        Goal::Area { min_gap } => Some((Extreme::ClosestCell { gap: min_gap / design.design.reference_radius }, true)),
         Goal::Stretch { .. } | Goal::Strain { .. } | Goal::Ray { .. } => None,
     };
     let sheet = design.sheet(cell.parse().map_err(|e| error::invalid(&e))?)?;
@@ -40,6 +41,6 @@ pub fn answer(
     }
     match StrainAnswer::new(&design.name, &question, &model, &found) {
         Some(answer) => Ok((answer.json().to_string(), None)),
-        None => Err(error::other("a strain, a wire or a clearance can be asked for")),
+        None => Err(error::other("a strain, a wire, a clearance or an area can be asked for")),
     }
 }

@@ -31,7 +31,7 @@ pub fn design_file(request: &New) -> Result<Text, Refusal> {
                 Refusal::wrong(e.to_string(), help)
             };
             let design = weave.design(name, &Rings { major: *major, minor: *minor, unit }).map_err(refused)?;
-            (design.clone(), weave.file(&design, None))
+            (design.clone(), weave.file(&design, None, None))
         }
     };
     match design.problems().first() {

@@ -17,7 +17,7 @@ pub struct Answer {
     /// How sure it is, or why there is none.
     pub status: Status,
     /// What was asked for: l1 of a stretch, a Green strain, the distance along a ray of strains, the factor of the minor radii,
-    /// or the clearance. Certified if the status says so; of an `uncertified` answer the best feasible value. `None` where
+    /// the clearance, or the area as a share of the written one. Certified if the status says so; of an `uncertified` answer the best feasible value. `None` where
     /// nothing was found.
     pub value: Option<f64>,
     /// Value of the first start, which goes straight from the design's state (strains and rays).
@@ -36,7 +36,8 @@ pub struct Answer {
     pub state: State,
     /// Deformation gradient of that state.
     pub gradient: Matrix2<f64>,
-    /// Smallest gap between the tori of two rings in it, where there is a value.
+    /// Smallest gap between the tori of two rings in it, where there is a value; where no cell has the gaps asked for, the widest
+    /// that was found.
     pub gap: Option<f64>,
     /// Whether its links are those of the start.
     pub links_ok: Option<bool>,

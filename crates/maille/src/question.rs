@@ -132,6 +132,12 @@ pub enum Goal {
         /// Whether the lattice may change.
         lattice_free: bool,
     },
+    /// The area of the cell, as a share of the written one, with every gap between rings of different elements at least `min_gap`; the
+    /// lattice is free. Only its least value can be asked for.
+    Area {
+        /// The gap, in the design's unit.
+        min_gap: f64,
+    },
 }
 
 /// Which end of it.
@@ -185,6 +191,11 @@ impl Question {
         Question::new(Goal::Clearance { lattice_free: false }, Sense::Largest)
     }
 
+    /// The closest cell: the least area in which every gap is at least `min_gap`, in the design's unit.
+    pub fn closest_cell(min_gap: f64) -> Self {
+        Question::new(Goal::Area { min_gap }, Sense::Least)
+    }
+
     /// The same stretch with the width held at 1 + l2 times the written one. Other goals stay as they are.
     pub fn with_lateral(mut self, lateral: f64) -> Self {
         if let Goal::Stretch { l2, across, .. } = &mut self.goal {
@@ -211,7 +222,8 @@ impl Question {
     ///
     /// # Errors
     /// Without starts; for a number that is not finite, a direction or l2 beyond a million, an l2 of −1 or less, a strain that is named twice, strains that no
-    /// lattice has, a ray whose direction is no unit vector, and for the least wire or clearance, which nothing bounds.
+    /// lattice has, a ray whose direction is no unit vector, for the least wire or clearance, which nothing bounds, for the largest area,
+    /// and for a gap below 0.
     pub fn check(&self) -> Result<(), InvalidInput> {
         if self.starts == Some(0) {
             return Err(InvalidInput::new("starts", "0 starts find nothing", "give 1 or more"));
@@ -253,6 +265,17 @@ impl Question {
                 return Err(InvalidInput::new("sense", "nothing bounds it from below", "ask for the largest"));
             }
             Goal::Wire { .. } | Goal::Clearance { .. } => {}
+            Goal::Area { min_gap } => {
+                finite("min_gap", *min_gap)?;
+                if *min_gap < 0.0 {
+                    let problem = format!("a gap of {min_gap} is an overlap");
+                    return Err(InvalidInput::new("min_gap", problem, "give 0 or more"));
+                }
+                if self.sense == Sense::Largest {
+                    let help = "ask for the least";
+                    return Err(InvalidInput::new("sense", "the largest area is not sought", help));
+                }
+            }
         }
         self.strain_query().map(drop)
     }
@@ -272,7 +295,7 @@ impl Question {
                 let along = Matrix2::new(*xx, *xy, *xy, *yy) * self.sense.sign();
                 Ok(Some(StrainQuery { held: Matrix2::zeros(), free: vec![along] }))
             }
-            Goal::Stretch { .. } | Goal::Wire { .. } | Goal::Clearance { .. } => Ok(None),
+            Goal::Stretch { .. } | Goal::Wire { .. } | Goal::Clearance { .. } | Goal::Area { .. } => Ok(None),
         }
     }
 

@@ -11,6 +11,7 @@ use crate::{
     record::Status,
     search::{
         ExactOptions,
+        closest::closest_cell,
         extreme::{Extreme, ExtremeOptions, extreme},
         strain::{StrainMethod, StrainOptions},
     },
@@ -85,6 +86,10 @@ impl Sheet {
             }
             Goal::Wire { lattice_free } => extreme(Extreme::ThickestWire, lattice_free),
             Goal::Clearance { lattice_free } => extreme(Extreme::LargestClearance, lattice_free),
+            Goal::Area { min_gap } => {
+                let options = ExtremeOptions { lattice_free: true, effort, starts, seed };
+                closest_cell(self.model(), min_gap / self.model().unit, &options, cancel)
+            }
             Goal::Strain { .. } | Goal::Ray { .. } => self.strain(question, cancel)?,
         })
     }

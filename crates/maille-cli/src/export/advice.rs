@@ -97,7 +97,7 @@ pub fn large(scene: &Scene, formats: &[FormatArg], frames: usize) -> Result<()> 
         false => format!("3mf stores each ring once: about {}\n", size(bytes(Format::ThreeMf))),
     };
     let help = format!(
-        "{once}a smaller --tile or --size, or a coarser --tolerance, takes less\n--allow-large writes it all the same"
+        "{once}a smaller --tile or --size, or a coarser --tolerance, takes less\n--allow-large writes it anyway"
     );
     Err(wrong(exit::USAGE, format!("this export would write about {}", size(total)), help))
 }
@@ -130,8 +130,8 @@ pub fn summary(scene: &Scene) {
     let [least, largest] = scene.bounds();
     let extent = largest - least;
     output::say!(
-        "{} rings, {} triangles (meshes within {:.3} mm of the tori); {:.1} × {:.1} × {:.1} mm",
-        scene.ring_count(),
+        "{}, {} triangles (meshes within {:.3} mm of the tori); {:.1} × {:.1} × {:.1} mm",
+        output::counted(scene.ring_count(), "ring"),
         scene.triangle_count(),
         scene.chordal_error(),
         extent.x,

@@ -5,17 +5,19 @@ mod destination;
 
 use crate::{
     exit::{self, wrong},
+    extreme::closest,
     numbers::positive,
     output,
     piece::PieceArgs,
     source::{Frame, Source, SourceArgs, Wanted},
+    units::{Length, parse_length},
 };
 use advice::{fuse, gaps, large, size, summary};
 use destination::{Destination, FormatArg, destination, with_ending};
-use maille::topology;
+use maille::{design::Design, topology};
 use maille_io::{
     Tile,
-    mesh::{self, Colours, Fineness, MeshFile, Objects, Scene, WriteOptions},
+    mesh::{self, Colours, Fineness, MeshFile, Objects, Scene, TorusMesh, WriteOptions},
 };
 use miette::Result;
 use std::{
@@ -37,6 +39,7 @@ Examples:
   maille export my-weave.toml --out prints/ --min-clearance 0.3   refuses if rings would fuse
   maille export 1.1 --at direction=30,l2=-0.25 --out locked.glb   a limit of maille-out/1.1
   maille export 1.1 --at roomiest --tile 8x8                      the widest gaps, to print in place
+  maille export my-weave.toml --min-gap 0.3mm --size 10x10cm      the closest cell that can still be printed
   maille export 1.1 --at roomiest --lattice free                  with the spacing found, too
   maille export --from results/weave --at direction=0,l2=0 --format vtk --frames 20
   maille export --from maille-out/1.1-simulate --format vtk --frames 100    the states of a simulation
@@ -69,7 +72,7 @@ pub struct Args {
     /// A file, a folder (with a / at its end), how the files' names begin (with --format), or - for standard output [default: maille-out/DESIGN-export/DESIGN]
     #[arg(long)]
     out: Option<PathBuf>,
-    /// Most distance between mesh and torus, in the file's unit [default: a hundredth of the reference radius]
+    /// Maximum distance between mesh and torus, in the file's unit [default: a hundredth of the reference radius]
     #[arg(long, value_parser = positive, conflicts_with = "segments")]
     tolerance: Option<f64>,
     /// Segments around a ring, or around a ring and across its wire, as 48 or 48x16
@@ -90,6 +93,10 @@ pub struct Args {
     /// Refuse if the meshes of different elements come closer than this many millimetres
     #[arg(long, value_parser = positive, value_name = "MM", conflicts_with = "frames")]
     min_clearance: Option<f64>,
+    /// Export the closest cell in which the meshes of different elements are at least this far apart in the size that is
+    /// written, as 0.3mm: the smallest area, over all poses and the lattice; as `maille roomiest --min-gap` finds it
+    #[arg(long, value_parser = parse_length, value_name = "LENGTH", conflicts_with_all = ["at", "lattice", "from", "frames"])]
+    min_gap: Option<Length>,
     /// Only warn of rings closer than --min-clearance
     #[arg(long, requires = "min_clearance")]
     warn: bool,
@@ -168,7 +175,10 @@ fn write_options(args: &Args) -> WriteOptions {
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
-    let source = args.source.read(Wanted { locked: args.frames.is_some(), overlaps: false, threads: None })?;
+    let source = match args.min_gap {
+        Some(gap) => args.source.closest(|design| Ok(closest(design, torus_gap(args, design, gap)?)))?,
+        None => args.source.read(Wanted { locked: args.frames.is_some(), overlaps: false, threads: None })?,
+    };
     let (destination, formats) = destination(args.out.as_deref(), &args.format, args.frames.is_some(), &source)?;
     let frames = source.frames(args.frames);
     if let Destination::Files(prefix) = &destination {
@@ -195,6 +205,22 @@ pub fn run(args: &Args) -> Result<()> {
         }
         _ => Ok(()),
     }
+}
+
+/// The gap of the tori, in the file's unit, that keeps meshes `gap` apart: a mesh can lie outside its torus by its protrusion.
+fn torus_gap(args: &Args, design: &Design, gap: Length) -> Result<f64> {
+    let mm = millimetres(args, design.unit.as_deref(), drop);
+    let mut outside = 0.0_f64;
+    for ring in design.elements.iter().flat_map(|element| &element.rings) {
+        let (major, minor) = (ring.major_radius, ring.minor_radius.or(design.minor_radius).unwrap_or(0.0));
+        let segments = fineness(args, design).segments(major, minor)?;
+        outside = outside.max(TorusMesh::new(major, minor, segments).protrusion());
+    }
+    Ok(gap.mm / mm + 2.0 * outside)
+}
+
+fn fineness(args: &Args, design: &Design) -> Fineness {
+    args.segments.unwrap_or(Fineness::Tolerance(args.tolerance.unwrap_or(0.01 * design.reference_radius)))
 }
 
 /// The cells that are exported; says which, if a size was asked for.
@@ -237,8 +263,7 @@ fn write_frames(
     formats: &[FormatArg],
 ) -> Result<Vec<(MeshFile, f64, PathBuf)>> {
     let Source { design, model, .. } = source;
-    let fineness =
-        args.segments.unwrap_or(Fineness::Tolerance(args.tolerance.unwrap_or(0.01 * design.reference_radius)));
+    let fineness = fineness(args, design);
     let options = write_options(args);
     let (mut series, mut origin) = (Vec::new(), None);
     for (k, frame) in frames.iter().enumerate() {
@@ -251,7 +276,7 @@ fn write_frames(
             let problem = fuse(&close, wanted, mm, source);
             match args.warn {
                 false => return Err(problem),
-                true => eprintln!("{:?}", problem.wrap_err("warning: written all the same (--warn)")),
+                true => eprintln!("{:?}", problem.wrap_err("warning: written anyway (--warn)")),
             }
         }
         if k == 0 && !args.allow_large {
@@ -303,7 +328,7 @@ fn write_collections(prefix: &Path, series: &[(MeshFile, f64, PathBuf)], frames:
     for (path, text) in collections(prefix, series) {
         output::write(&path, text.as_bytes())?;
         if !quiet {
-            output::say!("{}  {frames} frames", path.display());
+            output::say!("{}  {}", path.display(), output::counted(frames, "frame"));
         }
     }
     Ok(())

@@ -102,7 +102,7 @@ impl Place<'_> {
             ));
         }
         let word: String = self.rest.chars().take_while(|c| !c.is_whitespace() && !",]}#".contains(*c)).collect();
-        Some((format!("`{word}` is no value"), format!("a text takes quotes: {} \"{word}\"", self.before)))
+        Some((format!("`{word}` is not a value"), format!("a text takes quotes: {} \"{word}\"", self.before)))
     }
 }
 

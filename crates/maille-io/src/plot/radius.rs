@@ -9,6 +9,11 @@ use super::scale::Axis;
 use crate::{quantity::Quantity, record::NamedRecord};
 use maille::{design::Design, record::LimitRow};
 
+/// `1 limit`, `2 limits`.
+fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}
+
 /// Rows that differ in the radius alone.
 struct Curve<'a> {
     design: &'a Design,
@@ -68,7 +73,7 @@ pub fn radius_svg(records: &[NamedRecord], quantity: Quantity, layout: Layout) -
     legend.extend(Outcome::legend(rows().filter(|row| row.l1.is_some()).map(|row| (row.l1, row.status)), true));
     let x: Vec<f64> = series.iter().flat_map(|s| &s.points).map(|point| point.x).collect();
     let all: Vec<LimitRow> = rows().cloned().collect();
-    let mut caption = vec![format!("{} limits of {} records.", all.len(), records.len())];
+    let mut caption = vec![format!("{} of {}.", counted(all.len(), "limit"), counted(records.len(), "record"))];
     caption.extend(missing(&all, |row| quantity.of(row)));
     caption.extend(growing(&all));
     let frame = Frame {

@@ -101,8 +101,8 @@ impl Table<'_> {
         let rows = |n: usize| if n == 1 { "row" } else { "rows" };
         match (shown == chosen, chosen == total) {
             (true, true) => format!("{total} {}\n", rows(total)),
-            (true, false) => format!("{chosen} of {total} rows\n"),
-            (false, true) => format!("first {shown} of {total} rows\n"),
+            (true, false) => format!("{chosen} of {total} {}\n", rows(total)),
+            (false, true) => format!("first {shown} of {total} {}\n", rows(total)),
             (false, false) => format!("first {shown} of {chosen} chosen rows, of {total}\n"),
         }
     }

@@ -1,4 +1,5 @@
-"""Single questions on a sheet: one strain as large or small as can be, the thickest wire, the widest gaps."""
+"""Single questions on a sheet: one strain as large or small as can be, the thickest wire, the widest gaps, the
+closest cell."""
 
 from __future__ import annotations
 
@@ -71,12 +72,16 @@ class StrainLimit(Columns):
 
 @dataclass(frozen=True)
 class Extreme(Columns):
-    """The thickest wire, or the widest gaps, with the state as a design. Lengths in the design's unit."""
+    """The thickest wire, the widest gaps, or the closest cell, with the state as a design. Lengths in the design's unit."""
 
     #: `local` where a certificate is complete, else `uncertified` or `not-converged`.
     status: str
     #: The smallest gap (`roomiest` alone).
     gap: float | None
+    #: The area of the closest cell as a share of the written one (`roomiest` with `min_gap` alone).
+    area_share: float | None
+    #: The widest gap that was found, where no cell with `min_gap` was.
+    widest_gap: float | None
     #: (K, 3): major radius, minor radius and aspect ratio (inner diameter / wire diameter) of each size of ring.
     sizes: NDArray[np.float64]
     #: Whether the lattice was `free` or `fixed`.
@@ -173,37 +178,56 @@ def tightest(
     >>> tightest("1.1").status
     'local'
     """
-    return _extreme(design, True, lattice, minor_radius, effort, starts, seed, threads)
+    return _extreme(design, _lattice("wire", lattice), minor_radius, effort, starts, seed, threads)
 
 
 def roomiest(
     design: DesignLike,
     *,
-    lattice: Literal["free", "fixed"] = "fixed",
+    min_gap: float | None = None,
+    lattice: Literal["free", "fixed"] | None = None,
     minor_radius: float | None = None,
     effort: str = "normal",
     starts: int | None = None,
     seed: int = 1,
     threads: int | None = None,
 ) -> Extreme:
-    """The state of a weave with the widest gaps, for printing in place: what `maille roomiest` does."""
-    return _extreme(design, False, lattice, minor_radius, effort, starts, seed, threads)
+    """The state of a weave with the widest gaps, for printing in place: what `maille roomiest` does.
+
+    With `min_gap`, in the design's unit, the closest cell instead: the smallest area with every gap at least that. The lattice is
+    fixed if not given, and always free with `min_gap`.
+
+    >>> round(roomiest("1.1", min_gap=0.1).gap, 6)
+    0.1
+    """
+    if min_gap is None:
+        goal = _lattice("clearance", "fixed" if lattice is None else lattice)
+        return _extreme(design, goal, minor_radius, effort, starts, seed, threads)
+    if lattice == "fixed":
+        raise ArgumentError("lattice", "the closest cell has a lattice of its own", 'leave it out, or give "free"')
+    if not np.isfinite(min_gap) or min_gap < 0:
+        raise ArgumentError("min_gap", f"{min_gap} is not a gap", "give a finite length, 0 or more")
+    goal = {"goal": {"area": {"min_gap": float(min_gap)}}, "sense": "least"}
+    return _extreme(design, goal, minor_radius, effort, starts, seed, threads)
+
+
+def _lattice(goal: str, lattice: str) -> dict[str, Any]:
+    if lattice not in ("free", "fixed"):
+        raise ArgumentError("lattice", f"{lattice!r} is neither free nor fixed", 'give "free" or "fixed"')
+    return {"goal": {goal: {"lattice_free": lattice == "free"}}}
 
 
 def _extreme(
     design: DesignLike,
-    thickest: bool,
-    lattice: str,
+    goal: dict[str, Any],
     minor_radius: float | None,
     effort: str,
     starts: int | None,
     seed: int,
     threads: int | None,
 ) -> Extreme:
-    if lattice not in ("free", "fixed"):
-        raise ArgumentError("lattice", f"{lattice!r} is neither free nor fixed", 'give "free" or "fixed"')
     question = {
-        "goal": {"wire" if thickest else "clearance": {"lattice_free": lattice == "free"}},
+        **goal,
         "effort": _effort(effort),
         "starts": None if starts is None else _whole("starts", starts, 1),
         "seed": _whole("seed", seed, 0),
@@ -215,7 +239,8 @@ def _extreme(
     sizes = [[size["major_radius"], size["minor_radius"], size["aspect_ratio"]] for size in found["sizes"]]
     own = None if state is None else Design._of(state)
     return Extreme(
-        **{name: found[name] for name in ("status", "gap", "lattice", "links_ok", "n_starts", "n_distinct")},
+        **{name: found[name] for name in ("status", "gap", "area_share", "widest_gap", "lattice")},
+        **{name: found[name] for name in ("links_ok", "n_starts", "n_distinct")},
         sizes=np.array(sizes if own is not None else [], dtype=np.float64).reshape(-1, 3),
         certificate=found["certificate"],
         design=own,

@@ -178,7 +178,7 @@ def characterize(
 
     `directions` (degrees counter-clockwise from x) and `l2` (stretch - 1 held across) are numbers or ranges as
     `"0:180:5"`. `lateral="free"` and `shear="free"` leave width and shear to the sheet. `compression` asks how far
-    the sheet is pushed together instead, in all cells up to 3x3. `energy` has options of the energy
+    the sheet is compressed instead, in all cells up to 3x3. `energy` has options of the energy
     method, as `{"tau": 0.01}`. With `out` the record is kept in that folder while limits come in, and the same call goes on
     where an earlier one stopped; without, it stays in memory. `progress` is True for a bar of tqdm, or is called with
     (done, total). Results do not depend on `threads`. Ctrl-C stops it; what was found is in `out`.

@@ -7,6 +7,7 @@
 //! [`metric`]). The core distance s that two rings must keep is affine: s = (r_a + r_b)(1 + Σ p_m thicken_m) + Σ p_m
 //! widen_m.
 
+mod area;
 pub mod flat;
 pub mod gap_kernel;
 pub mod key;
@@ -51,6 +52,8 @@ pub struct Parameter {
     pub weight: f64,
     /// The parameter may not exceed this.
     pub most: Option<f64>,
+    /// The parameter may not exceed the share of the area that is saved, 1 − A/A₀; see `area.rs`.
+    pub saves_area: bool,
 }
 
 impl Parameter {

@@ -1,4 +1,5 @@
-//! Extremes of a weave that are no strains: the thickest wire with which it exists, and the state with the largest clearance.
+//! Extremes of a weave that are no strains: the thickest wire with which it exists, the state with the largest clearance, and the
+//! closest cell (in [`super::closest`]).
 //!
 //! The program of a limit with another parameter p in place of l1. All rings must keep the core distance
 //!
@@ -30,13 +31,18 @@ use crate::{
 use maille_geometry::Vec3;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// What is as large as can be.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// What is as large, or as small, as can be.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Extreme {
     /// All minor radii, in the proportions of the design.
     ThickestWire,
     /// The smallest gap between the tori of two rings.
     LargestClearance,
+    /// The least area of the cell in which every gap is at least this, in reference radii. The lattice is free.
+    ClosestCell {
+        /// The gap.
+        gap: f64,
+    },
 }
 
 /// How the search goes.
@@ -91,9 +97,25 @@ impl Extreme {
         out
     }
 
-    /// The largest clearance, in the design's unit; `None` where the wire was sought.
+    /// The smallest gap of the state, in the design's unit; `None` where the wire was sought, or no state was found.
     pub fn clearance(self, answer: &Answer, model: &Model) -> Option<f64> {
-        answer.value.filter(|_| self == Extreme::LargestClearance).map(|gap| gap * model.unit)
+        let gap = match self {
+            Extreme::ThickestWire => None,
+            Extreme::LargestClearance => answer.value,
+            Extreme::ClosestCell { .. } => answer.value.and(answer.gap),
+        };
+        gap.map(|gap| gap * model.unit)
+    }
+
+    /// The area of the closest cell as a share of the written one; `None` where something else was sought.
+    pub fn area_share(self, answer: &Answer) -> Option<f64> {
+        answer.value.filter(|_| matches!(self, Extreme::ClosestCell { .. }))
+    }
+
+    /// The widest gap that was found where no cell has the one that was asked for, in the design's unit.
+    pub fn widest_instead(self, answer: &Answer, model: &Model) -> Option<f64> {
+        let Extreme::ClosestCell { gap } = self else { return None };
+        answer.gap.filter(|widest| answer.value.is_none() && *widest < gap).map(|widest| widest * model.unit)
     }
 
     /// The state of the answer as a design. It allows overlaps at the start only where the design did and some are left.
@@ -102,6 +124,7 @@ impl Extreme {
         let (word, words, factor) = match self {
             Extreme::ThickestWire => ("tightest", "thickest wire", answer.value.unwrap_or(1.0) * (1.0 - SPARED)),
             Extreme::LargestClearance => ("roomiest", "widest gaps", 1.0),
+            Extreme::ClosestCell { .. } => ("closest", "closest cell", 1.0),
         };
         out.title = format!("{}, {words}", if out.title.is_empty() { &out.name } else { &out.title });
         out.name = format!("{}-{word}", out.name);
@@ -128,7 +151,10 @@ impl Target for Sought {
         let base = [model.start.a1, model.start.a2];
         let goal = match self.what {
             Extreme::ThickestWire => Parameter { thicken: 1.0, weight: 1.0, ..Parameter::default() },
-            Extreme::LargestClearance => Parameter { widen: 1.0, weight: 1.0, ..Parameter::default() },
+            // A closest cell first needs room.
+            Extreme::LargestClearance | Extreme::ClosestCell { .. } => {
+                Parameter { widen: 1.0, weight: 1.0, ..Parameter::default() }
+            }
         };
         let mut parameters = vec![goal];
         if self.lattice_free {
@@ -158,7 +184,9 @@ impl Sought {
     pub(crate) fn first_parameters(&self, model: &Model, state: &State) -> Vec<f64> {
         let goal = match self.what {
             Extreme::ThickestWire => THIN_WIRE - 1.0,
-            Extreme::LargestClearance => topology::smallest_gap(model, state).map_or(0.0, |(gap, _)| gap.min(0.0)),
+            Extreme::LargestClearance | Extreme::ClosestCell { .. } => {
+                topology::smallest_gap(model, state).map_or(0.0, |(gap, _)| gap.min(0.0))
+            }
         };
         let lattice = if self.lattice_free { 3 } else { 0 };
         std::iter::once(goal).chain(std::iter::repeat_n(0.0, lattice)).collect()
@@ -169,7 +197,11 @@ impl Sought {
 ///
 /// The value is the factor of the minor radii, or the clearance in reference radii. The status is `local` with a complete
 /// certificate, else `uncertified`; `not-converged` where no start led to a state without overlap.
+///
+/// # Panics
+/// For a closest cell, which [`closest_cell`](super::closest::closest_cell) searches.
 pub fn extreme(model: &Model, what: Extreme, options: &ExtremeOptions, cancel: &AtomicBool) -> Answer {
+    assert!(!matches!(what, Extreme::ClosestCell { .. }), "a closest cell is searched by closest_cell");
     let target = Sought { what, lattice_free: options.lattice_free };
     let search = Multistart { target: &target, upper_bound: f64::INFINITY, seed: options.seed, cancel };
     let straight = vec![Start::written(model.start.clone())];
