@@ -4,8 +4,7 @@
 //! included: over all poses and the lattice (a1 along its direction, a2 in the plane), t = 1 − A/A₀ is maximised under the
 //! rows of `program/area.rs`. A start whose gaps are too small first goes to one where they are wide enough, by the
 //! largest clearance. The certificate is that of a limit. No bound is known that a search could attain, so the most that is claimed is
-//! `local`. The area is not below that of a proven bound either way: two copies of a ring that are nearer than 2 R across its normal are
-//! 2 r + g apart along it, so a cell has at least min(2 R (2 r + g), π R²) by Minkowski's theorem on lattice points.
+//! `local`.
 
 use super::{
     extreme::{Extreme, ExtremeOptions, Sought, extreme},
