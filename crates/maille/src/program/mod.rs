@@ -7,6 +7,7 @@
 //! [`metric`]). The core distance s that two rings must keep is affine: s = (r_a + r_b)(1 + Σ p_m thicken_m) + Σ p_m
 //! widen_m.
 
+mod closed;
 pub mod flat;
 pub mod gap_kernel;
 pub mod key;

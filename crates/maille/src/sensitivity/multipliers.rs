@@ -1,0 +1,104 @@
+//! All multipliers that balance: {μ ≥ 0: c + Σ μ ∇g = 0} over the closed rows.
+//!
+//! With one solution μ⁰ and a basis Z of the combinations Σ z ∇g = 0 they are μ⁰ + Z y ≥ 0. Where there is no such combination
+//! they are unique. Else the least Σ μ b over them is a linear program in y, of as many unknowns as Z has columns.
+
+use crate::solver::{
+    constraints::Row,
+    qp::{self, QuadraticProgram, SparseRows},
+    symmetric::Symmetric,
+};
+use nalgebra::DMatrix;
+
+/// Singular values below this share of the largest are 0.
+const DEPENDENT: f64 = 1e-8;
+/// Entries of Z below this are 0: their rows have one multiplier.
+const FIXED: f64 = 1e-7;
+/// Multipliers may be negative by this in the linear program, which then has an interior.
+const SLACK: f64 = 1e-10;
+/// The box of y, in units of 1 + Σ μ⁰. A solution at its side is unbounded.
+const BOX: f64 = 1e2;
+/// The linear program is solved to this, relative to its size.
+const SOLVED: f64 = 1e-7;
+
+/// The multipliers of a locked state.
+pub(super) struct Multipliers {
+    /// Those of the answer, 0 on closed rows that carry nothing.
+    pub first: Vec<f64>,
+    /// Z, column by column.
+    basis: Vec<Vec<f64>>,
+}
+
+/// The least of a linear program.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Least {
+    Value(f64),
+    Unbounded,
+    /// Rounding has kept it from being found.
+    NotFound,
+}
+
+impl Multipliers {
+    /// Of `rows` in `unknowns` unknowns, the first of which carry `forces`.
+    pub fn new(rows: &[Row], unknowns: usize, forces: impl IntoIterator<Item = f64>) -> Self {
+        let mut first = vec![0.0; rows.len()];
+        first.iter_mut().zip(forces).for_each(|(mu, force)| *mu = force);
+        // Rows of zeros below, so that the decomposition has a right vector for each row of the program.
+        let mut matrix = DMatrix::zeros(unknowns.max(rows.len()), rows.len());
+        for (k, row) in rows.iter().enumerate() {
+            row.columns.iter().zip(&row.gradient).for_each(|(&i, slope)| matrix[(i, k)] += slope);
+        }
+        let decomposed = matrix.svd(false, true);
+        let largest = decomposed.singular_values.iter().copied().fold(0.0, f64::max);
+        let null = decomposed.singular_values.iter().enumerate().filter(|(_, s)| **s <= DEPENDENT * largest);
+        let vectors = decomposed.v_t.iter().flat_map(|v| null.clone().map(|(k, _)| v.row(k).iter().copied().collect()));
+        Multipliers { first, basis: vectors.collect() }
+    }
+
+    /// Whether there are others than the first.
+    pub fn unique(&self) -> bool {
+        self.basis.is_empty()
+    }
+
+    /// Σ μ b with the first ones.
+    pub fn first_sum(&self, b: &[f64]) -> f64 {
+        self.first.iter().zip(b).map(|(mu, b)| mu * b).sum()
+    }
+
+    /// The least Σ μ b over all of them.
+    pub fn least(&self, b: &[f64]) -> Least {
+        let first = self.first_sum(b);
+        let mut linear: Vec<f64> = self.basis.iter().map(|z| z.iter().zip(b).map(|(z, b)| z * b).sum()).collect();
+        let scale = linear.iter().fold(0.0f64, |a, c| a.max(c.abs()));
+        let size = b.iter().fold(0.0f64, |a, b| a.max(b.abs()));
+        // All of them give the same.
+        if scale <= FIXED * size {
+            return Least::Value(first);
+        }
+        linear.iter_mut().for_each(|c| *c /= scale);
+        let (mut rows, mut lower) = (SparseRows::default(), Vec::new());
+        for (k, mu) in self.first.iter().enumerate() {
+            let entries: Vec<(usize, f64)> = self.basis.iter().map(|z| z[k]).enumerate().collect();
+            if entries.iter().any(|(_, z)| z.abs() > FIXED) {
+                rows.push(entries);
+                lower.push(-mu.max(0.0) - SLACK);
+            }
+        }
+        let most = BOX * (1.0 + self.first.iter().sum::<f64>());
+        let dimension = self.basis.len();
+        let found = qp::solve(&QuadraticProgram {
+            hessian: &Symmetric::new(dimension, [&(0..dimension).collect::<Vec<_>>()[..]]),
+            linear: &linear,
+            rows: &rows,
+            lower: &lower,
+            half_width: &vec![most; dimension],
+        });
+        if found.residual > SOLVED {
+            Least::NotFound
+        } else if found.x.iter().any(|y| y.abs() > 0.9 * most) {
+            Least::Unbounded
+        } else {
+            Least::Value(first + scale * found.x.iter().zip(&linear).map(|(y, c)| y * c).sum::<f64>())
+        }
+    }
+}
