@@ -34,6 +34,7 @@
 //! | `bound` | proofs that no state lies beyond a value |
 //! | `solver` | solvers that know nothing of rings: sequential quadratic programming, Newton's method, certificates |
 //! | [`relaxation`] | the thesis's energy method, and finite sheets under weight and pulls |
+//! | [`sensitivity`] | how a certified value changes with the numbers of its design |
 //! | [`survey`] | many questions: maps over directions and lateral strains, as rows of a [`record`], and the surface of all strains |
 //!
 //! Inside, lengths are in units of the design's reference radius R; records are in the file's unit. The searches use the current

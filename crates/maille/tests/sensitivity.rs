@@ -6,7 +6,7 @@ use maille::{
 };
 use maille_geometry::Vec3;
 use nalgebra::UnitQuaternion;
-use std::collections::BTreeSet;
+use std::{collections::BTreeSet, time::Instant};
 
 fn builtin(name: &str) -> Design {
     maille_io::read_design(name, maille_io::builtin(name).unwrap()).unwrap()
@@ -221,6 +221,48 @@ fn derivatives_of_all_builtin_designs() {
     }
 }
 
+/// Along 45° the chains of 1.1 along 0° and 90° are taut at once: longer rings in one of them alone do nothing, shorter ones cost.
+/// Both chains have the length P = 2 (R + R') − 2 (r + r') = 3.6, 1.44 times the spacing s, so (1 + l1)² = 2 (P/s)² − 1.
+#[test]
+fn both_sides_of_a_kink() {
+    let mut tally = Tally::default();
+    compare("1.1", &[45.0, 135.0], &[0.0], &mut tally);
+    println!("{tally:#?}");
+    assert!(tally.kinks >= 16 && tally.sides_changed == 0 && tally.wrong == 0, "{tally:#?}");
+
+    let (design, question) = (builtin("1.1"), stretch(45.0, 0.0));
+    let (sheet, answer) = solved(&design, &question);
+    let found = Sensitivity::of(&sheet.model_of(&answer), &question, &answer).unwrap();
+    let stretch = (2.0 * 1.44_f64.powi(2) - 1.0).sqrt();
+    let slope = 2.0 * 1.44 / stretch * 2.0 / 2.5;
+    let mut longer = DesignVector::zeros(3);
+    longer.rings[1].major_radius = 1.0;
+    let both = found.one_sided(&longer);
+    assert!(both.is_kink(), "{both:?}");
+    let [backward, forward] = [both.backward, both.forward].map(|slope| slope.finite().unwrap());
+    assert!((backward - slope).abs() < 1e-8 && forward.abs() < 1e-8, "{both:?}, expected {slope} and 0");
+}
+
+/// A search asks for derivatives after each limit: they must cost little beside it.
+#[test]
+fn derivatives_take_little_time_beside_their_limit() {
+    for name in ["2", "1.1", "4.2"] {
+        let (design, question) = (builtin(name), stretch(33.0, 0.0));
+        let begun = Instant::now();
+        let (sheet, answer) = solved(&design, &question);
+        let solve = begun.elapsed().as_secs_f64();
+        let (model, changes) = (sheet.model_of(&answer), raw_numbers(&design));
+        let changes: Vec<_> = changes.into_iter().map(|(_, change)| change).collect();
+        let times = 20;
+        let begun = Instant::now();
+        (0..times).for_each(|_| drop(gradient(&model, &question, &answer, &changes).unwrap()));
+        let each = begun.elapsed().as_secs_f64() / f64::from(times);
+        let elements = design.elements.len();
+        println!("{name}, {elements} elements: limit {solve:.2e} s, {} derivatives {each:.2e} s", changes.len());
+        assert!(each < 0.2 * solve, "{name}: {each} s beside {solve} s");
+    }
+}
+
 /// The other goals, by central differences along the wire, the spacing and one ring's size.
 #[test]
 fn derivatives_of_other_goals() {
@@ -346,4 +388,7 @@ fn what_has_no_derivatives_is_refused() {
     let other = builtin("3.1");
     assert_eq!(DesignVector::between(&design, &other, 1.0).unwrap_err().field, "elements");
     assert_eq!(DesignVector::between(&design, &design, 0.0).unwrap_err().field, "step");
+    let mut turned = design.clone();
+    turned.elements[0].rings[0].normal = [0.0, 0.0, -1.0];
+    assert_eq!(DesignVector::between(&design, &turned, 1.0).unwrap_err().field, "normal");
 }

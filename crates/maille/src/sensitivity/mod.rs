@@ -24,13 +24,13 @@ use self::multipliers::{Least, Multipliers};
 use crate::{
     answer::Answer,
     error::InvalidInput,
-    model::Model,
+    lattice::Shift,
+    model::{Model, RingPair},
     program::{SheetProgram, key::pair_of_key},
     question::{Goal, Question, Sense},
     search::family::family_at,
     solver::{constraints::Row, sqp::Program},
     state::State,
-    topology::RingPair,
 };
 use maille_geometry::{Vec3, point_circle_distance};
 use nalgebra::{Matrix2, Vector2};
@@ -47,6 +47,7 @@ pub struct Sensitivity {
 
 /// A closed point with the derivatives of its gap by the design's numbers, in the design's unit.
 struct Point {
+    /// The pair as the design's own cell has it.
     pair: RingPair,
     /// The rings as the design counts them; of one ring and its own image both.
     rings: [(usize, RingVector); 2],
@@ -130,7 +131,8 @@ impl Sensitivity {
             model,
             state: &at.state,
             gradient: answer.gradient,
-            own: model.rings.len() / model.cell.copies().max(1),
+            own: model.rings.len() / model.cell.copies(),
+            copies: model.cell.cosets(),
             wire: if wire { value } else { 1.0 },
             length: if matches!(question.goal, Goal::Clearance { .. }) { 1.0 } else { 1.0 / model.unit },
             angle: if matches!(question.goal, Goal::Clearance { .. }) { model.unit } else { 1.0 },
@@ -176,7 +178,8 @@ impl Sensitivity {
         OneSided { backward: slope(-1.0), forward: slope(1.0) }
     }
 
-    /// What each pair of rings contributes to [`Self::along`], the largest first; pairs that contribute nothing are left out.
+    /// What each pair of rings contributes to [`Self::along`], the largest first; pairs that contribute nothing are left out. Rings and
+    /// shifts are those of the design's own cell: the copies of a pair in a larger one are summed.
     pub fn by_pair(&self, change: &DesignVector) -> Vec<(RingPair, f64)> {
         let mut out: Vec<(RingPair, f64)> = Vec::new();
         for ((point, mu), rate) in self.points.iter().zip(&self.multipliers.first).zip(self.rates(change)) {
@@ -245,6 +248,8 @@ struct Kinematics<'a> {
     gradient: Matrix2<f64>,
     /// Rings of the design.
     own: usize,
+    /// Where the cell's copies of the design's cell stand, in lattice vectors of the design.
+    copies: Vec<Shift>,
     /// Factor of all minor radii.
     wire: f64,
     /// Factors that turn derivatives into the design's unit.
@@ -274,8 +279,16 @@ impl Kinematics<'_> {
         };
         let rings = [ring(pair.ring_a, point_a - a.center, -n), ring(pair.ring_b, point_b - b.center, n)];
         let pulled = self.gradient.transpose() * n.xy() * self.length;
+        let apart = self.apart(&pair);
+        let own = RingPair { ring_a: pair.ring_a % self.own, ring_b: pair.ring_b % self.own, shift: apart };
+        let [one, other] = own.both_ways();
+        Point { pair: one.min(other), rings, lattice: apart.map(|weight| pulled * f64::from(weight)) }
+    }
+
+    /// From the design's cell that ring A belongs to, to that of ring B.
+    fn apart(&self, pair: &RingPair) -> Shift {
+        let [from, to] = [pair.ring_a, pair.ring_b].map(|ring| self.copies[ring / self.own]);
         let cell = self.model.cell.rows();
-        let weight = |j: usize| (0..2).map(|k| f64::from(pair.shift[k]) * f64::from(cell[k][j])).sum::<f64>();
-        Point { pair, rings, lattice: [0, 1].map(|j| pulled * weight(j)) }
+        [0, 1].map(|j| to[j] - from[j] + (0..2).map(|k| pair.shift[k] * cell[k][j]).sum::<i32>())
     }
 }

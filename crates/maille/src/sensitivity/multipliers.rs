@@ -102,3 +102,32 @@ impl Multipliers {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// p at most q1 and at most q2, both 0: the smaller of them is reached, so raising one alone does nothing and lowering it costs.
+    #[test]
+    fn the_smaller_of_two_bounds_has_a_kink() {
+        let row = |key| Row { columns: vec![0], gradient: vec![-1.0], ..Row::value(key, 0.0, 0.0) };
+        let multipliers = Multipliers::new(&[row(0), row(1)], 1, [0.7, 0.3]);
+        assert!(!multipliers.unique());
+        for (b, least) in [([1.0, 0.0], 0.0), ([-1.0, 0.0], -1.0), ([1.0, 1.0], 1.0), ([1.0, -2.0], -2.0)] {
+            let Least::Value(found) = multipliers.least(&b) else { panic!("{b:?}") };
+            assert!((found - least).abs() < 1e-8, "{b:?}: {found}");
+        }
+    }
+
+    /// A bound from each side, on an unknown that is not maximised: squeezed without a pull, it has no state if one of them closes.
+    #[test]
+    fn what_is_squeezed_has_no_state() {
+        let row =
+            |key, column, slope| Row { columns: vec![column], gradient: vec![slope], ..Row::value(key, 0.0, 0.0) };
+        let rows = [row(0, 0, -1.0), row(1, 1, 1.0), row(2, 1, -1.0)];
+        let multipliers = Multipliers::new(&rows, 2, [1.0]);
+        assert_eq!(multipliers.least(&[0.0, -1.0, 0.0]), Least::Unbounded);
+        assert_eq!(multipliers.least(&[1.0, 0.0, 0.0]), Least::Value(1.0));
+        assert!(matches!(multipliers.least(&[0.0, 1.0, 0.0]), Least::Value(x) if x.abs() < 1e-8));
+    }
+}

@@ -1,6 +1,9 @@
 //! The raw numbers of a design as one vector: a change of them, or the derivatives by them.
 
-use crate::{design::Design, error::InvalidInput};
+use crate::{
+    design::{Design, RingSpec},
+    error::InvalidInput,
+};
 use maille_geometry::Vec3;
 use nalgebra::Vector2;
 
@@ -87,21 +90,20 @@ impl DesignVector {
 
     /// The factor of [`Design::scaled`], by 1: all lengths themselves.
     pub fn scale(design: &Design) -> Self {
-        let rings = design.elements.iter().flat_map(|element| &element.rings);
-        let of = |ring: &crate::design::RingSpec| RingVector {
+        let of = |ring: RingNumbers| RingVector {
             major_radius: ring.major_radius,
-            minor_radius: ring.minor_radius.or(design.minor_radius).unwrap_or(0.0),
-            offset: ring.offset.into(),
+            minor_radius: ring.minor_radius,
+            offset: ring.offset,
             tilt: Vec3::zeros(),
         };
-        DesignVector { rings: rings.map(of).collect(), ..Self::spacing(design) }
+        DesignVector { rings: ring_numbers(design).into_iter().map(of).collect(), ..Self::spacing(design) }
     }
 
     /// (`to` − `from`)/`step`: the rate of a family of designs from two members, `step` apart in its parameter. With the members
     /// at ± step/2 its error is of second order in the step. The tilt takes n from one normal to the other: n × dn.
     ///
     /// # Errors
-    /// Where the designs have other numbers of elements or rings, or the step is 0 or not finite.
+    /// Where the designs have other numbers of elements or rings, a ring is turned by 90° or more, or the step is 0 or not finite.
     pub fn between(from: &Design, to: &Design, step: f64) -> Result<Self, InvalidInput> {
         if !step.is_finite() || step == 0.0 {
             return Err(InvalidInput::new("step", format!("{step} is no step"), "give a finite number other than 0"));
@@ -114,19 +116,37 @@ impl DesignVector {
         }
         let plane = |a: [f64; 3], b: [f64; 3]| Vector2::new(b[0] - a[0], b[1] - a[1]) / step;
         let lattice = [plane(from.lattice.a1, to.lattice.a1), plane(from.lattice.a2, to.lattice.a2)];
-        let rings = |design: &Design| {
-            let own = |ring: &crate::design::RingSpec| {
-                let r = ring.minor_radius.or(design.minor_radius).unwrap_or(0.0);
-                (ring.major_radius, r, Vec3::from(ring.offset), Vec3::from(ring.normal).normalize())
-            };
-            design.elements.iter().flat_map(|element| &element.rings).map(own).collect::<Vec<_>>()
+        let [before, after] = [from, to].map(ring_numbers);
+        let half_turn = |(a, b): (&RingNumbers, &RingNumbers)| a.normal.dot(&b.normal) <= 0.0;
+        if let Some(ring) = before.iter().zip(&after).position(half_turn) {
+            let problem = format!("ring {ring} is turned by 90\u{b0} or more from one design to the other");
+            return Err(InvalidInput::new("normal", problem, "give nearby designs, with normals of the same sign"));
+        }
+        let rate = |(a, b): (&RingNumbers, &RingNumbers)| RingVector {
+            major_radius: (b.major_radius - a.major_radius) / step,
+            minor_radius: (b.minor_radius - a.minor_radius) / step,
+            offset: (b.offset - a.offset) / step,
+            tilt: (a.normal + b.normal).normalize().cross(&(b.normal - a.normal)) / step,
         };
-        let rate = |(a, b): (&(f64, f64, Vec3, Vec3), &(f64, f64, Vec3, Vec3))| RingVector {
-            major_radius: (b.0 - a.0) / step,
-            minor_radius: (b.1 - a.1) / step,
-            offset: (b.2 - a.2) / step,
-            tilt: (a.3 + b.3).normalize().cross(&(b.3 - a.3)) / step,
-        };
-        Ok(DesignVector { lattice, rings: rings(from).iter().zip(&rings(to)).map(rate).collect() })
+        Ok(DesignVector { lattice, rings: before.iter().zip(&after).map(rate).collect() })
     }
+}
+
+/// A ring as the file has it, with a normal of length 1.
+struct RingNumbers {
+    major_radius: f64,
+    minor_radius: f64,
+    offset: Vec3,
+    normal: Vec3,
+}
+
+/// Of all rings, in the order of the file.
+fn ring_numbers(design: &Design) -> Vec<RingNumbers> {
+    let of = |ring: &RingSpec| RingNumbers {
+        major_radius: ring.major_radius,
+        minor_radius: ring.minor_radius.or(design.minor_radius).unwrap_or(0.0),
+        offset: ring.offset.into(),
+        normal: Vec3::from(ring.normal).normalize(),
+    };
+    design.elements.iter().flat_map(|element| &element.rings).map(of).collect()
 }
