@@ -228,7 +228,7 @@ fn both_sides_of_a_kink() {
     let mut tally = Tally::default();
     compare("1.1", &[45.0, 135.0], &[0.0], &mut tally);
     println!("{tally:#?}");
-    assert!(tally.kinks >= 16 && tally.sides_changed == 0 && tally.wrong == 0, "{tally:#?}");
+    assert!(tally.kinks >= 16 && tally.sides > 100 && tally.wrong == 0, "{tally:#?}");
 
     let (design, question) = (builtin("1.1"), stretch(45.0, 0.0));
     let (sheet, answer) = solved(&design, &question);
