@@ -122,8 +122,8 @@ impl Sensitivity {
             .closed_points(&at, &answer.contacts)
             .ok_or_else(|| foreign("one of its contacts is open in this model"))?;
         let c = program.objective();
-        let multipliers = Multipliers::new(&rows, c.len(), answer.contacts.iter().map(|contact| contact.force));
-        if residual(&c, &rows, &multipliers.first) > BALANCED {
+        let multipliers = Multipliers::new(rows, c.len(), answer.contacts.iter().map(|contact| contact.force));
+        if multipliers.residual(&c) > BALANCED {
             return Err(foreign("its forces do not balance in this question and model"));
         }
         let wire = matches!(question.goal, Goal::Wire { .. });
@@ -138,7 +138,7 @@ impl Sensitivity {
             angle: if matches!(question.goal, Goal::Clearance { .. }) { model.unit } else { 1.0 },
         };
         Ok(Sensitivity {
-            points: rows.iter().map(|row| kinematics.point(row)).collect(),
+            points: multipliers.rows.iter().map(|row| kinematics.point(row)).collect(),
             multipliers,
             rings: kinematics.own,
             sign: if question.sense == Sense::Least { -1.0 } else { 1.0 },
@@ -229,15 +229,6 @@ pub fn gradient(
 ) -> Result<Vec<f64>, InvalidInput> {
     let all = Sensitivity::of(model, question, answer)?.gradient();
     Ok(changes.iter().map(|change| all.dot(change)).collect())
-}
-
-/// Largest entry of c + Σ μ ∇g.
-fn residual(c: &[f64], rows: &[Row], multipliers: &[f64]) -> f64 {
-    let mut left = c.to_vec();
-    for (row, mu) in rows.iter().zip(multipliers) {
-        row.columns.iter().zip(&row.gradient).for_each(|(&i, slope)| left[i] += mu * slope);
-    }
-    left.iter().fold(0.0, |worst, x| worst.max(x.abs()))
 }
 
 /// What turns a closed point into derivatives by the design's numbers.

@@ -9,6 +9,7 @@ use crate::solver::{
     symmetric::Symmetric,
 };
 use nalgebra::DMatrix;
+use std::sync::OnceLock;
 
 /// Singular values below this share of the largest are 0.
 const DEPENDENT: f64 = 1e-8;
@@ -25,8 +26,11 @@ const SOLVED: f64 = 1e-7;
 pub(super) struct Multipliers {
     /// Those of the answer, 0 on closed rows that carry nothing.
     pub first: Vec<f64>,
-    /// Z, column by column.
-    basis: Vec<Vec<f64>>,
+    /// The closed rows.
+    pub rows: Vec<Row>,
+    unknowns: usize,
+    /// Z, column by column, once it is asked for: it takes longer than all else here.
+    basis: OnceLock<Vec<Vec<f64>>>,
 }
 
 /// The least of a linear program.
@@ -40,24 +44,40 @@ pub(super) enum Least {
 
 impl Multipliers {
     /// Of `rows` in `unknowns` unknowns, the first of which carry `forces`.
-    pub fn new(rows: &[Row], unknowns: usize, forces: impl IntoIterator<Item = f64>) -> Self {
+    pub fn new(rows: Vec<Row>, unknowns: usize, forces: impl IntoIterator<Item = f64>) -> Self {
         let mut first = vec![0.0; rows.len()];
         first.iter_mut().zip(forces).for_each(|(mu, force)| *mu = force);
-        // Rows of zeros below, so that the decomposition has a right vector for each row of the program.
-        let mut matrix = DMatrix::zeros(unknowns.max(rows.len()), rows.len());
-        for (k, row) in rows.iter().enumerate() {
-            row.columns.iter().zip(&row.gradient).for_each(|(&i, slope)| matrix[(i, k)] += slope);
+        Multipliers { first, rows, unknowns, basis: OnceLock::new() }
+    }
+
+    fn basis(&self) -> &[Vec<f64>] {
+        self.basis.get_or_init(|| {
+            let count = self.rows.len();
+            // Rows of zeros below, so that the decomposition has a right vector for each row of the program.
+            let mut matrix = DMatrix::zeros(self.unknowns.max(count), count);
+            for (k, row) in self.rows.iter().enumerate() {
+                row.columns.iter().zip(&row.gradient).for_each(|(&i, slope)| matrix[(i, k)] += slope);
+            }
+            let decomposed = matrix.svd(false, true);
+            let largest = decomposed.singular_values.iter().copied().fold(0.0, f64::max);
+            let null = decomposed.singular_values.iter().enumerate().filter(|(_, s)| **s <= DEPENDENT * largest);
+            let right = decomposed.v_t.iter();
+            right.flat_map(|v| null.clone().map(|(k, _)| v.row(k).iter().copied().collect())).collect()
+        })
+    }
+
+    /// Largest entry of c + Σ μ ∇g, with the first ones.
+    pub fn residual(&self, c: &[f64]) -> f64 {
+        let mut left = c.to_vec();
+        for (row, mu) in self.rows.iter().zip(&self.first) {
+            row.columns.iter().zip(&row.gradient).for_each(|(&i, slope)| left[i] += mu * slope);
         }
-        let decomposed = matrix.svd(false, true);
-        let largest = decomposed.singular_values.iter().copied().fold(0.0, f64::max);
-        let null = decomposed.singular_values.iter().enumerate().filter(|(_, s)| **s <= DEPENDENT * largest);
-        let vectors = decomposed.v_t.iter().flat_map(|v| null.clone().map(|(k, _)| v.row(k).iter().copied().collect()));
-        Multipliers { first, basis: vectors.collect() }
+        left.iter().fold(0.0, |worst, x| worst.max(x.abs()))
     }
 
     /// Whether there are others than the first.
     pub fn unique(&self) -> bool {
-        self.basis.is_empty()
+        self.basis().is_empty()
     }
 
     /// Σ μ b with the first ones.
@@ -68,7 +88,7 @@ impl Multipliers {
     /// The least Σ μ b over all of them.
     pub fn least(&self, b: &[f64]) -> Least {
         let first = self.first_sum(b);
-        let mut linear: Vec<f64> = self.basis.iter().map(|z| z.iter().zip(b).map(|(z, b)| z * b).sum()).collect();
+        let mut linear: Vec<f64> = self.basis().iter().map(|z| z.iter().zip(b).map(|(z, b)| z * b).sum()).collect();
         let scale = linear.iter().fold(0.0f64, |a, c| a.max(c.abs()));
         let size = b.iter().fold(0.0f64, |a, b| a.max(b.abs()));
         // All of them give the same.
@@ -78,14 +98,14 @@ impl Multipliers {
         linear.iter_mut().for_each(|c| *c /= scale);
         let (mut rows, mut lower) = (SparseRows::default(), Vec::new());
         for (k, mu) in self.first.iter().enumerate() {
-            let entries: Vec<(usize, f64)> = self.basis.iter().map(|z| z[k]).enumerate().collect();
+            let entries: Vec<(usize, f64)> = self.basis().iter().map(|z| z[k]).enumerate().collect();
             if entries.iter().any(|(_, z)| z.abs() > FIXED) {
                 rows.push(entries);
                 lower.push(-mu.max(0.0) - SLACK);
             }
         }
         let most = BOX * (1.0 + self.first.iter().sum::<f64>());
-        let dimension = self.basis.len();
+        let dimension = self.basis().len();
         let found = qp::solve(&QuadraticProgram {
             hessian: &Symmetric::new(dimension, [&(0..dimension).collect::<Vec<_>>()[..]]),
             linear: &linear,
@@ -111,7 +131,7 @@ mod tests {
     #[test]
     fn the_smaller_of_two_bounds_has_a_kink() {
         let row = |key| Row { columns: vec![0], gradient: vec![-1.0], ..Row::value(key, 0.0, 0.0) };
-        let multipliers = Multipliers::new(&[row(0), row(1)], 1, [0.7, 0.3]);
+        let multipliers = Multipliers::new(vec![row(0), row(1)], 1, [0.7, 0.3]);
         assert!(!multipliers.unique());
         for (b, least) in [([1.0, 0.0], 0.0), ([-1.0, 0.0], -1.0), ([1.0, 1.0], 1.0), ([1.0, -2.0], -2.0)] {
             let Least::Value(found) = multipliers.least(&b) else { panic!("{b:?}") };
@@ -124,8 +144,8 @@ mod tests {
     fn what_is_squeezed_has_no_state() {
         let row =
             |key, column, slope| Row { columns: vec![column], gradient: vec![slope], ..Row::value(key, 0.0, 0.0) };
-        let rows = [row(0, 0, -1.0), row(1, 1, 1.0), row(2, 1, -1.0)];
-        let multipliers = Multipliers::new(&rows, 2, [1.0]);
+        let rows = vec![row(0, 0, -1.0), row(1, 1, 1.0), row(2, 1, -1.0)];
+        let multipliers = Multipliers::new(rows, 2, [1.0]);
         assert_eq!(multipliers.least(&[0.0, -1.0, 0.0]), Least::Unbounded);
         assert_eq!(multipliers.least(&[1.0, 0.0, 0.0]), Least::Value(1.0));
         assert!(matches!(multipliers.least(&[0.0, 1.0, 0.0]), Least::Value(x) if x.abs() < 1e-8));
