@@ -37,6 +37,7 @@ mod render;
 mod replay;
 mod reproduce;
 mod schema;
+mod sensitivity;
 mod simulate;
 mod source;
 mod summary;
@@ -107,6 +108,7 @@ enum Command {
     Prove(prove::Args),
     Sweep(sweep::Args),
     Limit(limit::Args),
+    Sensitivity(sensitivity::Args),
     Boundary(boundary::Args),
     Tightest(extreme::TightestArgs),
     Roomiest(extreme::RoomiestArgs),
@@ -137,6 +139,7 @@ fn main() -> ExitCode {
         Command::Prove(args) => prove::run(&args),
         Command::Sweep(args) => sweep::run(&args),
         Command::Limit(args) => limit::run(&args),
+        Command::Sensitivity(args) => sensitivity::run(&args),
         Command::Boundary(args) => boundary::run(&args),
         Command::Tightest(args) => extreme::tightest(&args),
         Command::Roomiest(args) => extreme::roomiest(&args),

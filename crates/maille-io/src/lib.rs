@@ -19,9 +19,11 @@ pub mod record;
 #[cfg(feature = "render")]
 pub mod render;
 pub mod run;
+pub mod sensitivity;
 pub mod study;
 pub mod table;
 mod tile;
+mod unit;
 pub mod weave;
 
 pub use builtin::{Builtin, builtin, builtin_designs, chapter6, nearest_builtin};

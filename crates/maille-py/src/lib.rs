@@ -28,7 +28,7 @@ mod _native {
     #[pymodule_export]
     use crate::map::{Record, characterize, effort, map_question, numbers, read_record};
     #[pymodule_export]
-    use crate::question::answer;
+    use crate::question::{answer, sensitivity};
     #[pymodule_export]
     use crate::simulate::{open_simulation, save_simulation, simulate};
     #[pymodule_export]

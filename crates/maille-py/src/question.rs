@@ -4,8 +4,12 @@ use crate::{design::Design, error, wait::wait};
 use maille::{
     question::{Goal, Question},
     search::extreme::Extreme,
+    sensitivity::Sensitivity,
 };
-use maille_io::answer::{StrainAnswer, extreme as document_of_extreme};
+use maille_io::{
+    answer::{StrainAnswer, extreme as document_of_extreme},
+    sensitivity::{document, ranked},
+};
 use pyo3::prelude::*;
 
 /// The answer to a question on a strain, a wire, a clearance or an area, which is given as JSON: the document that the program prints,
@@ -43,4 +47,29 @@ pub fn answer(
         Some(answer) => Ok((answer.json().to_string(), None)),
         None => Err(error::other("a strain, a wire, a clearance or an area can be asked for")),
     }
+}
+
+/// How the limit of a stretch changes with the numbers of its design: the document that `maille sensitivity` prints. `question` is
+/// JSON, and `l2` what it holds across. Without `step`, lengths change by 0.1 mm, or by 1 % of the reference radius.
+#[pyfunction]
+#[pyo3(signature = (design, question, *, cell, step, threads))]
+pub fn sensitivity(
+    py: Python<'_>,
+    design: &Design,
+    question: &str,
+    cell: &str,
+    step: Option<f64>,
+    threads: Option<usize>,
+) -> PyResult<String> {
+    let question: Question = serde_json::from_str(question).map_err(|e| error::other(&format!("no question: {e}")))?;
+    question.check().map_err(|e| error::invalid(&e))?;
+    let Goal::Stretch { direction_deg, l2, .. } = question.goal else {
+        return Err(error::other("the limit of a stretch can be asked for"));
+    };
+    let sheet = design.sheet(cell.parse().map_err(|e| error::invalid(&e))?)?;
+    let answer = wait(py, threads, None, |cancel, _| sheet.answer_until(&question, cancel))?;
+    let answer = answer.map_err(|e| error::invalid(&e))?;
+    let found = Sensitivity::of(&sheet.model_of(&answer), &question, &answer).map_err(|e| error::invalid(&e))?;
+    let numbers = ranked(&design.design, &found, step);
+    Ok(document(&design.design, (direction_deg, l2), &answer, &found, &numbers).to_string())
 }

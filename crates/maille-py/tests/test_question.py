@@ -34,6 +34,24 @@ def test_extremes_are_those_of_the_program(program):
     assert roomy.gap == by_program(program, "roomiest", "1.1", "--starts", "1")["gap"] > 0
 
 
+def test_sensitivities_are_those_of_the_program(program):
+    mine = maille.Design.builtin("european-4-in-1").sensitivity(90, -0.05, step=0.05)
+    its = by_program(program, "sensitivity", "european-4-in-1", "--direction", "90", "--l2", "-0.05", "--step", "0.05")
+    its.pop("wall_s")
+    assert mine == its
+    # The wire costs what a thinner one gains, against limits that are solved anew.
+    design = maille.Design.builtin("1.1")
+    wire = next(row for row in design.sensitivity(30)["numbers"] if row["number"].startswith("minor_radius"))
+    limits = [maille.characterize(design.with_minor_radius(0.1 + h), [30], [0]).to_numpy()["l1"][0] for h in (-1e-4, 1e-4)]
+    assert np.isclose(wire["derivative"], (limits[1] - limits[0]) / 2e-4, rtol=1e-5)
+    for wrong in (dict(step=0.0), dict(direction=np.inf), dict(l2=-1.0)):
+        with pytest.raises(maille.ArgumentError):
+            design.sensitivity(**wrong)
+    apart = design.spaced(10.0)
+    with pytest.raises(maille.ArgumentError, match="certified"):
+        apart.sensitivity(30)
+
+
 def test_wrong_questions():
     for wrong in (dict(), dict(maximize="exx", minimize="eyy"), dict(maximize="exz"), dict(maximize="exx", free="exx")):
         with pytest.raises(maille.ArgumentError):

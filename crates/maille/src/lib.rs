@@ -34,6 +34,7 @@
 //! | `bound` | proofs that no state lies beyond a value |
 //! | `solver` | solvers that know nothing of rings: sequential quadratic programming, Newton's method, certificates |
 //! | [`relaxation`] | the thesis's energy method, and finite sheets under weight and pulls |
+//! | [`sensitivity`] | how a certified value changes with the numbers of its design |
 //! | [`survey`] | many questions: maps over directions and lateral strains, as rows of a [`record`], and the surface of all strains |
 //!
 //! Inside, lengths are in units of the design's reference radius R; records are in the file's unit. The searches use the current
@@ -51,6 +52,7 @@ pub mod question;
 pub mod record;
 pub mod relaxation;
 pub mod search;
+pub mod sensitivity;
 pub mod sheet;
 pub mod state;
 pub mod survey;
@@ -76,6 +78,7 @@ pub use model::Model;
 pub use program::Contact;
 pub use question::{Effort, Goal, Question, Sense, Strain};
 pub use record::Status;
+pub use sensitivity::Sensitivity;
 pub use sheet::Sheet;
 pub use solver::certificate::Certificate;
 pub use state::State;

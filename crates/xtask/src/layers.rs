@@ -33,13 +33,14 @@ const MODULES: &[&[&str]] = &[
     &["record"],
     &["question", "answer"],
     &["search", "relaxation"],
+    &["sensitivity"],
     &["survey"],
     &["sheet"],
 ];
 
 /// Stands aside from the order: it uses no other module and no ring, and only [`ASIDE_USERS`] use it.
 const ASIDE: &str = "solver";
-const ASIDE_USERS: &[&str] = &["program", "bound", "answer", "search", "relaxation", "survey"];
+const ASIDE_USERS: &[&str] = &["program", "bound", "answer", "search", "relaxation", "sensitivity", "survey"];
 
 /// Where the modules of [`MODULES`] live.
 const SOURCES: &str = "crates/maille/src";

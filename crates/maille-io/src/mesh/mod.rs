@@ -30,13 +30,12 @@ mod three_mf;
 mod torus;
 mod vtk;
 
+pub use crate::unit::millimetres;
 pub use clearance::{TooClose, smallest_clearance, too_close};
 pub use colour::Colours;
 pub use error::MeshError;
 pub use format::{Format, MeshFile, WriteOptions};
-pub use scene::{
-    Kind, KindRing, Placed, PlacedContact, PlacedRing, Scene, between, millimetres, state_of, state_words,
-};
+pub use scene::{Kind, KindRing, Placed, PlacedContact, PlacedRing, Scene, between, state_of, state_words};
 pub use three_mf::Objects;
 pub use torus::{Fineness, Segments, TorusMesh};
 pub use vtk::write_pvd;

@@ -154,6 +154,34 @@ class Design:
         """Raises `DesignError` if rings overlap in the starting state, or if it cannot be solved for another reason."""
         self._inner.check()
 
+    def sensitivity(
+        self,
+        direction: float = 0.0,
+        l2: float = 0.0,
+        *,
+        step: float | None = None,
+        cell: str = "auto",
+        effort: str = "normal",
+        starts: int | None = None,
+        seed: int = 1,
+    ) -> dict[str, Any]:
+        """How the limit along `direction` (degrees) with `l2` held changes with each number of the design: what
+        `maille sensitivity` does, with the keys of its JSON document.
+
+        `numbers` has a row for each, the largest change first: `number`, its `step`, the first-order `change` of l1 for a step
+        forward and `change_back` for a step back, both derivatives, whether they differ (`kink`), and the pairs of rings
+        `through` which it acts. `step`: of all lengths; by default 0.1 mm, or 1 % of the reference radius.
+        A limit that is not certified has no derivatives: `ArgumentError`.
+
+        >>> rows = Design.builtin("1.1").sensitivity(0)["numbers"]
+        >>> wire = next(row for row in rows if row["number"].startswith("minor_radius"))
+        >>> round(wire["derivative"], 6)
+        -1.6
+        """
+        from .question import stretch_sensitivity
+
+        return stretch_sensitivity(self, direction, l2, step, cell, effort, starts, seed)
+
     @property
     def name(self) -> str:
         """Its short name."""

@@ -248,6 +248,26 @@ def _extreme(
     )
 
 
+def stretch_sensitivity(
+    design: Design, direction: float, l2: float, step: float | None, cell: str, effort: str, starts: int | None, seed: int
+) -> dict[str, Any]:
+    """See `Design.sensitivity`."""
+    for name, value in (("direction", direction), ("l2", l2), ("step", 1.0 if step is None else step)):
+        if not np.isfinite(value):
+            raise ArgumentError(name, f"{value} is not finite", "give a finite number")
+    if step is not None and step <= 0:
+        raise ArgumentError("step", f"{step} is not positive", "give a length, as 0.1")
+    question = {
+        "goal": {"stretch": {"direction_deg": float(direction), "l2": float(l2)}},
+        "effort": _effort(effort),
+        "starts": None if starts is None else _whole("starts", starts, 1),
+        "seed": _whole("seed", seed, 0),
+    }
+    text = _native.sensitivity(design._inner, json.dumps(question), cell=cell, step=step, threads=1)
+    found: dict[str, Any] = json.loads(text)
+    return found
+
+
 def _strain(argument: str, name: str | None) -> str:
     if name not in _STRAINS:
         raise ArgumentError(argument, f'"{name}" is no strain', "give exx, eyy or exy")

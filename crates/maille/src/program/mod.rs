@@ -8,6 +8,7 @@
 //! widen_m.
 
 mod area;
+mod closed;
 pub mod flat;
 pub mod gap_kernel;
 pub mod key;

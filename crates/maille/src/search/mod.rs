@@ -2,12 +2,14 @@
 //!
 //! `starts` are states to begin with, `stop` says when they are enough, `local` is one maximisation, `multistart` the search from many starts and in larger cells, and the other files say what is
 //! maximised and from where: `stretch` (with `stretch_lattices`, and `unlinked` where no chain of links binds), `strain`, `extreme`
-//! (wire and clearance), `closest` (the area of the cell). `waves` tells whether a limit can go on in a larger cell. `overlap` frees a start that overlaps. Every tolerance is in `options`.
+//! (wire and clearance), `closest` (the area of the cell). `family` is the program that an answer solves. `waves` tells whether a limit
+//! can go on in a larger cell. `overlap` frees a start that overlaps. Every tolerance is in `options`.
 
 #[doc(hidden)]
 pub mod closest;
 #[doc(hidden)]
 pub mod extreme;
+pub(crate) mod family;
 mod local;
 mod multistart;
 mod options;

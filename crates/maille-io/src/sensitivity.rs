@@ -1,0 +1,161 @@
+//! The numbers of a design, ranked by how much a limit changes with them.
+
+use crate::unit::millimetres;
+use maille::{
+    answer::Answer,
+    design::Design,
+    model::RingPair,
+    sensitivity::{DesignVector, OneSided, RingVector, Sensitivity},
+};
+use serde_json::{Value, json};
+
+/// One number of a design, changed by a step.
+pub struct NumberChange {
+    /// Which number.
+    pub number: String,
+    /// Size of the step: a length in the file's unit, a share (spacing), or radians (tilt).
+    pub step: f64,
+    /// The step with its unit.
+    pub step_words: String,
+    /// Derivatives of the limit by the number.
+    pub slope: OneSided,
+    /// The pairs of rings that carry most of it, each with its share of all that is carried up or down.
+    pub through: Vec<(String, f64)>,
+}
+
+/// A change below this is 0.
+pub const NO_CHANGE: f64 = 1e-12;
+/// Pairs that are named.
+const NAMED: usize = 2;
+/// Step of a length in millimetres.
+const STEP_MM: f64 = 0.1;
+/// Step of the spacing, and of a length in a design without a unit of length, as a share of the reference radius.
+const SHARE: f64 = 0.01;
+
+impl NumberChange {
+    /// Changes of the limit for a step back and a step forward, to first order; `None` where no state is left, or it is not known.
+    pub fn changes(&self) -> [Option<f64>; 2] {
+        [self.slope.backward.finite().map(|x| -x * self.step), self.slope.forward.finite().map(|x| x * self.step)]
+    }
+
+    /// The larger of both changes; infinite where one of them is not known.
+    pub fn largest(&self) -> f64 {
+        self.changes().into_iter().map(|change| change.map_or(f64::INFINITY, f64::abs)).fold(0.0, f64::max)
+    }
+
+    fn json(&self) -> Value {
+        let [back, forward] = self.changes();
+        let through = self.through.iter().map(|(pair, share)| json!({ "pair": pair, "share": share }));
+        json!({
+            "number": self.number,
+            "step": self.step,
+            "step_words": self.step_words,
+            "change": forward,
+            "change_back": back,
+            "derivative": self.slope.forward.finite(),
+            "derivative_back": self.slope.backward.finite(),
+            "kink": self.slope.is_kink(),
+            "through": through.collect::<Vec<_>>(),
+        })
+    }
+}
+
+/// The numbers of the design, those that matter most first.
+///
+/// `step` is that of all lengths, in the file's unit; by default 0.1 mm, or 1 % of the reference radius where the design has no unit
+/// of length. The spacing changes by 1 %, a tilt by 1°. A ring alone in its element has no offset and no tilt here: a limit is sought
+/// over all positions and turns of the element.
+pub fn ranked(design: &Design, found: &Sensitivity, step: Option<f64>) -> Vec<NumberChange> {
+    let unit = design.unit.as_deref();
+    let default = || unit.and_then(millimetres).map_or(design.reference_radius * SHARE, |mm| STEP_MM / mm);
+    let length = step.unwrap_or_else(default);
+    let in_unit = unit.map_or(format!("{length}"), |unit| format!("{length} {unit}"));
+    let labels = ring_labels(design);
+    let of = |number: String, change: &DesignVector, step: f64, words: &str| NumberChange {
+        number,
+        step,
+        step_words: words.to_owned(),
+        slope: found.one_sided(change),
+        through: through(&labels, &found.by_pair(change)),
+    };
+    let mut lines = Vec::new();
+    let wire = DesignVector::common_minor_radius(design);
+    if wire.rings.iter().any(|ring| ring.minor_radius != 0.0) {
+        lines.push(of("minor_radius, the wire".into(), &wire, length, &in_unit));
+    }
+    lines.push(of("spacing".into(), &DesignVector::spacing(design), SHARE, "1 %"));
+    for (k, name) in ["a1.x", "a1.y", "a2.x", "a2.y"].into_iter().enumerate() {
+        let mut change = DesignVector::zeros(labels.len());
+        change.lattice[k / 2][k % 2] = 1.0;
+        lines.push(of(format!("lattice {name}"), &change, length, &in_unit));
+    }
+    let gradient = found.gradient();
+    let alone = design.elements.iter().flat_map(|e| e.rings.iter().map(|_| e.rings.len() == 1));
+    for ((ring, label), alone) in labels.iter().enumerate().zip(alone) {
+        let unit_change = |set: &dyn Fn(&mut RingVector)| {
+            let mut change = DesignVector::zeros(labels.len());
+            set(&mut change.rings[ring]);
+            change
+        };
+        lines.push(of(format!("{label} major_radius"), &unit_change(&|r| r.major_radius = 1.0), length, &in_unit));
+        lines.push(of(format!("{label} minor_radius"), &unit_change(&|r| r.minor_radius = 1.0), length, &in_unit));
+        if alone {
+            continue;
+        }
+        for (k, axis) in ["x", "y", "z"].into_iter().enumerate() {
+            lines.push(of(format!("{label} offset.{axis}"), &unit_change(&|r| r.offset[k] = 1.0), length, &in_unit));
+        }
+        let steepest = gradient.rings[ring].tilt;
+        if steepest.norm() > NO_CHANGE {
+            let axis = steepest.normalize();
+            let [x, y, z] = [axis.x, axis.y, axis.z].map(|x| (x * 100.0).round() / 100.0 + 0.0);
+            let change = unit_change(&|r| r.tilt = axis);
+            lines.push(of(format!("{label} tilt about ({x}, {y}, {z})"), &change, 1f64.to_radians(), "1\u{b0}"));
+        }
+    }
+    lines.sort_by(|a, b| b.largest().total_cmp(&a.largest()));
+    lines
+}
+
+/// The document of `maille sensitivity --json`, with the keys of `docs/json.md`. `direction_deg` and `l2` are those of the question.
+pub fn document(
+    design: &Design,
+    (direction_deg, l2): (f64, f64),
+    answer: &Answer,
+    found: &Sensitivity,
+    numbers: &[NumberChange],
+) -> Value {
+    json!({
+        "design": design.name,
+        "direction_deg": direction_deg,
+        "l2": l2,
+        "cell": answer.cell.to_string(),
+        "status": answer.status.name(),
+        "l1": answer.value,
+        "forces_are_unique": found.forces_are_unique(),
+        "loose_motions": found.loose_motions(),
+        "numbers": numbers.iter().map(NumberChange::json).collect::<Vec<_>>(),
+    })
+}
+
+/// Names of all rings, in the order of the file.
+fn ring_labels(design: &Design) -> Vec<String> {
+    let rings = design.elements.iter().flat_map(|element| (0..element.rings.len()).map(move |ring| (element, ring)));
+    let label = |(element, ring): (&maille::design::ElementSpec, usize)| match element.rings.len() {
+        1 => format!("\"{}\"", element.name),
+        _ => format!("\"{}\" ring {ring}", element.name),
+    };
+    rings.map(label).collect()
+}
+
+fn through(labels: &[String], parts: &[(RingPair, f64)]) -> Vec<(String, f64)> {
+    let all: f64 = parts.iter().map(|(_, part)| part.abs()).sum();
+    let label = |pair: &RingPair| {
+        let image = match pair.shift {
+            [0, 0] => String::new(),
+            [i, j] => format!(" in cell ({i:+},{j:+})"),
+        };
+        format!("{} on {}{image}", labels[pair.ring_a], labels[pair.ring_b])
+    };
+    parts.iter().take(NAMED).map(|(pair, part)| (label(pair), part.abs() / all)).collect()
+}

@@ -1,0 +1,398 @@
+//! Derivatives of limits against differences of limits that are solved anew.
+
+use maille::{
+    Across, Answer, Cell, Design, Goal, Question, Sense, Sheet, Strain,
+    sensitivity::{DesignVector, Sensitivity, gradient},
+};
+use maille_geometry::Vec3;
+use nalgebra::UnitQuaternion;
+use std::{collections::BTreeSet, time::Instant};
+
+fn builtin(name: &str) -> Design {
+    maille_io::read_design(name, maille_io::builtin(name).unwrap()).unwrap()
+}
+
+fn solved(design: &Design, question: &Question) -> (Sheet, Answer) {
+    let sheet = Sheet::in_cells(design, Cell::PRIMITIVE.into()).unwrap();
+    let answer = sheet.answer(question).unwrap();
+    (sheet, answer)
+}
+
+fn stretch(direction_deg: f64, l2: f64) -> Question {
+    Question { starts: Some(4), ..Question::stretch_along(direction_deg).with_lateral(l2) }
+}
+
+fn rings(design: &Design) -> usize {
+    design.elements.iter().map(|element| element.rings.len()).sum()
+}
+
+/// The design changed by `step` times `change`.
+fn moved(design: &Design, change: &DesignVector, step: f64) -> Design {
+    let mut out = design.clone();
+    for (a, rate) in [&mut out.lattice.a1, &mut out.lattice.a2].into_iter().zip(&change.lattice) {
+        (0..2).for_each(|k| a[k] += step * rate[k]);
+    }
+    let own = out.elements.iter_mut().flat_map(|element| &mut element.rings);
+    for (ring, rate) in own.zip(&change.rings) {
+        ring.major_radius += step * rate.major_radius;
+        ring.minor_radius = Some(ring.minor_radius.or(design.minor_radius).unwrap() + step * rate.minor_radius);
+        ring.offset = (Vec3::from(ring.offset) + rate.offset * step).into();
+        ring.normal = (UnitQuaternion::from_scaled_axis(rate.tilt * step) * Vec3::from(ring.normal)).into();
+    }
+    out
+}
+
+/// One unit change for each raw number of the design, by its name.
+fn raw_numbers(design: &Design) -> Vec<(String, DesignVector)> {
+    let zeros = || DesignVector::zeros(rings(design));
+    let mut out = Vec::new();
+    for k in 0..4 {
+        let mut change = zeros();
+        change.lattice[k / 2][k % 2] = 1.0;
+        out.push((format!("a{}.{}", k / 2 + 1, ["x", "y"][k % 2]), change));
+    }
+    for ring in 0..rings(design) {
+        let mut add = |what: &str, set: &dyn Fn(&mut maille::sensitivity::RingVector)| {
+            let mut change = zeros();
+            set(&mut change.rings[ring]);
+            out.push((format!("ring {ring} {what}"), change));
+        };
+        add("R", &|r| r.major_radius = 1.0);
+        add("r", &|r| r.minor_radius = 1.0);
+        for k in 0..3 {
+            add(&format!("offset {k}"), &|r| r.offset[k] = 1.0);
+            add(&format!("tilt {k}"), &|r| r.tilt[k] = 1.0);
+        }
+    }
+    out
+}
+
+/// Pairs that carry.
+fn loaded(answer: &Answer) -> BTreeSet<(usize, usize, [i32; 2])> {
+    let carrying = answer.contacts.iter().filter(|contact| contact.force > 1e-6);
+    carrying.map(|contact| (contact.pair.ring_a, contact.pair.ring_b, contact.pair.shift)).collect()
+}
+
+/// Limits at these multiples of h along `change`, if all are found and `kept` is true of their answers.
+fn limits<const N: usize>(
+    (design, question, change): (&Design, &Question, &DesignVector),
+    h: f64,
+    steps: [f64; N],
+    kept: impl Fn(&[Answer]) -> bool,
+) -> Option<[f64; N]> {
+    let answers = steps.map(|step| solved(&moved(design, change, step * h), question).1);
+    if !kept(&answers) {
+        return None;
+    }
+    let values: Option<Vec<f64>> = answers.iter().map(Answer::limit).collect();
+    values?.try_into().ok()
+}
+
+/// Counts and largest errors of compared derivatives. An error is relative to the derivative, or to 0.01 where that is larger, with
+/// lengths in reference radii.
+#[derive(Debug, Default)]
+struct Tally {
+    limits: usize,
+    /// With one choice of forces.
+    unique: usize,
+    /// Derivatives compared with central differences.
+    compared: usize,
+    /// Where the loaded contacts change within the differences.
+    changed: usize,
+    worst: f64,
+    where_worst: String,
+    /// Numbers with different derivatives to both sides.
+    kinks: usize,
+    /// One-sided derivatives compared with one-sided differences.
+    sides: usize,
+    sides_changed: usize,
+    worst_side: f64,
+    where_worst_side: String,
+    /// Derivatives and sides of an error above 1e-5.
+    wrong: usize,
+}
+
+/// A limit with its derivatives.
+struct Case<'a> {
+    design: &'a Design,
+    question: &'a Question,
+    answer: &'a Answer,
+    found: &'a Sensitivity,
+    label: String,
+}
+
+impl Case<'_> {
+    fn step(&self, number: &str) -> f64 {
+        1e-4 * if number.contains("tilt") { 1.0 } else { self.design.reference_radius }
+    }
+
+    fn error(&self, number: &str, derivative: f64, difference: f64) -> f64 {
+        let unit = if number.contains("tilt") { 1.0 } else { self.design.reference_radius };
+        (derivative - difference).abs() * unit / (difference.abs() * unit).max(0.01)
+    }
+
+    /// By central differences of fourth order, where the loaded contacts stay.
+    fn central(&self, number: &str, change: &DesignVector, tally: &mut Tally) {
+        let h = self.step(number);
+        let kept = |answers: &[Answer]| answers.iter().all(|a| loaded(a) == loaded(self.answer));
+        let asked = (self.design, self.question, change);
+        let Some([f0, f1, f2, f3]) = limits(asked, h, [-2.0, -1.0, 1.0, 2.0], kept) else {
+            tally.changed += 1;
+            return;
+        };
+        let (difference, derivative) = ((f0 - 8.0 * f1 + 8.0 * f2 - f3) / (12.0 * h), self.found.along(change));
+        tally.compared += 1;
+        let error = self.error(number, derivative, difference);
+        tally.wrong += usize::from(error > 1e-5);
+        if error > tally.worst {
+            tally.worst = error;
+            tally.where_worst = format!("{} {number}: {derivative} {difference}", self.label);
+        }
+    }
+
+    /// By differences of third order to each side, where the loaded contacts stay the same on that side.
+    fn sides(&self, number: &str, change: &DesignVector, tally: &mut Tally) {
+        let both = self.found.one_sided(change);
+        tally.kinks += usize::from(both.is_kink());
+        let f0 = self.answer.value.unwrap();
+        for (slope, sign) in [(both.backward, -1.0), (both.forward, 1.0)] {
+            let h = sign * self.step(number);
+            let kept = |answers: &[Answer]| answers.iter().all(|a| loaded(a) == loaded(&answers[0]));
+            let asked = (self.design, self.question, change);
+            let Some([f1, f2, f3]) = limits(asked, h, [1.0, 2.0, 3.0], kept) else {
+                tally.sides_changed += 1;
+                continue;
+            };
+            let difference = (-11.0 * f0 + 18.0 * f1 - 9.0 * f2 + 2.0 * f3) / (6.0 * h);
+            let derivative = slope.finite().unwrap_or(f64::NAN);
+            tally.sides += 1;
+            let error = self.error(number, derivative, difference);
+            if error.is_nan() || error > 1e-5 {
+                tally.wrong += 1;
+                println!("  {} {number} {sign}: {both:?} {difference}", self.label);
+            }
+            if error.is_nan() || error > tally.worst_side {
+                tally.worst_side = error;
+                tally.where_worst_side = format!("{} {number} {sign}: {both:?} {difference}", self.label);
+            }
+        }
+    }
+}
+
+fn compare(name: &str, directions: &[f64], l2: &[f64], tally: &mut Tally) {
+    let design = &builtin(name);
+    for (&direction, &l2) in directions.iter().flat_map(|d| l2.iter().map(move |l2| (d, l2))) {
+        let question = &stretch(direction, l2);
+        let (sheet, answer) = &solved(design, question);
+        if !answer.is_limit() {
+            continue;
+        }
+        tally.limits += 1;
+        let found = &Sensitivity::of(&sheet.model_of(answer), question, answer).unwrap();
+        let case = Case { design, question, answer, found, label: format!("{name} {direction}° l2 {l2}") };
+        tally.unique += usize::from(found.forces_are_unique());
+        for (number, change) in raw_numbers(design) {
+            match found.forces_are_unique() {
+                true => case.central(&number, &change, tally),
+                false => case.sides(&number, &change, tally),
+            }
+        }
+    }
+}
+
+#[test]
+fn derivatives_are_those_of_limits_solved_anew() {
+    let mut tally = Tally::default();
+    for name in ["1.1", "2", "4.1"] {
+        compare(name, &[0.0, 10.0, 33.0], &[0.0, -0.05], &mut tally);
+    }
+    println!("{tally:#?}");
+    assert!(tally.compared > 300, "{tally:#?}");
+    assert!(tally.sides > 100 && tally.wrong == 0, "{tally:#?}");
+}
+
+#[test]
+#[ignore = "minutes"]
+fn derivatives_of_all_builtin_designs() {
+    for builtin in maille_io::builtin_designs() {
+        let mut tally = Tally::default();
+        compare(builtin.name, &[0.0, 10.0, 33.0], &[0.0, -0.05], &mut tally);
+        println!("{}: {tally:?}", builtin.name);
+    }
+}
+
+/// Along 45° the chains of 1.1 along 0° and 90° are taut at once: longer rings in one of them alone do nothing, shorter ones cost.
+/// Both chains have the length P = 2 (R + R') − 2 (r + r') = 3.6, 1.44 times the spacing s, so (1 + l1)² = 2 (P/s)² − 1.
+#[test]
+fn both_sides_of_a_kink() {
+    let mut tally = Tally::default();
+    compare("1.1", &[45.0, 135.0], &[0.0], &mut tally);
+    println!("{tally:#?}");
+    assert!(tally.kinks >= 16 && tally.sides > 100 && tally.wrong == 0, "{tally:#?}");
+
+    let (design, question) = (builtin("1.1"), stretch(45.0, 0.0));
+    let (sheet, answer) = solved(&design, &question);
+    let found = Sensitivity::of(&sheet.model_of(&answer), &question, &answer).unwrap();
+    let stretch = (2.0 * 1.44_f64.powi(2) - 1.0).sqrt();
+    let slope = 2.0 * 1.44 / stretch * 2.0 / 2.5;
+    let mut longer = DesignVector::zeros(3);
+    longer.rings[1].major_radius = 1.0;
+    let both = found.one_sided(&longer);
+    assert!(both.is_kink(), "{both:?}");
+    let [backward, forward] = [both.backward, both.forward].map(|slope| slope.finite().unwrap());
+    assert!((backward - slope).abs() < 1e-8 && forward.abs() < 1e-8, "{both:?}, expected {slope} and 0");
+}
+
+/// A search asks for derivatives after each limit: they must cost little beside it.
+#[test]
+fn derivatives_take_little_time_beside_their_limit() {
+    for (name, cell) in [("2", "1x1"), ("1.1", "1x1"), ("1.1", "2x2")] {
+        let (design, question) = (builtin(name), stretch(33.0, 0.0));
+        let begun = Instant::now();
+        let sheet = Sheet::in_cells(&design, cell.parse().unwrap()).unwrap();
+        let answer = sheet.answer(&question).unwrap();
+        let solve = begun.elapsed().as_secs_f64();
+        let (model, changes) = (sheet.model_of(&answer), raw_numbers(&design));
+        let changes: Vec<_> = changes.into_iter().map(|(_, change)| change).collect();
+        // The least of many: other work on the machine only adds.
+        let once = |_| {
+            let begun = Instant::now();
+            drop(gradient(&model, &question, &answer, &changes).unwrap());
+            begun.elapsed().as_secs_f64()
+        };
+        let each = (0..50).map(once).fold(f64::INFINITY, f64::min);
+        let elements = model.elements.len();
+        println!("{name}, {elements} elements: limit {solve:.2e} s, {} derivatives {each:.2e} s", changes.len());
+        assert!(each < 0.2 * solve, "{name}: {each} s beside {solve} s");
+    }
+}
+
+/// The other goals, by central differences along the wire, the spacing and one ring's size.
+#[test]
+fn derivatives_of_other_goals() {
+    let strain = |component, free: &[Strain], sense| {
+        Question::new(Goal::Strain { component, direction_deg: 20.0, fix: vec![], free: free.to_vec() }, sense)
+    };
+    let free = Across { lateral_free: true, shear_free: true };
+    let questions = [
+        Question::stretch_along(20.0).with_free(free),
+        strain(Strain::Exx, &[], Sense::Largest),
+        strain(Strain::Exy, &[Strain::Exx], Sense::Largest),
+        strain(Strain::Exx, &[], Sense::Least),
+        Question::thickest_wire(),
+        Question::new(Goal::Wire { lattice_free: false }, Sense::Largest),
+        Question::largest_clearance(),
+        Question::new(Goal::Ray { direction: [0.6, 0.0, 0.8] }, Sense::Largest),
+    ];
+    let mut compared = 0;
+    for (name, question) in ["1.1"].iter().flat_map(|n| questions.iter().map(move |q| (*n, q))) {
+        let design = builtin(name);
+        let question = Question { starts: Some(4), ..question.clone() };
+        let (sheet, answer) = solved(&design, &question);
+        if !answer.is_limit() {
+            continue;
+        }
+        let model = sheet.model_of(&answer).into_owned();
+        let found = Sensitivity::of(&model, &question, &answer).unwrap();
+        // A clearance is a length, in reference radii.
+        let unit = if matches!(question.goal, Goal::Clearance { .. }) { model.unit } else { 1.0 };
+        let mut ring = DesignVector::zeros(rings(&design));
+        ring.rings[0].major_radius = 1.0;
+        for change in [DesignVector::common_minor_radius(&design), DesignVector::spacing(&design), ring] {
+            let h = 1e-4 * design.reference_radius;
+            let kept = |answers: &[Answer]| answers.iter().all(|a| loaded(a) == loaded(&answer));
+            let values = limits((&design, &question, &change), h, [-2.0, -1.0, 1.0, 2.0], kept);
+            let Some([f0, f1, f2, f3]) = values.filter(|_| !found.one_sided(&change).is_kink()) else { continue };
+            let expected = unit * (f0 - 8.0 * f1 + 8.0 * f2 - f3) / (12.0 * h);
+            let derivative = found.along(&change);
+            println!("{name} {:?}: {derivative} {expected}", question.goal);
+            let close = (derivative - expected).abs() < 1e-5 * expected.abs().max(0.1);
+            assert!(close, "{name} {question:?}: {derivative} {expected}");
+            compared += 1;
+        }
+    }
+    assert!(compared >= 15, "{compared}");
+}
+
+/// All lengths doubled leave l1 as it is; the wire alone costs the sum of the forces, twice; a family of designs gives the same as
+/// its tangent.
+#[test]
+fn derivatives_add_up() {
+    for name in ["1.1", "2-oblong", "3.1", "kings-mail", "japanese-4-in-1"] {
+        let design = builtin(name);
+        let question = stretch(33.0, 0.0);
+        let (sheet, answer) = solved(&design, &question);
+        let model = sheet.model_of(&answer);
+        let found = Sensitivity::of(&model, &question, &answer).unwrap();
+        let (scale, wire) = (DesignVector::scale(&design), DesignVector::common_minor_radius(&design));
+        assert!(found.along(&scale).abs() < 1e-8, "{name}: {}", found.along(&scale));
+        let forces: f64 = answer.contacts.iter().map(|contact| contact.force).sum();
+        let by_force = -2.0 * forces / design.reference_radius;
+        assert!((found.along(&wire) - by_force).abs() < 1e-12 * by_force.abs(), "{name}");
+        let h = 1e-5;
+        let spaced = DesignVector::between(&design.spaced(1.0 - h), &design.spaced(1.0 + h), 2.0 * h).unwrap();
+        let changes = [spaced, DesignVector::spacing(&design)];
+        let [a, b] = gradient(&model, &question, &answer, &changes).unwrap()[..] else { panic!("two changes") };
+        assert!((a - b).abs() < 1e-9 * b.abs() && b < 0.0, "{name}: {a} {b}");
+        let parts: f64 = found.by_pair(&wire).iter().map(|(_, part)| part).sum();
+        assert!((parts - by_force).abs() < 1e-9 * by_force.abs(), "{name}");
+    }
+}
+
+/// A design turned or mirrored has the derivatives turned or mirrored with it.
+#[test]
+fn derivatives_turn_with_the_design() {
+    let design = builtin("2-oblong");
+    let of = |design: &Design, direction: f64| {
+        let question = stretch(direction, 0.0);
+        let (sheet, answer) = solved(design, &question);
+        Sensitivity::of(&sheet.model_of(&answer), &question, &answer).unwrap().gradient()
+    };
+    let here = of(&design, 20.0);
+    let turn = UnitQuaternion::from_axis_angle(&Vec3::z_axis(), 0.5);
+    for mirrored in [false, true] {
+        let map = |v: Vec3| if mirrored { Vec3::new(v.x, -v.y, v.z) } else { turn * v };
+        let mut image = design.clone();
+        for element in &mut image.elements {
+            element.center = map(element.center.into()).into();
+            for ring in &mut element.rings {
+                ring.normal = map(ring.normal.into()).into();
+                ring.offset = map(ring.offset.into()).into();
+            }
+        }
+        image.lattice.a1 = map(image.lattice.a1.into()).into();
+        image.lattice.a2 = map(image.lattice.a2.into()).into();
+        let there = of(&image, if mirrored { -20.0 } else { 20.0 + 0.5_f64.to_degrees() });
+        for (a, b) in here.lattice.iter().zip(&there.lattice) {
+            assert!((map(a.push(0.0)).xy() - b).norm() < 1e-7, "{a} {b}");
+        }
+        for (a, b) in here.rings.iter().zip(&there.rings) {
+            assert!((a.major_radius - b.major_radius).abs() < 1e-7 && (a.minor_radius - b.minor_radius).abs() < 1e-7);
+            assert!((map(a.offset) - b.offset).norm() < 1e-7);
+        }
+    }
+}
+
+#[test]
+fn what_has_no_derivatives_is_refused() {
+    let design = builtin("1.1");
+    let question = stretch(33.0, 0.0);
+    let (sheet, answer) = solved(&design, &question);
+    let model = sheet.model_of(&answer);
+    let refused = |question: &Question, answer: &Answer| match Sensitivity::of(&model, question, answer) {
+        Err(problem) => problem.problem,
+        Ok(_) => panic!("taken"),
+    };
+    let uncertified = Answer { status: maille::Status::Uncertified, ..answer.clone() };
+    assert!(refused(&question, &uncertified).contains("no certified forces"));
+    assert!(refused(&stretch(80.0, 0.0), &answer).contains("do not balance"));
+    let mut weak = answer.clone();
+    weak.contacts[0].force *= 0.99;
+    assert!(refused(&question, &weak).contains("do not balance"));
+    let other = builtin("3.1");
+    assert_eq!(DesignVector::between(&design, &other, 1.0).unwrap_err().field, "elements");
+    assert_eq!(DesignVector::between(&design, &design, 0.0).unwrap_err().field, "step");
+    let mut turned = design.clone();
+    turned.elements[0].rings[0].normal = [0.0, 0.0, -1.0];
+    assert_eq!(DesignVector::between(&design, &turned, 1.0).unwrap_err().field, "normal");
+}
