@@ -97,6 +97,7 @@ impl NumberPath {
             return Err(InvalidInput::new("vary", problem, format!("its elements are {}", elements.join(", "))));
         }
         numbers.into_iter().for_each(|number| *number = value);
+        let mut out = out.settled();
         if self.place != Place::MinorRadius {
             out.varied.insert(self.text.clone(), value);
         }
