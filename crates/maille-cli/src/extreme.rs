@@ -5,7 +5,7 @@ use crate::{
     certificate,
     effort::SearchArgs,
     exit::{self, refused, wrong},
-    input::Input,
+    input::{Input, Setting},
     interrupt,
     map::pool,
     numbers::positive,
@@ -67,6 +67,9 @@ struct Common {
     /// Minor radius of every ring that gives none, in the file's unit
     #[arg(long, value_parser = positive)]
     minor_radius: Option<f64>,
+    /// A value for a parameter of the design's file, as radius=5.0; several with commas
+    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',')]
+    set: Vec<Setting>,
     /// Whether the lattice may change [default: free for tightest, fixed for roomiest]
     #[arg(long, value_enum)]
     lattice: Option<Lattice>,
@@ -104,7 +107,7 @@ pub fn roomiest(args: &RoomiestArgs) -> Result<ExitCode> {
 
 fn run(args: &Common, what: Extreme) -> Result<ExitCode> {
     args.save.iter().try_for_each(|file| args.replace.check(file))?;
-    let input = Input::read(&args.design, args.minor_radius)?;
+    let input = Input::read_with(&args.design, &args.set, args.minor_radius)?;
     let begun = Instant::now();
     let answer = search(&input, what, args.lattice, args.search, args.threads)?;
     let found = &answer.found;

@@ -4,7 +4,7 @@ use crate::{
     at::{At, Place, parse_place},
     exit::{self, wrong},
     extreme::{Lattice, as_design, word as extreme_word},
-    input::{Input, file_name},
+    input::{Input, Setting, file_name},
     numbers::positive,
 };
 use maille::{
@@ -44,6 +44,9 @@ pub struct SourceArgs {
     /// Minor radius of every ring that gives none, in the file's unit
     #[arg(long, value_parser = positive, conflicts_with = "from")]
     pub minor_radius: Option<f64>,
+    /// A value for a parameter of the design's file, as radius=5.0; several with commas
+    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',', conflicts_with = "from")]
+    pub set: Vec<Setting>,
 }
 
 /// A design, compiled, and perhaps a state of a record.
@@ -86,7 +89,8 @@ pub struct Wanted {
 impl SourceArgs {
     /// Reads the design and its state, from the record where one is asked for.
     pub fn read(&self, wanted: Wanted) -> Result<Source> {
-        let input = self.design.as_deref().map(|name| Input::read(name, self.minor_radius)).transpose()?;
+        let input =
+            self.design.as_deref().map(|name| Input::read_with(name, &self.set, self.minor_radius)).transpose()?;
         let at = match self.at {
             Some(Place::Extreme(what)) => return self.of_extreme(input.as_ref(), what, wanted),
             Some(Place::At(at)) => Some(at),

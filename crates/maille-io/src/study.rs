@@ -1,7 +1,7 @@
 //! Studies: which maps of which designs, in one TOML file.
 
 use crate::{
-    design_toml::{NumberPath, line_column},
+    design_toml::{NumberPath, line_column, set_parameters},
     numbers::{Numbers, parse, parse_l2},
     quantity::Quantity,
     run::Map,
@@ -59,9 +59,16 @@ pub struct Variant {
 
 impl Variant {
     /// The design with its parameters. Refused where it has no such number.
+    ///
+    /// Its parameters are set first and at once: what the others set is no longer given by a formula.
     pub fn of(&self, design: &Design) -> Result<Design, InvalidInput> {
-        let mut out = self.minor_radius.map_or_else(|| design.clone(), |r| design.with_minor_radius(r));
-        for (path, value) in &self.numbers {
+        let parameters = self.numbers.iter().filter_map(|(path, value)| Some((path.parameter()?, *value)));
+        let first = |problems: Vec<InvalidInput>| problems.into_iter().next().expect("an error has a problem");
+        let mut out = set_parameters(design, &parameters.collect::<Vec<_>>()).map_err(first)?;
+        if let Some(r) = self.minor_radius {
+            out = out.with_minor_radius(r);
+        }
+        for (path, value) in self.numbers.iter().filter(|(path, _)| path.parameter().is_none()) {
             out = path.set(&out, *value)?;
         }
         Ok(self.spacing.map_or(out.clone(), |factor| out.spaced(factor)))

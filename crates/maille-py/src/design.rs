@@ -2,7 +2,7 @@
 
 use crate::error;
 use maille::{error::InvalidInput, lattice::Cell, model::Model, sheet::Sheet, survey::CellChoice};
-use maille_io::{DesignSource, NumberPath, builtin, builtin_designs, nearest_builtin, write_design};
+use maille_io::{DesignSource, NumberPath, builtin, builtin_designs, nearest_builtin, set_parameters, write_design};
 use pyo3::prelude::*;
 
 /// A design, with the file that its errors point into.
@@ -92,6 +92,16 @@ impl Design {
     fn with_number(&self, path: &str, value: f64) -> PyResult<Self> {
         let path: NumberPath = path.parse().map_err(|e| error::invalid(&e))?;
         Self::changed(path.set(&self.design, value).map_err(|e| error::invalid(&e))?)
+    }
+
+    fn with_parameters(&self, values: Vec<(String, f64)>) -> PyResult<Self> {
+        let values: Vec<(&str, f64)> = values.iter().map(|(name, value)| (name.as_str(), *value)).collect();
+        Self::changed(set_parameters(&self.design, &values).map_err(|problems| error::design(&problems))?)
+    }
+
+    /// Name, value, least and largest value, and whether it can be set.
+    fn parameters(&self) -> Vec<(&str, f64, Option<f64>, Option<f64>, bool)> {
+        self.design.parameters.iter().map(|p| (p.name.as_str(), p.value, p.min, p.max, p.is_free())).collect()
     }
 
     fn spaced(&self, factor: f64) -> PyResult<Self> {

@@ -250,10 +250,7 @@ fn number(input: &mut &str) -> ModalResult<Node> {
         '.' => ('.', digit1).void(),
         _ => (digit1, opt(('.', digit0))).void(),
     };
-    (digits, exponent).take()
-    .parse_to()
-    .map(Node::Number)
-    .parse_next(input)
+    (digits, exponent).take().parse_to().map(Node::Number).parse_next(input)
 }
 
 /// A name, or a function with its arguments.

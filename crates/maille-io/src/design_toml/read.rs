@@ -170,7 +170,13 @@ impl Reader<'_> {
         let number = self.number(value, &path)?;
         // Its formula stands with it, not among those of the design's numbers.
         let formula = self.formulas.remove(&path);
-        Some(Parameter { name: name.to_owned(), value: if formula.is_some() { 0.0 } else { number }, formula, min, max })
+        Some(Parameter {
+            name: name.to_owned(),
+            value: if formula.is_some() { 0.0 } else { number },
+            formula,
+            min,
+            max,
+        })
     }
 
     fn lattice(&mut self, value: &Value<'_>, path: &str) -> Option<LatticeSpec> {
