@@ -28,8 +28,10 @@ pub const FUNCTIONS: [(&str, Option<usize>); 11] = [
 
 /// The ratio of a circle's circumference to its diameter, as formulas name it.
 pub const PI: &str = "pi";
-/// Longest formula, in bytes: it bounds how deep parentheses can stand in each other.
+/// Longest formula, in bytes.
 const LONGEST: usize = 400;
+/// Most of the signs that the reader follows into each other: it must not exhaust the stack.
+const MOST_NESTED: usize = 40;
 const HELP: &str = "write arithmetic, as 2 * radius + 0.1: + - * / ^ ( ), names of parameters, pi, and sin, cos, tan, asin, acos, \
                     atan (radians), deg, sqrt, abs, min, max";
 
@@ -75,6 +77,11 @@ impl Formula {
         if text.len() > LONGEST {
             let help = "give parts of it a name in [parameters]";
             return no(format!("a formula of {} characters is too long; {LONGEST} is most", text.len()), help);
+        }
+        let nested = text.chars().filter(|c| "(+-^".contains(*c)).count();
+        if nested > MOST_NESTED {
+            let help = "give parts of it a name in [parameters]";
+            return no(format!("a formula with {nested} of ( + - ^ is too long; {MOST_NESTED} is most"), help);
         }
         match delimited(multispace0, sum, multispace0).parse(text) {
             Ok(node) => node.check().map(|()| Formula(node)),
@@ -327,6 +334,7 @@ mod tests {
         }
         assert_eq!(Formula::parse("2 radius").unwrap_err().help, "is an operator missing before radius, as *?");
         assert!(problem(&"(".repeat(1000)).contains("too long"));
-        assert!(problem(&"(".repeat(LONGEST)).contains("too early"));
+        assert!(problem(&"(".repeat(LONGEST)).contains("too long"));
+        assert!(problem(&"(".repeat(MOST_NESTED)).contains("too early"));
     }
 }
