@@ -221,9 +221,9 @@ fn sum(input: &mut &str) -> ModalResult<Node> {
     expression(preceded(multispace0, operand))
         .prefix(preceded(
             multispace0,
-            dispatch! {any;
-                '-' => Prefix(9, |_: &mut &str, a: Node| Ok(Node::Minus(a.into()))),
-                '+' => Prefix(9, |_: &mut &str, a: Node| Ok(a)),
+            dispatch! {peek(any);
+                '-' => '-'.map(|_| Prefix(9, |_: &mut &str, a: Node| Ok(Node::Minus(a.into())))),
+                '+' => '+'.map(|_| Prefix(9, |_: &mut &str, a: Node| Ok(a))),
                 _ => fail,
             },
         ))
@@ -246,7 +246,7 @@ fn operand(input: &mut &str) -> ModalResult<Node> {
         '(' => delimited('(', cut_err(sum), cut_err((multispace0, ')'))),
         c if c.is_ascii_digit() || c == '.' => number,
         c if c.is_ascii_alphabetic() || c == '_' => named,
-        _ => cut_err(fail),
+        _ => fail,
     }
     .parse_next(input)
 }
