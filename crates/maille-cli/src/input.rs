@@ -20,6 +20,12 @@ pub struct Setting {
     value: f64,
 }
 
+impl std::fmt::Display for Setting {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}={}", self.name, self.value)
+    }
+}
+
 impl std::str::FromStr for Setting {
     type Err = String;
 
@@ -44,8 +50,8 @@ pub struct Input {
 impl Input {
     /// Reads the design as [`read`](Input::read) does, and sets parameters of it.
     pub fn read_with(name: &str, settings: &[Setting], minor_radius: Option<f64>) -> Result<Input> {
-        let mut input = Self::read(name, None)?;
-        let mut words: Vec<String> = settings.iter().map(|set| format!("--set {}={}", set.name, set.value)).collect();
+        let mut input = Self::read(name)?;
+        let mut words: Vec<String> = settings.iter().map(|set| format!("--set {set}")).collect();
         if !settings.is_empty() {
             let values: Vec<_> = settings.iter().map(|set| (set.name.as_str(), set.value)).collect();
             let set = set_parameters(&input.design, &values);
@@ -60,7 +66,7 @@ impl Input {
     }
 
     /// Reads the built-in design `name`, the file of that path, or standard input for `-`.
-    pub fn read(name: &str, minor_radius: Option<f64>) -> Result<Input> {
+    pub fn read(name: &str) -> Result<Input> {
         let path = Path::new(name);
         let source = match builtin(name) {
             _ if name == "-" => {
@@ -85,11 +91,7 @@ impl Input {
                 Err(e) => return Err(e).into_diagnostic().wrap_err_with(|| format!("cannot read the design {name}")),
             },
         };
-        let mut design = source.read()?;
-        if let Some(r) = minor_radius {
-            design = design.with_minor_radius(r);
-        }
-        Ok(Input { design, source, changed: minor_radius.map(|r| format!("--minor-radius {r}")) })
+        Ok(Input { design: source.read()?, source, changed: None })
     }
 
     /// What is odd about the design, with the place in the file; nothing of it keeps it from being solved.
@@ -108,8 +110,11 @@ impl Input {
 
     /// The same design with the parameters of a study.
     pub fn varied(&self, variant: &Variant) -> Result<Input> {
-        let design = variant.of(&self.design).map_err(|e| wrong(exit::USAGE, e.problem, e.help))?;
-        Ok(Input { design, source: self.source.clone(), changed: variant.words() })
+        let changed = variant.words();
+        let design = variant
+            .of(&self.design)
+            .map_err(|problems| of_change(changed.as_deref().unwrap_or_default(), &problems))?;
+        Ok(Input { design, source: self.source.clone(), changed })
     }
 
     /// The design file.

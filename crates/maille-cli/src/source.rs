@@ -267,6 +267,11 @@ impl SourceArgs {
             false => text.to_owned(),
         };
         let mut line = format!("maille characterize {}", quoted(self.design.as_deref().unwrap_or(&design.name)));
+        line += &self.set.iter().map(|set| format!(" --set {set}")).collect::<String>();
+        if let Some(design) = record.map(|r| &r.run.design).filter(|_| self.design.is_none()) {
+            let set = design.free_parameters().filter(|p| design.varied.contains_key(&p.name));
+            line += &set.map(|p| format!(" --set {}={}", p.name, p.value)).collect::<String>();
+        }
         line += &at.direction.map_or(String::new(), |d| format!(" --directions {d}"));
         line += &at.l2.map_or(String::new(), |l2| format!(" --l2 {l2}"));
         let of_record = record.and_then(|r| r.run.design.minor_radius).filter(|_| self.design.is_none());

@@ -61,15 +61,15 @@ impl Variant {
     /// The design with its parameters. Refused where it has no such number.
     ///
     /// Its parameters are set first and at once: what the others set is no longer given by a formula.
-    pub fn of(&self, design: &Design) -> Result<Design, InvalidInput> {
+    pub fn of(&self, design: &Design) -> Result<Design, Vec<InvalidInput>> {
         let parameters = self.numbers.iter().filter_map(|(path, value)| Some((path.parameter()?, *value)));
-        let first = |problems: Vec<InvalidInput>| problems.into_iter().next().expect("an error has a problem");
-        let mut out = set_parameters(design, &parameters.collect::<Vec<_>>()).map_err(first)?;
+        let parameters: Vec<_> = parameters.collect();
+        let mut out = if parameters.is_empty() { design.clone() } else { set_parameters(design, &parameters)? };
         if let Some(r) = self.minor_radius {
             out = out.with_minor_radius(r);
         }
         for (path, value) in self.numbers.iter().filter(|(path, _)| path.parameter().is_none()) {
-            out = path.set(&out, *value)?;
+            out = path.set(&out, *value).map_err(|problem| vec![problem])?;
         }
         Ok(self.spacing.map_or(out.clone(), |factor| out.spaced(factor)))
     }
@@ -416,7 +416,7 @@ mod tests {
             ("starts = 0\n[[designs]]\ndesign = \"1.1\"", "too small", Some("0")),
             ("[[designs]]\ndesign = \"1.1\"\nspacing = [1.0, -2.0]", "-2 is not positive", Some("[1.0, -2.0]")),
             ("[[designs]]\ndesign = \"1.1\"\nminor_radius = true", "nor a range", Some("true")),
-            ("[[designs]]\ndesign = \"1.1\"\nvary = { radius = 3 }", "names no number", Some("3")),
+            ("[[designs]]\ndesign = \"1.1\"\nvary = { 4radius = 3 }", "names no number", Some("3")),
         ];
         for (text, problem, place) in cases {
             let error = Study::read("s", text).unwrap_err();

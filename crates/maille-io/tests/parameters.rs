@@ -1,6 +1,9 @@
 //! Named parameters of design files, and formulas over them.
 
-use maille::design::Design;
+use maille::{
+    design::{Design, Parameter},
+    record::LIMIT_COLUMNS,
+};
 use maille_io::{DesignSource, NumberPath, read_design, set_parameters, write_design};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -45,7 +48,7 @@ fn formulas_give_the_numbers_of_the_plain_file() {
     for _ in 0..200 {
         let mut between = |a: f64, b: f64| a + (b - a) * rng.random::<f64>();
         let (wire, radius, play, tilt) =
-            (between(0.4, 2.0), between(4.0, 8.0), between(0.7, 1.0), between(-30.0, 30.0));
+            (between(0.4, 2.0), between(4.0, 8.0), between(0.92, 1.2), between(-30.0, 30.0));
         let values = [("wire", wire), ("radius", radius), ("play", play), ("tilt", tilt)];
         let set = design.with_parameters(&values).unwrap();
         assert_eq!(plain(&set), written(wire, radius, play, tilt), "{values:?}");
@@ -105,6 +108,38 @@ fn studies_and_commands_set_parameters_by_name() {
     assert_eq!(error("tilt", f64::NAN).0, "its value NaN is not finite");
     let other = read_design("1.1", maille_io::builtin("1.1").unwrap()).unwrap();
     assert_eq!(path.set(&other, 1.0).unwrap_err().problem, "1.1 has no parameter radius");
+}
+
+/// A design made in code, or a record that was edited, may say two things of one number.
+#[test]
+fn a_number_that_is_not_its_formulas_is_refused() {
+    let mut design = square();
+    assert_eq!(design.problems(), []);
+    design.lattice.a1[0] *= 1.0 + 1e-12;
+    assert_eq!(design.problems(), [], "sines of machines differ by less");
+    design.lattice.a1[0] = 14.0;
+    design.parameters[4].value = 3.0;
+    let problems: Vec<String> = design.problems().iter().map(|p| format!("{}: {}", p.field, p.problem)).collect();
+    let of_pitch = "parameters.pitch: is 3, but its formula \"2.5 * play * radius\" gives 15";
+    assert_eq!(problems, [of_pitch, "lattice.a1[0]: is 14, but its formula \"pitch\" gives 15"]);
+    let settled = design.settled();
+    assert_eq!((settled.problems().len(), settled.lattice.a1[0], settled.parameters[4].value), (0, 14.0, 15.0));
+}
+
+/// Tables have a column for each parameter, beside their own.
+#[test]
+fn no_parameter_has_the_name_of_a_column() {
+    for name in LIMIT_COLUMNS.iter().map(|column| column.name).chain(["record", "direction", "r", "spacing"]) {
+        let parameter = Parameter { name: name.into(), value: 1.0, formula: None, min: None, max: None };
+        let problems = Design { parameters: vec![parameter], ..plain(&square()) }.problems();
+        assert!(problems.len() == 1 && problems[0].problem.contains("column of tables"), "{name}: {problems:?}");
+    }
+}
+
+#[test]
+fn a_parameter_is_set_once() {
+    let problems = square().with_parameters(&[("radius", 5.0), ("radius", 6.0)]).unwrap_err();
+    assert_eq!((problems[0].field.as_str(), problems[0].problem.as_str()), ("parameters.radius", "is set twice"));
 }
 
 /// Any text in place of a formula gives a design or an error with a place, and never a panic.

@@ -2,7 +2,9 @@
 
 use crate::error;
 use maille::{error::InvalidInput, lattice::Cell, model::Model, sheet::Sheet, survey::CellChoice};
-use maille_io::{DesignSource, NumberPath, builtin, builtin_designs, nearest_builtin, set_parameters, write_design};
+use maille_io::{
+    DesignSource, NumberPath, builtin, builtin_designs, nearest_builtin, set_parameters, study::Variant, write_design,
+};
 use pyo3::prelude::*;
 
 /// A design, with the file that its errors point into.
@@ -102,6 +104,14 @@ impl Design {
     /// Name, value, least and largest value, and whether it can be set.
     fn parameters(&self) -> Vec<(&str, f64, Option<f64>, Option<f64>, bool)> {
         self.design.parameters.iter().map(|p| (p.name.as_str(), p.value, p.min, p.max, p.is_free())).collect()
+    }
+
+    /// A variant of a study.
+    fn varied(&self, minor_radius: Option<f64>, numbers: Vec<(String, f64)>, spacing: Option<f64>) -> PyResult<Self> {
+        let path = |(path, value): &(String, f64)| Ok((path.parse::<NumberPath>()?, *value));
+        let numbers = numbers.iter().map(path).collect::<Result<Vec<_>, _>>().map_err(|e| error::invalid(&e))?;
+        let variant = Variant { suffix: String::new(), minor_radius, spacing, numbers };
+        Self::changed(variant.of(&self.design).map_err(|problems| error::design(&problems))?)
     }
 
     fn spaced(&self, factor: f64) -> PyResult<Self> {

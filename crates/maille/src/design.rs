@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 mod parameters;
 
-pub use parameters::Parameter;
+pub use parameters::{Parameter, TAKEN};
 
 /// Name in [`Design::varied`] of the factor by which distances between elements were multiplied.
 pub const SPACING: &str = "spacing";
@@ -173,6 +173,13 @@ impl Design {
     ///
     /// Overlap and links need the compiled model: see `Model`.
     pub fn problems(&self) -> Vec<InvalidInput> {
+        let mut out = self.problems_of_fields();
+        out.extend(self.problems_of_formulas());
+        out
+    }
+
+    /// The same but for parameters and formulas.
+    fn problems_of_fields(&self) -> Vec<InvalidInput> {
         let mut out = Problems::default();
         if self.schema != DESIGN_SCHEMA {
             out.add("schema", format!("version {} is not known", self.schema), "this program reads schema = 1");
@@ -210,7 +217,6 @@ impl Design {
                 self.add_problems_of(ring, &format!("{at}.rings[{k}]"), &mut out);
             }
         }
-        out.0.extend(self.evaluated().err().unwrap_or_default());
         out.0
     }
 

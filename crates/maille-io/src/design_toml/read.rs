@@ -4,8 +4,7 @@ use super::fields::{self, ELEMENT, LATTICE, PARAMETER, RING, TOP};
 use super::index::Index;
 use super::problem::DesignProblem;
 use crate::nearest::nearest;
-use maille::design::{DESIGN_SCHEMA, Design, ElementSpec, LatticeSpec, Parameter, RingSpec, SPACING, Source};
-use maille::record::LIMIT_COLUMNS;
+use maille::design::{DESIGN_SCHEMA, Design, ElementSpec, LatticeSpec, Parameter, RingSpec, Source};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use toml::Spanned;
@@ -38,17 +37,6 @@ pub(super) fn design(table: &DeTable<'_>, text: &str, index: &Index) -> (Option<
         }
     });
     (design, reader.problems)
-}
-
-/// Why a name cannot be that of a parameter: tables have columns of parameters beside their own, and studies set numbers by
-/// their names.
-fn taken(name: &str) -> Option<String> {
-    let column = LIMIT_COLUMNS.iter().any(|column| column.name == name) || ["record", "direction", "r"].contains(&name);
-    let field = name == SPACING || TOP.contains(&name);
-    (column || field).then(|| match column {
-        true => format!("{name} is the name of a column of tables"),
-        false => format!("{name} has another meaning in designs and studies"),
-    })
 }
 
 /// A table with its path and the place to point at where something is missing in it.
@@ -143,11 +131,6 @@ impl Reader<'_> {
         entries.sort_by_key(|(key, _)| key.span().start);
         let read = entries.into_iter().map(|(key, value)| {
             let path = format!("{path}.{}", key.get_ref());
-            if let Some(problem) = taken(key.get_ref()) {
-                let help = "give it another name";
-                self.problems.push(DesignProblem::new(&path, problem, help, key.span()));
-                return None;
-            }
             self.parameter(key.get_ref(), value, &path)
         });
         let read: Vec<_> = read.collect();

@@ -1,6 +1,6 @@
 //! Named parameters of a design, and the formulas that give its numbers.
 
-use super::Design;
+use super::{Design, SPACING};
 use crate::{
     error::{InvalidInput, nearest},
     formula::{Formula, NoFormula, is_name, is_reserved},
@@ -10,6 +10,65 @@ use std::collections::BTreeMap;
 
 /// Most parameters of a design: it bounds how long a chain of them can be.
 const MOST: usize = 500;
+
+/// Names of columns of tables, and of the numbers that studies vary: no parameter can have one of these.
+pub const TAKEN: [&str; 53] = [
+    SPACING,
+    "a1_x",
+    "a1_y",
+    "a2_x",
+    "a2_y",
+    "better_chance",
+    "bound_gap",
+    "bound_kind",
+    "bound_l1",
+    "by_cell",
+    "cell",
+    "complementarity",
+    "design",
+    "direction",
+    "direction_deg",
+    "dual_residual",
+    "end",
+    "grows_with_cell",
+    "image_of_deg",
+    "iterations",
+    "l1",
+    "l1_uncertified",
+    "l2",
+    "l2_max",
+    "l2_min",
+    "lambda1",
+    "lambda2",
+    "lateral",
+    "links_ok",
+    "max_overlap",
+    "method",
+    "min_curvature",
+    "min_gap",
+    "min_multiplier",
+    "minor_radius",
+    "n_distinct",
+    "n_starts",
+    "own_image_force",
+    "r",
+    "record",
+    "reference_radius",
+    "runs",
+    "shear",
+    "shear_max",
+    "shear_min",
+    "status",
+    "stretch1",
+    "stretch2",
+    "wall_s",
+    "wave_curvature",
+    "wave_q1",
+    "wave_q2",
+    "zero_modes",
+];
+/// How far a number may be from its formula's, as a part of it or of the reference radius: sines differ between machines.
+const AGREE: f64 = 1e-9;
 
 /// A named number of a design: given, and then free to change between its bounds, or computed from others.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -159,7 +218,7 @@ impl Design {
     /// The same design with other values of free parameters: all that is computed from them is computed anew. Parameters
     /// that are not named keep their values.
     ///
-    /// Refused are names that are no free parameter, values out of bounds, and values with which the design has
+    /// Refused are names that are no free parameter or are set twice, values out of bounds, and values with which the design has
     /// [`problems`](Design::problems).
     ///
     /// ```
@@ -174,8 +233,12 @@ impl Design {
     pub fn with_parameters(&self, values: &[(&str, f64)]) -> Result<Self, Vec<InvalidInput>> {
         let mut out = self.clone();
         let mut problems = Vec::new();
-        for (name, value) in values {
+        for (i, (name, value)) in values.iter().enumerate() {
             let field = format!("parameters.{name}");
+            if values[..i].iter().any(|(other, _)| other == name) {
+                problems.push(InvalidInput::new(field, "is set twice", "set it once"));
+                continue;
+            }
             match out.parameters.iter_mut().find(|p| p.name == *name) {
                 Some(parameter) if parameter.is_free() => parameter.value = *value,
                 Some(Parameter { formula, .. }) => {
@@ -194,7 +257,7 @@ impl Design {
             return Err(problems);
         }
         let out = out.evaluated()?;
-        let problems = out.problems();
+        let problems = out.problems_of_fields();
         if problems.is_empty() { Ok(out) } else { Err(problems) }
     }
 
@@ -246,8 +309,36 @@ impl Design {
         if is_reserved(name) {
             return wrong(format!("{name} means something else in formulas"), "give it another name");
         }
+        if TAKEN.contains(&name.as_str()) {
+            let problem = format!("{name} is the name of a column of tables, or of a number that studies vary");
+            return wrong(problem, "give it another name");
+        }
         let twice = self.parameters[..i].iter().any(|p| p.name == *name);
         twice.then(|| wrong("is there twice".into(), "give every parameter a name of its own")).flatten()
+    }
+
+    /// What is wrong with parameters and formulas: they cannot be evaluated, or a number is not what its formula gives.
+    pub(super) fn problems_of_formulas(&self) -> Vec<InvalidInput> {
+        let mut anew = match self.evaluated() {
+            Ok(anew) => anew,
+            Err(problems) => return problems,
+        };
+        let mut own = self.clone();
+        let least = self.reference_radius.abs();
+        let wrong = |field: String, number: f64, formula: &str, value: f64| {
+            let differs = (number - value).abs() > AGREE * number.abs().max(least) || number.is_nan();
+            let problem = format!("is {number}, but its formula \"{formula}\" gives {value}");
+            let help = "take the formula's number, or leave the formula out";
+            differs.then(|| InvalidInput::new(field, problem, help))
+        };
+        let parameters = self.parameters.iter().zip(&anew.parameters);
+        let mut out: Vec<_> =
+            parameters.filter_map(|(p, new)| wrong(p.field(), p.value, p.formula.as_deref()?, new.value)).collect();
+        for (place, formula) in &self.formulas {
+            let numbers = own.number_mut(place).copied().zip(anew.number_mut(place).copied());
+            out.extend(numbers.and_then(|(number, value)| wrong(place.clone(), number, formula, value)));
+        }
+        out
     }
 
     /// The same design without the formulas that no longer give the number at their place, because that was changed by other
@@ -262,6 +353,8 @@ impl Design {
             (self.parameters, self.formulas) = (Vec::new(), BTreeMap::new());
             return self;
         };
+        // Free parameters are as they are; what is computed from them may have been changed.
+        self.parameters.clone_from(&anew.parameters);
         let formulas = std::mem::take(&mut self.formulas);
         let count = formulas.len();
         for (place, text) in formulas {
