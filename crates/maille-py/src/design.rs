@@ -7,6 +7,9 @@ use maille_io::{
 };
 use pyo3::prelude::*;
 
+/// A parameter: name, value, least and largest value, and whether it can be set.
+type Named<'a> = (&'a str, f64, Option<f64>, Option<f64>, bool);
+
 /// A design, with the file that its errors point into.
 #[pyclass(frozen, module = "maille._native")]
 pub struct Design {
@@ -101,8 +104,8 @@ impl Design {
         Self::changed(set_parameters(&self.design, &values).map_err(|problems| error::design(&problems))?)
     }
 
-    /// Name, value, least and largest value, and whether it can be set.
-    fn parameters(&self) -> Vec<(&str, f64, Option<f64>, Option<f64>, bool)> {
+    /// The parameters, in the order of the file.
+    fn parameters(&self) -> Vec<Named<'_>> {
         self.design.parameters.iter().map(|p| (p.name.as_str(), p.value, p.min, p.max, p.is_free())).collect()
     }
 

@@ -4,6 +4,7 @@ use crate::error::InvalidInput;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
+mod formulas;
 mod parameters;
 
 pub use parameters::{Parameter, TAKEN};
