@@ -3,7 +3,7 @@
 use crate::{
     effort::SearchArgs,
     exit,
-    input::{Input, file_name},
+    input::{Input, Setting, file_name},
     interrupt,
     map::{RunArgs, pool},
     numbers::{positive, read},
@@ -71,6 +71,9 @@ pub struct Args {
     /// Minor radius of every ring that gives none, in the file's unit
     #[arg(long, value_parser = positive)]
     minor_radius: Option<f64>,
+    /// A value for a parameter of the design's file, as radius=5.0; several with commas
+    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',')]
+    set: Vec<Setting>,
     #[command(flatten)]
     search: SearchArgs,
     /// Folder that is written [default: maille-out/NAME-boundary]
@@ -85,7 +88,7 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    let input = Input::read(&args.design, args.minor_radius)?;
+    let input = Input::read_with(&args.design, &args.set, args.minor_radius)?;
     let options = BoundaryOptions {
         tolerance: args.tolerance,
         most: args.vertices as usize,

@@ -4,7 +4,7 @@ use crate::{
     effort::SearchArgs,
     exit::{self, refused},
     help::ENERGY,
-    input::{Input, file_name},
+    input::{Input, Setting, file_name},
     map::{self, RunArgs, Solved, unanswered},
     numbers::{Numbers, one_of, parse, parse_l2, positive, read},
     output,
@@ -74,6 +74,9 @@ pub struct Args {
     /// Minor radius of every ring that gives none, in the file's unit
     #[arg(long, value_parser = positive)]
     minor_radius: Option<f64>,
+    /// A value for a parameter of the design's file, as radius=5.0; several with commas
+    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',')]
+    set: Vec<Setting>,
     /// How a limit is found
     #[arg(long, value_enum, default_value_t = MethodArg::Exact)]
     method: MethodArg,
@@ -251,7 +254,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 
 fn once(args: &Args) -> Result<ExitCode> {
     let question = question(args).map_err(|e| refused(&e))?;
-    let input = Input::read(&args.design, args.minor_radius)?;
+    let input = Input::read_with(&args.design, &args.set, args.minor_radius)?;
     let folder = file_name(&input.design.name) + if args.compression { "-compression" } else { "" };
     let out = args.out.clone().unwrap_or_else(|| PathBuf::from("maille-out").join(folder));
     let overwrite = args.run.overwrite || args.watch;

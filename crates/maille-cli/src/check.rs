@@ -2,7 +2,7 @@
 
 use crate::{
     exit,
-    input::{Input, problems},
+    input::{Input, Setting, problems},
     output, remedy,
     watch::watch,
 };
@@ -31,6 +31,9 @@ pub struct Args {
     /// TOML files, built-in designs, or - for standard input
     #[arg(required = true, value_name = "FILE")]
     designs: Vec<String>,
+    /// A value for a parameter of the designs' files, as radius=5.0; several with commas
+    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',')]
+    set: Vec<Setting>,
     /// Print one JSON document; docs/json.md has its keys
     #[arg(long)]
     json: bool,
@@ -53,7 +56,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 fn once(args: &Args) -> Result<ExitCode> {
     let (mut files, mut worst) = (Vec::new(), exit::DONE);
     for name in &args.designs {
-        match check(name) {
+        match check(name, &args.set) {
             Ok(found) => {
                 if !args.json {
                     for warning in &found.warnings {
@@ -96,8 +99,8 @@ struct Found {
     bound: bool,
 }
 
-fn check(name: &str) -> Result<Found, Report> {
-    let input = Input::read(name, None)?;
+fn check(name: &str, settings: &[Setting]) -> Result<Found, Report> {
+    let input = Input::read_with(name, settings, None)?;
     let model = input.compile(&input.design, Cell::PRIMITIVE)?;
     Ok(Found {
         file: name.to_owned(),

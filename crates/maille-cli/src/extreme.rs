@@ -5,7 +5,7 @@ use crate::{
     certificate,
     effort::SearchArgs,
     exit::{self, refused, wrong},
-    input::Input,
+    input::{Input, Setting},
     interrupt,
     map::pool,
     numbers::positive,
@@ -74,6 +74,9 @@ struct Common {
     /// Minor radius of every ring that gives none, in the file's unit
     #[arg(long, value_parser = positive)]
     minor_radius: Option<f64>,
+    /// A value for a parameter of the design's file, as radius=5.0; several with commas
+    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',')]
+    set: Vec<Setting>,
     /// Whether the lattice may change [default: free for tightest, fixed for roomiest]
     #[arg(long, value_enum)]
     lattice: Option<Lattice>,
@@ -125,7 +128,7 @@ pub fn closest(design: &Design, gap: f64) -> Extreme {
 
 fn run(args: &Common, what: impl FnOnce(&Design) -> Extreme) -> Result<ExitCode> {
     args.save.iter().try_for_each(|file| args.replace.check(file))?;
-    let input = Input::read(&args.design, args.minor_radius)?;
+    let input = Input::read_with(&args.design, &args.set, args.minor_radius)?;
     let what = what(&input.design);
     let begun = Instant::now();
     let answer = search(&input, what, args.lattice, args.search, args.threads)?;

@@ -7,11 +7,36 @@ use maille::{
 pub use maille_io::record::file_name;
 use maille_io::{
     DesignError, DesignSource, ListedProblem, builtin, builtin_designs, mesh::millimetres, nearest_builtin,
-    study::Variant, write_design,
+    set_parameters, study::Variant, write_design,
 };
 use miette::{IntoDiagnostic, Report, Result, WrapErr};
 use serde_json::{Value, json};
 use std::{io::Read, path::Path};
+
+/// A value for a parameter of the design, as `radius=5.0`.
+#[derive(Clone, Debug)]
+pub struct Setting {
+    name: String,
+    value: f64,
+}
+
+impl std::fmt::Display for Setting {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}={}", self.name, self.value)
+    }
+}
+
+impl std::str::FromStr for Setting {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Setting, String> {
+        let value = |text: &str| text.trim().parse::<f64>().ok().filter(|x| x.is_finite());
+        match text.split_once('=').and_then(|(name, number)| Some((name.trim(), value(number)?))) {
+            Some((name, value)) if !name.is_empty() => Ok(Setting { name: name.to_owned(), value }),
+            _ => Err(format!("\"{text}\" sets no parameter; write NAME=NUMBER, as radius=5.0")),
+        }
+    }
+}
 
 /// A design as read, with the text that its errors point into.
 pub struct Input {
@@ -23,8 +48,25 @@ pub struct Input {
 }
 
 impl Input {
+    /// Reads the design as [`read`](Input::read) does, and sets parameters of it.
+    pub fn read_with(name: &str, settings: &[Setting], minor_radius: Option<f64>) -> Result<Input> {
+        let mut input = Self::read(name)?;
+        let mut words: Vec<String> = settings.iter().map(|set| format!("--set {set}")).collect();
+        if !settings.is_empty() {
+            let values: Vec<_> = settings.iter().map(|set| (set.name.as_str(), set.value)).collect();
+            let set = set_parameters(&input.design, &values);
+            input.design = set.map_err(|problems| of_change(&words.join(" "), &problems))?;
+        }
+        if let Some(r) = minor_radius {
+            input.design = input.design.with_minor_radius(r);
+            words.push(format!("--minor-radius {r}"));
+        }
+        input.changed = (!words.is_empty()).then(|| words.join(" "));
+        Ok(input)
+    }
+
     /// Reads the built-in design `name`, the file of that path, or standard input for `-`.
-    pub fn read(name: &str, minor_radius: Option<f64>) -> Result<Input> {
+    pub fn read(name: &str) -> Result<Input> {
         let path = Path::new(name);
         let source = match builtin(name) {
             _ if name == "-" => {
@@ -49,11 +91,7 @@ impl Input {
                 Err(e) => return Err(e).into_diagnostic().wrap_err_with(|| format!("cannot read the design {name}")),
             },
         };
-        let mut design = source.read()?;
-        if let Some(r) = minor_radius {
-            design = design.with_minor_radius(r);
-        }
-        Ok(Input { design, source, changed: minor_radius.map(|r| format!("--minor-radius {r}")) })
+        Ok(Input { design: source.read()?, source, changed: None })
     }
 
     /// What is odd about the design, with the place in the file; nothing of it keeps it from being solved.
@@ -63,13 +101,20 @@ impl Input {
             let problem = format!("\"{unit}\" is not a known unit: no weight, no size in millimetres");
             found.push(InvalidInput::new("unit", problem, "known are mm, cm, m, um, in and ft"));
         }
+        found.extend(self.design.unused_parameters().map(|p| {
+            let help = "name it in a formula, or leave it out";
+            InvalidInput::new(format!("parameters.{}", p.name), format!("nothing uses the parameter {}", p.name), help)
+        }));
         self.source.explain(&found).list()
     }
 
     /// The same design with the parameters of a study.
     pub fn varied(&self, variant: &Variant) -> Result<Input> {
-        let design = variant.of(&self.design).map_err(|e| wrong(exit::USAGE, e.problem, e.help))?;
-        Ok(Input { design, source: self.source.clone(), changed: variant.words() })
+        let changed = variant.words();
+        let design = variant
+            .of(&self.design)
+            .map_err(|problems| of_change(changed.as_deref().unwrap_or_default(), &problems))?;
+        Ok(Input { design, source: self.source.clone(), changed })
     }
 
     /// The design file.

@@ -2,7 +2,7 @@
 
 use crate::{
     exit,
-    input::Input,
+    input::{Input, Setting},
     inspect_piece::{OfCell, Piece, other_states},
     numbers::{positive, read},
     output,
@@ -43,6 +43,9 @@ pub struct Args {
     /// Minor radius of every ring that gives none, in the file's unit
     #[arg(long, value_parser = positive)]
     minor_radius: Option<f64>,
+    /// A value for a parameter of the design's file, as radius=5.0; several with commas
+    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',')]
+    set: Vec<Setting>,
     /// Cell: 1x1, 2x1, … or an integer matrix as "1,0;-1,2"
     #[arg(long, default_value = "1x1", value_parser = read::<Cell>)]
     cell: Cell,
@@ -155,7 +158,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 }
 
 fn once(args: &Args) -> Result<ExitCode> {
-    let input = Input::read(&args.design, args.minor_radius)?;
+    let input = Input::read_with(&args.design, &args.set, args.minor_radius)?;
     // Overlaps are shown here, not refused.
     let model = input.compile(&tolerant(&input.design), args.cell)?;
     let found = inspection(&input, &model, args)?;

@@ -4,7 +4,7 @@ use crate::{
     certificate,
     effort::SearchArgs,
     exit::{self, refused, wrong},
-    input::Input,
+    input::{Input, Setting},
     interrupt,
     numbers::{finite, one_of, positive, read},
     output::{self, say},
@@ -58,6 +58,9 @@ pub struct Args {
     /// Minor radius of every ring that gives none, in the file's unit
     #[arg(long, value_parser = positive)]
     minor_radius: Option<f64>,
+    /// A value for a parameter of the design's file, as radius=5.0; several with commas
+    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',')]
+    set: Vec<Setting>,
     /// Cell: 1x1, 2x1, …, an integer matrix as "1,0;-1,2", or auto: larger cells where an element presses on its own image or a wave
     /// through the sheet is unstable, and all up to 3x3 with --minimize
     #[arg(long, default_value = "auto", value_parser = read::<CellChoice>)]
@@ -112,7 +115,7 @@ fn question(args: &Args) -> Result<Question> {
 pub fn run(args: &Args) -> Result<ExitCode> {
     let question = question(args)?;
     question.check().map_err(|e| refused(&e))?;
-    let input = Input::read(&args.design, args.minor_radius)?;
+    let input = Input::read_with(&args.design, &args.set, args.minor_radius)?;
     let sheet = input.sheet(args.cell.clone())?;
     let cancel = interrupt::flag(false)?;
     let begun = Instant::now();

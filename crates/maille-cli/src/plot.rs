@@ -172,6 +172,7 @@ pub fn run(args: &Args) -> Result<()> {
         return args.figure.write(&svg, &format!("maille-out/boundary-{}", file_name(&record.design.name)));
     }
     let mut records = records::read(&args.records).map_err(|report| of_simulation(args, report))?;
+    table::known(&args.conditions, &records)?;
     // Of all rows, not only of those that are shown.
     let mut cells = reference_cells(args.reference, &records)?;
     for named in &mut records {

@@ -3,7 +3,7 @@
 use crate::{
     effort::SearchArgs,
     exit::{self, refused, wrong},
-    input::{Input, file_name},
+    input::{Input, Setting, file_name},
     interrupt,
     map::pool,
     numbers::{finite, positive},
@@ -52,6 +52,9 @@ pub struct Args {
     /// Minor radius of every ring that gives none, in the file's unit
     #[arg(long, value_parser = positive)]
     minor_radius: Option<f64>,
+    /// A value for a parameter of the design's file, as radius=5.0; several with commas
+    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',')]
+    set: Vec<Setting>,
     /// How far above the limit that is found the proved value may be
     #[arg(long, default_value_t = 1e-3, value_parser = positive, value_name = "L1")]
     within: f64,
@@ -84,7 +87,7 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    let input = Input::read(&args.design, args.minor_radius)?;
+    let input = Input::read_with(&args.design, &args.set, args.minor_radius)?;
     let file = args.out.clone().unwrap_or_else(|| usual_file(args, &input));
     args.replace.check(&file)?;
     input.compile(&input.design, Cell::PRIMITIVE)?;

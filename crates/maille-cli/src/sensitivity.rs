@@ -3,7 +3,7 @@
 use crate::{
     effort::SearchArgs,
     exit::{self, refused, wrong},
-    input::Input,
+    input::{Input, Setting},
     interrupt,
     numbers::{finite, positive, read},
     output::{self, say},
@@ -42,6 +42,9 @@ pub struct Args {
     /// Minor radius of every ring that gives none, in the file's unit
     #[arg(long, value_parser = positive)]
     minor_radius: Option<f64>,
+    /// A value for a parameter of the design's file, as radius=5.0; several with commas
+    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',')]
+    set: Vec<Setting>,
     /// Cell: 1x1, 2x1, …, an integer matrix as "1,0;-1,2", or auto
     #[arg(long, default_value = "auto", value_parser = read::<CellChoice>)]
     cell: CellChoice,
@@ -56,7 +59,7 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<ExitCode> {
     let question = args.search.of(Question::stretch_along(args.direction).with_lateral(args.l2));
     question.check().map_err(|e| refused(&e))?;
-    let input = Input::read(&args.design, args.minor_radius)?;
+    let input = Input::read_with(&args.design, &args.set, args.minor_radius)?;
     let sheet = input.sheet(args.cell.clone())?;
     let cancel = interrupt::flag(false)?;
     let begun = Instant::now();

@@ -2,7 +2,7 @@
 
 use crate::{
     exit::{self, wrong},
-    input::{Input, file_name},
+    input::{Input, Setting, file_name},
     interrupt,
     numbers::positive,
     output::{self, counted},
@@ -95,6 +95,9 @@ pub struct Args {
     /// Minor radius of every ring that gives none, in the file's unit
     #[arg(long, value_parser = positive)]
     minor_radius: Option<f64>,
+    /// A value for a parameter of the design's file, as radius=5.0; several with commas
+    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',')]
+    set: Vec<Setting>,
     /// Weight of the contacts against the pulls, alpha/beta
     #[arg(long, default_value_t = EnergyOptions::default().alpha, value_parser = positive)]
     alpha: f64,
@@ -185,7 +188,7 @@ fn refused(problem: InvalidInput) -> Report {
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    let input = Input::read(&args.design, args.minor_radius)?;
+    let input = Input::read_with(&args.design, &args.set, args.minor_radius)?;
     let out = args
         .out
         .clone()

@@ -4,7 +4,7 @@ use crate::{
     at::{At, Place, parse_place},
     exit::{self, wrong},
     extreme::{Lattice, as_design, word as extreme_word},
-    input::{Input, file_name},
+    input::{Input, Setting, file_name},
     numbers::positive,
     output::counted,
 };
@@ -45,6 +45,9 @@ pub struct SourceArgs {
     /// Minor radius of every ring that gives none, in the file's unit
     #[arg(long, value_parser = positive, conflicts_with = "from")]
     pub minor_radius: Option<f64>,
+    /// A value for a parameter of the design's file, as radius=5.0; several with commas
+    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',', conflicts_with = "from")]
+    pub set: Vec<Setting>,
 }
 
 /// A design, compiled, and perhaps a state of a record.
@@ -85,9 +88,13 @@ pub struct Wanted {
 }
 
 impl SourceArgs {
+    fn input(&self) -> Result<Option<Input>> {
+        self.design.as_deref().map(|name| Input::read_with(name, &self.set, self.minor_radius)).transpose()
+    }
+
     /// Reads the design and its state, from the record where one is asked for.
     pub fn read(&self, wanted: Wanted) -> Result<Source> {
-        let input = self.design.as_deref().map(|name| Input::read(name, self.minor_radius)).transpose()?;
+        let input = self.input()?;
         let at = match self.at {
             Some(Place::Extreme(what)) => return self.of_extreme(input.as_ref(), what, wanted),
             Some(Place::At(at)) => Some(at),
@@ -118,8 +125,7 @@ impl SourceArgs {
 
     /// The closest cell of the design, whose gap the design and its unit tell.
     pub fn closest(&self, what: impl FnOnce(&Design) -> Result<Extreme>) -> Result<Source> {
-        let input = self.design.as_deref().map(|name| Input::read(name, self.minor_radius)).transpose()?;
-        let Some(input) = input else {
+        let Some(input) = self.input()? else {
             return Err(wrong(exit::USAGE, "there is no design to find the closest cell of", "name one"));
         };
         let what = what(&input.design)?;
@@ -278,6 +284,11 @@ impl SourceArgs {
             false => text.to_owned(),
         };
         let mut line = format!("maille characterize {}", quoted(self.design.as_deref().unwrap_or(&design.name)));
+        line += &self.set.iter().map(|set| format!(" --set {set}")).collect::<String>();
+        if let Some(design) = record.map(|r| &r.run.design).filter(|_| self.design.is_none()) {
+            let set = design.free_parameters().filter(|p| design.varied.contains_key(&p.name));
+            line += &set.map(|p| format!(" --set {}={}", p.name, p.value)).collect::<String>();
+        }
         line += &at.direction.map_or(String::new(), |d| format!(" --directions {d}"));
         line += &at.l2.map_or(String::new(), |l2| format!(" --l2 {l2}"));
         let of_record = record.and_then(|r| r.run.design.minor_radius).filter(|_| self.design.is_none());

@@ -184,7 +184,7 @@ fn plan(study: &Study, folder: &Path, out: &Path, overwrite: bool) -> Result<Pla
         let StudyDesign { design, name, .. } = of_study;
         let file = folder.join(design);
         let found = if builtin(design).is_some() { design.clone() } else { file.display().to_string() };
-        let input = match Input::read(&found, None) {
+        let input = match Input::read(&found) {
             Ok(input) => input,
             Err(report) => {
                 plan.unused.push((design.clone(), report));

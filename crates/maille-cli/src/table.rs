@@ -86,6 +86,16 @@ pub fn conditions(text: &str) -> Result<Conditions, TableError> {
     Condition::parse_list(text).map(Conditions)
 }
 
+/// Refuses conditions on a column that none of the records has.
+pub fn known(conditions: &[Conditions], records: &[NamedRecord]) -> Result<()> {
+    let mut all = conditions.iter().flat_map(|conditions| &conditions.0);
+    all.try_for_each(|condition| condition.check(records)).map_err(refused)
+}
+
+fn refused(error: TableError) -> miette::Report {
+    wrong(exit::USAGE, error.problem, error.help)
+}
+
 fn keys(text: &str) -> Result<Keys, TableError> {
     SortKey::parse_list(text).map(Keys)
 }
@@ -130,9 +140,12 @@ fn written(args: &Args, records: &[NamedRecord], format: Format) -> Result<Vec<u
         (None, Format::Text) => Field::first_look(records),
         _ => Field::all(records, records.len() > 1),
     };
+    fields.iter().try_for_each(|field| field.check(records)).map_err(refused)?;
+    known(&args.conditions, records)?;
     let mut table = Table::new(records, fields);
     table.keep(&args.conditions.iter().flat_map(|c| c.0.clone()).collect::<Vec<_>>());
     if let Some(Keys(keys)) = &args.sort {
+        keys.iter().try_for_each(|key| key.check(records)).map_err(refused)?;
         table.sort(keys);
     }
     if format != Format::Text {

@@ -109,14 +109,14 @@ mod with_viewer {
             };
             return Opened::folder(what, path)?.ok_or_else(none);
         }
-        let input = Input::read(what, None)?;
+        let input = Input::read(what)?;
         let file = path.is_file().then(|| path.to_owned());
         Ok(Opened { name: what.to_owned(), file, text: input.text().to_owned(), record: None })
     }
 
     fn bundle(args: &Args, mut opened: Opened, out: &Path) -> Result<()> {
         if opened.record.is_none() {
-            let input = Input::read(&args.design, None)?;
+            let input = Input::read(&args.design)?;
             input.compile(&input.design, maille::lattice::Cell::PRIMITIVE)?;
             let map = map_of_bundle(args.directions.0.clone(), args.l2.0.clone()).map_err(report)?;
             let cancel = interrupt::flag(false)?;

@@ -53,6 +53,7 @@ fn prepare(folder: &Path) {
     copy("tests/errors/syntax-decimal-comma.toml", "comma.toml");
     copy("crates/maille-io/designs/1.1.toml", "mine.toml");
     copy("crates/maille-io/designs/1.2.toml", "other.toml");
+    copy("examples/parameters/square.toml", "square.toml");
     let overlapping =
         fs::read_to_string(folder.join("mine.toml")).unwrap().replace("minor_radius = 0.1", "minor_radius = 0.3");
     fs::write(folder.join("overlap.toml"), overlapping).unwrap();

@@ -124,3 +124,36 @@ fn limits_that_are_not_found_may_be_allowed() {
     );
     done(folder.path(), &format!("{hard} --allow-incomplete"));
 }
+
+/// The limit along x of this weave is that of two rings in a row, pulled straight: 4 R − 4 r over the pitch, minus 1.
+#[test]
+fn a_parameter_is_varied_by_its_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/parameters/square.toml");
+    fs::copy(example, folder.join("square.toml")).unwrap();
+    let study = "directions = 0\nl2 = 0\ncell = \"1x1\"\n[[designs]]\ndesign = \"square.toml\"\n\
+                 [designs.vary]\nplay = [0.95, 1, 1.3]\nwire = 1\n";
+    fs::write(folder.join("play.toml"), study).unwrap();
+    let some = maille(folder, "sweep play.toml -q");
+    let said = String::from_utf8_lossy(&some.stderr).into_owned();
+    assert_eq!(some.status.code(), Some(6), "{said}");
+    assert!(said.contains("square-play1.3-wire1 could not be used"), "{said}");
+    assert!(said.contains("parameters.play: 1.3 is above max = 1.2"), "{said}");
+    let table = done(folder, "table play --columns record,play,wire,radius,l1 --format csv");
+    let mut rows = 0;
+    for row in table.lines().skip(1) {
+        let cells: Vec<&str> = row.split(',').collect();
+        let [play, wire, radius, l1] = [1, 2, 3, 4].map(|k: usize| cells[k].parse::<f64>().unwrap());
+        assert_eq!((wire, radius), (1.0, 6.0));
+        let expected = (4.0 * radius - 2.0 * wire) / (2.5 * play * radius) - 1.0;
+        assert!((l1 - expected).abs() < 1e-8, "{row}: {expected}");
+        rows += 1;
+    }
+    assert_eq!(rows, 2);
+    assert_eq!(done(folder, "table play --where play<1 --columns play --format csv"), "play\n0.95\n");
+    done(folder, "verify maille-out/play/records/square-play0.95-wire1");
+    let wrong = maille(folder, "table play --columns playy");
+    assert_eq!(wrong.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&wrong.stderr).contains("did you mean play?"));
+}

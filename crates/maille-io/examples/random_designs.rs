@@ -166,6 +166,8 @@ fn attempt(name: &str, kind: Kind, rng: &mut ChaCha8Rng) -> Option<Design> {
         lattice: lattice(groups, kind, &style, rng),
         elements: Vec::new(),
         varied: std::collections::BTreeMap::new(),
+        parameters: Vec::new(),
+        formulas: std::collections::BTreeMap::new(),
     };
     for _ in 0..groups {
         grow(&mut design, kind, &style, rng)?;

@@ -8,7 +8,7 @@ mod read;
 mod syntax;
 mod write;
 
-pub use number::NumberPath;
+pub use number::{NumberPath, set_parameters};
 pub(crate) use problem::line_column;
 pub use problem::{DesignError, DesignProblem, ListedProblem};
 pub use write::write_design;

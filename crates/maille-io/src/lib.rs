@@ -28,7 +28,8 @@ pub mod weave;
 
 pub use builtin::{Builtin, builtin, builtin_designs, chapter6, nearest_builtin};
 pub use design_toml::{
-    DESIGN_JSON_SCHEMA, DesignError, DesignProblem, DesignSource, ListedProblem, NumberPath, read_design, write_design,
+    DESIGN_JSON_SCHEMA, DesignError, DesignProblem, DesignSource, ListedProblem, NumberPath, read_design,
+    set_parameters, write_design,
 };
 pub use quantity::Quantity;
 pub use tile::Tile;

@@ -1,7 +1,7 @@
 //! Studies: which maps of which designs, in one TOML file.
 
 use crate::{
-    design_toml::{NumberPath, line_column},
+    design_toml::{NumberPath, line_column, set_parameters},
     numbers::{Numbers, parse, parse_l2},
     quantity::Quantity,
     run::Map,
@@ -59,10 +59,17 @@ pub struct Variant {
 
 impl Variant {
     /// The design with its parameters. Refused where it has no such number.
-    pub fn of(&self, design: &Design) -> Result<Design, InvalidInput> {
-        let mut out = self.minor_radius.map_or_else(|| design.clone(), |r| design.with_minor_radius(r));
-        for (path, value) in &self.numbers {
-            out = path.set(&out, *value)?;
+    ///
+    /// Its parameters are set first and at once: what the others set is no longer given by a formula.
+    pub fn of(&self, design: &Design) -> Result<Design, Vec<InvalidInput>> {
+        let parameters = self.numbers.iter().filter_map(|(path, value)| Some((path.parameter()?, *value)));
+        let parameters: Vec<_> = parameters.collect();
+        let mut out = if parameters.is_empty() { design.clone() } else { set_parameters(design, &parameters)? };
+        if let Some(r) = self.minor_radius {
+            out = out.with_minor_radius(r);
+        }
+        for (path, value) in self.numbers.iter().filter(|(path, _)| path.parameter().is_none()) {
+            out = path.set(&out, *value).map_err(|problem| vec![problem])?;
         }
         Ok(self.spacing.map_or(out.clone(), |factor| out.spaced(factor)))
     }
@@ -409,7 +416,7 @@ mod tests {
             ("starts = 0\n[[designs]]\ndesign = \"1.1\"", "too small", Some("0")),
             ("[[designs]]\ndesign = \"1.1\"\nspacing = [1.0, -2.0]", "-2 is not positive", Some("[1.0, -2.0]")),
             ("[[designs]]\ndesign = \"1.1\"\nminor_radius = true", "nor a range", Some("true")),
-            ("[[designs]]\ndesign = \"1.1\"\nvary = { radius = 3 }", "names no number", Some("3")),
+            ("[[designs]]\ndesign = \"1.1\"\nvary = { 4radius = 3 }", "names no number", Some("3")),
         ];
         for (text, problem, place) in cases {
             let error = Study::read("s", text).unwrap_err();

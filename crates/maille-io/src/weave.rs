@@ -235,6 +235,8 @@ impl Weave {
             lattice: LatticeSpec { a1: lattice[0].map(length), a2: lattice[1].map(length) },
             elements: placed.into_iter().map(element).collect(),
             varied: BTreeMap::new(),
+            parameters: Vec::new(),
+            formulas: BTreeMap::new(),
         };
         match self.clearance(&design) {
             Some((distance, pair)) if distance <= 2.0 * minor => Err(WeaveError::TooThick {

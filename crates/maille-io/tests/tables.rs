@@ -115,7 +115,8 @@ fn what_a_study_varies_is_a_column() {
 
 #[test]
 fn columns_are_named_once_and_known() {
-    let message = |text: &str| Field::parse_list(text).unwrap_err().to_string();
+    let checked = |text: &str| Field::parse_list(text)?.iter().try_for_each(|field| field.check(&two()));
+    let message = |text: &str| checked(text).unwrap_err().to_string();
     assert_eq!(message("l1,lambda3"), "there is no column \"lambda3\"; did you mean lambda1?");
     assert_eq!(message("direction,l1,direction_deg"), "column direction_deg is named twice; name each column once");
     assert!(message("xyz").ends_with("wave_q2, record, spacing"));

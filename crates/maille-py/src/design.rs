@@ -2,8 +2,13 @@
 
 use crate::error;
 use maille::{error::InvalidInput, lattice::Cell, model::Model, sheet::Sheet, survey::CellChoice};
-use maille_io::{DesignSource, NumberPath, builtin, builtin_designs, nearest_builtin, write_design};
+use maille_io::{
+    DesignSource, NumberPath, builtin, builtin_designs, nearest_builtin, set_parameters, study::Variant, write_design,
+};
 use pyo3::prelude::*;
+
+/// A parameter: name, value, least and largest value, and whether it can be set.
+type Named<'a> = (&'a str, f64, Option<f64>, Option<f64>, bool);
 
 /// A design, with the file that its errors point into.
 #[pyclass(frozen, module = "maille._native")]
@@ -92,6 +97,24 @@ impl Design {
     fn with_number(&self, path: &str, value: f64) -> PyResult<Self> {
         let path: NumberPath = path.parse().map_err(|e| error::invalid(&e))?;
         Self::changed(path.set(&self.design, value).map_err(|e| error::invalid(&e))?)
+    }
+
+    fn with_parameters(&self, values: Vec<(String, f64)>) -> PyResult<Self> {
+        let values: Vec<(&str, f64)> = values.iter().map(|(name, value)| (name.as_str(), *value)).collect();
+        Self::changed(set_parameters(&self.design, &values).map_err(|problems| error::design(&problems))?)
+    }
+
+    /// The parameters, in the order of the file.
+    fn parameters(&self) -> Vec<Named<'_>> {
+        self.design.parameters.iter().map(|p| (p.name.as_str(), p.value, p.min, p.max, p.is_free())).collect()
+    }
+
+    /// A variant of a study.
+    fn varied(&self, minor_radius: Option<f64>, numbers: Vec<(String, f64)>, spacing: Option<f64>) -> PyResult<Self> {
+        let path = |(path, value): &(String, f64)| Ok((path.parse::<NumberPath>()?, *value));
+        let numbers = numbers.iter().map(path).collect::<Result<Vec<_>, _>>().map_err(|e| error::invalid(&e))?;
+        let variant = Variant { suffix: String::new(), minor_radius, spacing, numbers };
+        Self::changed(variant.of(&self.design).map_err(|problems| error::design(&problems))?)
     }
 
     fn spaced(&self, factor: f64) -> PyResult<Self> {

@@ -1,6 +1,7 @@
 """Maps, studies and surfaces on a cluster are those of one process, bit for bit, whatever happens to the workers."""
 
 import csv
+import json
 import operator
 import os
 import pickle
@@ -22,7 +23,9 @@ from maille.errors import ChainError, OtherInputsError, StudyError
 
 distributed = pytest.importorskip("distributed")
 import maille.dask  # noqa: E402
+from maille import _native  # noqa: E402
 from maille.dask import __main__ as command  # noqa: E402
+from maille.dask import _study  # noqa: E402
 from maille.dask._client import results  # noqa: E402
 
 STUDY = """\
@@ -279,3 +282,19 @@ def test_ctrl_c_leaves_what_was_found_and_the_same_command_goes_on(study, by_pro
     done = run(*arguments[3:])
     assert done.returncode in (0, 5) and f"{8 - found} of 8 chains now" in done.stdout
     same_run(out, by_program)
+
+
+def test_variants_with_parameters_are_those_of_the_program(program, tmp_path):
+    """Parameters are set first: a minor radius that is set before leaves none of `wire`."""
+    example = Path(__file__).parents[3] / "examples/parameters/square.toml"
+    text = 'directions = 0\nstarts = 1\n[[designs]]\ndesign = "square.toml"\nminor_radius = 0.5\n[designs.vary]\n'
+    (tmp_path / "square.toml").write_text(example.read_text())
+    (tmp_path / "study.toml").write_text(text + "radius = [5, 9]\nwire = 1.1\n")
+    out = tmp_path / "swept"
+    done = subprocess.run([program, "sweep", tmp_path / "study.toml", "--quiet", "--out", out], check=False)
+    assert done.returncode == 6
+    plan = _study._plan(json.loads(_native.study("study.toml", (tmp_path / "study.toml").read_text())), tmp_path)
+    made, refused = (plan[f"square-r0.5-radius{radius}-wire1.1"][0] for radius in (5, 9))
+    assert made == maille.read_record(out / "records/square-r0.5-radius5-wire1.1").design
+    assert made.minor_radius == 0.5 and made.reference_radius == 5.0
+    assert isinstance(refused, maille.DesignError) and "9 is above max = 8" in str(refused)

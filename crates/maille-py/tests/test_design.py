@@ -1,5 +1,7 @@
 """Designs: read, made, varied, saved; and what is wrong with them."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -108,3 +110,35 @@ def test_wrong_arguments():
         with pytest.raises(maille.ArgumentError) as raised:
             maille.characterize("1.1", **wrong)
         assert raised.value.argument == name, wrong
+
+
+SQUARE = Path(__file__).parents[3] / "examples/parameters/square.toml"
+
+
+def test_parameters_give_the_numbers_that_are_computed_from_them():
+    design = Design.load(SQUARE)
+    assert design.parameters == {"wire": 1.2, "radius": 6.0, "play": 1.0, "tilt": 0.0, "pitch": 15.0}
+    free = {"wire": (0.4, 2.0), "radius": (4.0, 8.0), "play": (0.92, 1.2), "tilt": (None, None)}
+    assert design.free_parameters == free
+    other = design.with_parameters(radius=5, play=1.1)
+    assert (other.reference_radius, other.a1) == (5.0, (other.parameters["pitch"], 0.0, 0.0))
+    assert other.parameters["pitch"] == pytest.approx(2.5 * 1.1 * 5)
+    assert design.parameters["radius"] == 6.0, "the design itself is as it was"
+    # By hand: two rings in a row, pulled straight, are 4 R - 4 r long.
+    record = maille.characterize(other, [0], [0], cell="1x1")
+    assert record.to_numpy()["l1"][0] == pytest.approx((4 * 5 - 4 * 0.6) / 13.75 - 1, abs=1e-8)
+    # What another way of setting a number leaves of them.
+    assert "wire" not in design.with_minor_radius(0.3).parameters
+
+
+def test_wrong_parameters_are_named():
+    design = Design.load(SQUARE)
+    for values, said in (
+        (dict(raduis=5), "did you mean radius"),
+        (dict(radius=9), "9 is above max = 8"),
+        (dict(pitch=9), "is computed as"),
+        (dict(tilt=float("nan")), "not finite"),
+    ):
+        with pytest.raises(maille.DesignError, match=said) as raised:
+            design.with_parameters(**values)
+        assert raised.value.problems[0].field == f"parameters.{next(iter(values))}"

@@ -4,6 +4,11 @@ use crate::error::InvalidInput;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
+mod formulas;
+mod parameters;
+
+pub use parameters::{Parameter, TAKEN};
+
 /// Name in [`Design::varied`] of the factor by which distances between elements were multiplied.
 pub const SPACING: &str = "spacing";
 
@@ -58,6 +63,13 @@ pub struct Design {
     /// Numbers that a study has set, by their names: columns of its tables. No part of a design file.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub varied: BTreeMap<String, f64>,
+    /// Named numbers, in the order of the file.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub parameters: Vec<Parameter>,
+    /// Formulas over the parameters, by the place of the number that each gives: `lattice.a1[0]`,
+    /// `elements[2].rings[0].major_radius`. The number itself is at its place as well.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub formulas: BTreeMap<String, String>,
 }
 
 fn default_schema() -> u32 {
@@ -105,7 +117,7 @@ pub struct RingSpec {
 impl Design {
     /// The same design with another common minor radius; rings with their own keep it.
     pub fn with_minor_radius(&self, minor_radius: f64) -> Self {
-        Self { minor_radius: Some(minor_radius), ..self.clone() }
+        Self { minor_radius: Some(minor_radius), ..self.clone() }.settled()
     }
 
     /// The same rings `factor` times as far apart: lattice vectors and centres of elements are multiplied.
@@ -114,7 +126,7 @@ impl Design {
         let centers = out.elements.iter_mut().map(|element| &mut element.center);
         centers.chain([&mut out.lattice.a1, &mut out.lattice.a2]).flatten().for_each(|x| *x *= factor);
         *out.varied.entry(SPACING.into()).or_insert(1.0) *= factor;
-        out
+        out.settled()
     }
 
     /// The same design with every length multiplied by `factor`.
@@ -134,7 +146,7 @@ impl Design {
                 scale(&mut ring.offset);
             }
         }
-        out
+        out.settled()
     }
 
     /// The same design with lattice, centres and offsets to 13 decimals of the reference radius and normals to 14: without
@@ -155,13 +167,20 @@ impl Design {
                 round(&mut ring.offset, decimals);
             }
         }
-        out
+        out.settled()
     }
 
     /// Checks every field that can be judged without geometry between elements, and returns all that is wrong.
     ///
     /// Overlap and links need the compiled model: see `Model`.
     pub fn problems(&self) -> Vec<InvalidInput> {
+        let mut out = self.problems_of_fields();
+        out.extend(self.problems_of_formulas());
+        out
+    }
+
+    /// The same but for parameters and formulas.
+    fn problems_of_fields(&self) -> Vec<InvalidInput> {
         let mut out = Problems::default();
         if self.schema != DESIGN_SCHEMA {
             out.add("schema", format!("version {} is not known", self.schema), "this program reads schema = 1");

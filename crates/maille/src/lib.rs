@@ -46,6 +46,7 @@
 pub mod answer;
 pub mod design;
 pub mod error;
+pub mod formula;
 pub mod lattice;
 pub mod model;
 pub mod question;

@@ -26,6 +26,7 @@ const CRATES: &[&[&str]] = &[
 /// tests as well: a test that needs a later module belongs into the crate's `tests` folder.
 const MODULES: &[&[&str]] = &[
     &["error"],
+    &["formula"],
     &["design"],
     &["lattice"],
     &["model", "state", "topology", "symmetry"],

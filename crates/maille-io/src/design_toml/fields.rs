@@ -12,6 +12,7 @@ pub(super) const TOP: &[&str] = &[
     "minor_radius",
     "reference_radius",
     "allow_initial_overlap",
+    "parameters",
     "lattice",
     "elements",
 ];
@@ -21,12 +22,15 @@ pub(super) const LATTICE: &[&str] = &["a1", "a2"];
 pub(super) const ELEMENT: &[&str] = &["name", "center", "rings"];
 /// Keys of a ring.
 pub(super) const RING: &[&str] = &["major_radius", "normal", "offset", "minor_radius"];
+/// Keys of a parameter that has bounds.
+pub(super) const PARAMETER: &[&str] = &["value", "min", "max"];
 
-const TABLES: [(&[&str], &str); 4] = [
+const TABLES: [(&[&str], &str); 5] = [
     (TOP, "at the top of the file, above the first [table]"),
     (LATTICE, "in [lattice]"),
     (ELEMENT, "in an [[elements]] table"),
     (RING, "in a ring { … }"),
+    (PARAMETER, "in a parameter { value = …, min = …, max = … }"),
 ];
 
 /// What would be right instead of the unknown `key` in the table that knows `known`.

@@ -3,6 +3,7 @@
 use maille::{
     design::{Design, ElementSpec, RingSpec},
     error::InvalidInput,
+    formula::is_name,
 };
 use std::{fmt, str::FromStr};
 
@@ -17,6 +18,8 @@ pub struct NumberPath {
 enum Place {
     MinorRadius,
     ReferenceRadius,
+    /// A parameter of the design.
+    Parameter,
     /// Which lattice vector, and which of its components.
     Lattice(usize, usize),
     /// Of the elements of this name, in which `*` stands for anything.
@@ -34,7 +37,7 @@ enum OfRing {
 }
 
 /// The forms of a path, for errors.
-const FORMS: &str = "write minor_radius, reference_radius, lattice.a1.x, elements.NAME.center.z, \
+const FORMS: &str = "write the name of a parameter, minor_radius, reference_radius, lattice.a1.x, elements.NAME.center.z, \
                      elements.NAME.rings.major_radius (of all its rings) or elements.NAME.rings.0.offset.x; * in NAME stands for anything";
 
 impl FromStr for NumberPath {
@@ -52,6 +55,7 @@ fn place(parts: &[&str]) -> Option<Place> {
     Some(match *parts {
         ["minor_radius"] => Place::MinorRadius,
         ["reference_radius"] => Place::ReferenceRadius,
+        [name] if is_name(name) => Place::Parameter,
         ["lattice", "a1", last] => Place::Lattice(0, axis(last)?),
         ["lattice", "a2", last] => Place::Lattice(1, axis(last)?),
         ["elements", ref name @ .., "center", last] if !name.is_empty() => Place::Center(name.join("."), axis(last)?),
@@ -88,6 +92,10 @@ impl NumberPath {
 
     /// The design with `value` at this place. Refused where the design has no such place.
     pub fn set(&self, design: &Design, value: f64) -> Result<Design, InvalidInput> {
+        if self.parameter().is_some() {
+            let first = |problems: Vec<InvalidInput>| problems.into_iter().next().expect("an error has a problem");
+            return set_parameters(design, &[(&self.text, value)]).map_err(first);
+        }
         let mut out = design.clone();
         let numbers = self.numbers(&mut out);
         if numbers.is_empty() {
@@ -97,15 +105,21 @@ impl NumberPath {
             return Err(InvalidInput::new("vary", problem, format!("its elements are {}", elements.join(", "))));
         }
         numbers.into_iter().for_each(|number| *number = value);
+        let mut out = out.settled();
         if self.place != Place::MinorRadius {
             out.varied.insert(self.text.clone(), value);
         }
         Ok(out)
     }
 
-    /// Whether it is a length: components of a normal are none.
+    /// Whether it is a length: components of a normal are none, and what a parameter is, is not known.
     pub fn is_length(&self) -> bool {
-        !matches!(self.place, Place::Ring(_, _, OfRing::Normal(_)))
+        !matches!(self.place, Place::Parameter | Place::Ring(_, _, OfRing::Normal(_)))
+    }
+
+    /// The parameter of that name, if it is one.
+    pub fn parameter(&self) -> Option<&str> {
+        (self.place == Place::Parameter).then_some(&self.text)
     }
 
     /// The numbers of a design at this place.
@@ -113,6 +127,7 @@ impl NumberPath {
         match &self.place {
             Place::MinorRadius => vec![design.minor_radius.get_or_insert_default()],
             Place::ReferenceRadius => vec![&mut design.reference_radius],
+            Place::Parameter => Vec::new(),
             Place::Lattice(0, axis) => vec![&mut design.lattice.a1[*axis]],
             Place::Lattice(_, axis) => vec![&mut design.lattice.a2[*axis]],
             Place::Center(name, axis) => {
@@ -125,6 +140,13 @@ impl NumberPath {
             }
         }
     }
+}
+
+/// The design with other values of its parameters, all at once: columns of tables.
+pub fn set_parameters(design: &Design, values: &[(&str, f64)]) -> Result<Design, Vec<InvalidInput>> {
+    let mut out = design.with_parameters(values)?;
+    out.varied.extend(values.iter().map(|(name, value)| ((*name).to_owned(), *value)));
+    Ok(out)
 }
 
 impl OfRing {
@@ -186,7 +208,7 @@ mod tests {
     fn what_is_no_number_is_refused() {
         for wrong in [
             "",
-            "radius",
+            "4radius",
             "lattice.a3.x",
             "lattice.a1",
             "elements.flat",

@@ -1,10 +1,10 @@
 //! From a TOML table to a [`Design`], collecting every problem on the way.
 
-use super::fields::{self, ELEMENT, LATTICE, RING, TOP};
+use super::fields::{self, ELEMENT, LATTICE, PARAMETER, RING, TOP};
 use super::index::Index;
 use super::problem::DesignProblem;
 use crate::nearest::nearest;
-use maille::design::{DESIGN_SCHEMA, Design, ElementSpec, LatticeSpec, RingSpec, Source};
+use maille::design::{DESIGN_SCHEMA, Design, ElementSpec, LatticeSpec, Parameter, RingSpec, Source};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use toml::Spanned;
@@ -26,10 +26,16 @@ type Value<'t> = Spanned<DeValue<'t>>;
 
 /// The design, if all its fields could be read, and what is wrong with the form of the file.
 pub(super) fn design(table: &DeTable<'_>, text: &str, index: &Index) -> (Option<Design>, Vec<DesignProblem>) {
-    let mut reader = Reader { text, problems: Vec::new(), last_line: index.last_line };
+    let mut reader = Reader { text, problems: Vec::new(), formulas: BTreeMap::new(), last_line: index.last_line };
     let first = index.first_line;
     let top = At { table, path: String::new(), known: TOP, span: first..first };
-    let design = reader.design(&top);
+    let design = reader.design(&top).and_then(|design| match design.evaluated() {
+        Ok(design) => Some(design),
+        Err(problems) => {
+            reader.problems.extend(problems.iter().map(|p| DesignProblem::invalid(p, index)));
+            None
+        }
+    });
     (design, reader.problems)
 }
 
@@ -66,6 +72,8 @@ impl<'a, 't> At<'a, 't> {
 struct Reader<'s> {
     text: &'s str,
     problems: Vec<DesignProblem>,
+    /// Texts that stand for numbers, by their places.
+    formulas: BTreeMap<String, String>,
     last_line: usize,
 }
 
@@ -89,6 +97,7 @@ impl Reader<'_> {
         let help = "reference_radius = 1.0, the major radius that ratios such as r = R/10 refer to";
         let reference_radius = self.required(top, "reference_radius", help).and_then(|(v, p)| self.number(v, &p));
         let allow_initial_overlap = self.optional(top, "allow_initial_overlap", Self::boolean);
+        let parameters = self.optional(top, "parameters", Self::parameters);
         let help = "[lattice] with a1 = [2.5, 0.0, 0.0] and a2 = [0.0, 2.5, 0.0], the translations to the next cells";
         let lattice = self.required(top, "lattice", help).and_then(|(v, p)| self.lattice(v, &p));
         let help = "[[elements]] with name, center and rings = [{ major_radius = 1.0, normal = [0.0, 0.0, 1.0] }]";
@@ -107,6 +116,49 @@ impl Reader<'_> {
             lattice: lattice?,
             elements: elements?,
             varied: BTreeMap::new(),
+            parameters: parameters?.unwrap_or_default(),
+            formulas: std::mem::take(&mut self.formulas),
+        })
+    }
+
+    fn parameters(&mut self, value: &Value<'_>, path: &str) -> Option<Vec<Parameter>> {
+        let help = "write [parameters] with radius = 1.0";
+        let DeValue::Table(table) = value.get_ref() else {
+            return self.wrong_type(value, path, "a table", help);
+        };
+        // The table is sorted by name: where the names stand has the order of the file.
+        let mut entries: Vec<_> = table.iter().collect();
+        entries.sort_by_key(|(key, _)| key.span().start);
+        let read = entries.into_iter().map(|(key, value)| {
+            let path = format!("{path}.{}", key.get_ref());
+            self.parameter(key.get_ref(), value, &path)
+        });
+        let read: Vec<_> = read.collect();
+        read.into_iter().collect()
+    }
+
+    fn parameter(&mut self, name: &str, value: &Value<'_>, path: &str) -> Option<Parameter> {
+        let (of_value, min, max) = match value.get_ref() {
+            DeValue::Table(_) => {
+                let help = "write a number, a formula, or { value = 1.0, min = 0.5, max = 2.0 }";
+                let at = self.table(value, path, PARAMETER, help)?;
+                let of_value = self.required(&at, "value", "value = 1.0");
+                let (min, max) =
+                    (self.optional(&at, "min", Self::plain_number), self.optional(&at, "max", Self::plain_number));
+                (of_value?, min?, max?)
+            }
+            _ => ((value, path.to_owned()), None, None),
+        };
+        let (value, path) = of_value;
+        let number = self.number(value, &path)?;
+        // Its formula stands with it, not among those of the design's numbers.
+        let formula = self.formulas.remove(&path);
+        Some(Parameter {
+            name: name.to_owned(),
+            value: if formula.is_some() { 0.0 } else { number },
+            formula,
+            min,
+            max,
         })
     }
 
@@ -233,7 +285,18 @@ impl Reader<'_> {
         (commas && three).then(|| format!("[{}]", numbers.join(", ")))
     }
 
+    /// A number, or a formula: that is kept for when all parameters are known, and the number is NaN until then.
     fn number(&mut self, value: &Value<'_>, path: &str) -> Option<f64> {
+        match value.get_ref() {
+            DeValue::String(text) if text.trim().parse::<f64>().is_err() => {
+                self.formulas.insert(path.to_owned(), text.trim().to_owned());
+                Some(f64::NAN)
+            }
+            _ => self.plain_number(value, path),
+        }
+    }
+
+    fn plain_number(&mut self, value: &Value<'_>, path: &str) -> Option<f64> {
         match value.get_ref() {
             DeValue::Float(x) => x.as_str().parse().ok(),
             DeValue::Integer(i) => i64::from_str_radix(i.as_str(), i.radix()).ok().map(|i| i as f64),

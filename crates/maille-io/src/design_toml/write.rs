@@ -1,11 +1,12 @@
 //! From a [`Design`] to a file that reads back the same.
 
 use super::read::source_name;
-use maille::design::{Design, RingSpec};
-use std::fmt::Write;
+use maille::design::{Design, Parameter, RingSpec};
+use std::{collections::BTreeMap, fmt::Write};
 
-/// The design as a file: every number reads back bit for bit.
+/// The design as a file: every number reads back bit for bit. Formulas are written where they give the number at their place.
 pub fn write_design(design: &Design) -> String {
+    let design = &design.clone().settled();
     let mut out = String::new();
     let mut line = |text: String| {
         out.push_str(&text);
@@ -18,24 +19,33 @@ pub fn write_design(design: &Design) -> String {
     if let Some(unit) = &design.unit {
         line(format!("unit = {}", string(unit)));
     }
+    let at = Numbers(&design.formulas);
     if let Some(r) = design.minor_radius {
-        line(format!("minor_radius = {}", number(r)));
+        line(format!("minor_radius = {}", at.number("minor_radius", r)));
     }
-    line(format!("reference_radius = {}", number(design.reference_radius)));
+    line(format!("reference_radius = {}", at.number("reference_radius", design.reference_radius)));
     if design.allow_initial_overlap {
         line("allow_initial_overlap = true".into());
     }
     if design.elements.is_empty() {
         line("elements = []".into());
     }
-    line(format!("\n[lattice]\na1 = {}\na2 = {}", vector(design.lattice.a1), vector(design.lattice.a2)));
-    for element in &design.elements {
-        line(format!("\n[[elements]]\nname = {}\ncenter = {}", string(&element.name), vector(element.center)));
+    if !design.parameters.is_empty() {
+        line("\n[parameters]".into());
+        design.parameters.iter().for_each(|p| line(format!("{} = {}", p.name, parameter(p))));
+    }
+    let (a1, a2) = (design.lattice.a1, design.lattice.a2);
+    line(format!("\n[lattice]\na1 = {}\na2 = {}", at.vector("lattice.a1", a1), at.vector("lattice.a2", a2)));
+    for (i, element) in design.elements.iter().enumerate() {
+        let path = format!("elements[{i}]");
+        let center = at.vector(&format!("{path}.center"), element.center);
+        line(format!("\n[[elements]]\nname = {}\ncenter = {center}", string(&element.name)));
+        let ring = |(k, ring): (usize, &RingSpec)| at.ring(&format!("{path}.rings[{k}]"), ring);
         match element.rings.as_slice() {
             [] => line("rings = []".into()),
-            [one] => line(format!("rings = [{}]", ring(one))),
+            [one] => line(format!("rings = [{}]", ring((0, one)))),
             several => {
-                let rings: String = several.iter().map(|r| format!("    {},\n", ring(r))).collect();
+                let rings: String = several.iter().enumerate().map(|r| format!("    {},\n", ring(r))).collect();
                 line(format!("rings = [\n{rings}]"));
             }
         }
@@ -43,19 +53,41 @@ pub fn write_design(design: &Design) -> String {
     out
 }
 
-fn ring(ring: &RingSpec) -> String {
-    let mut out = format!("{{ major_radius = {}, normal = {}", number(ring.major_radius), vector(ring.normal));
-    if ring.offset != [0.0; 3] {
-        out += &format!(", offset = {}", vector(ring.offset));
+/// Numbers, or the formulas at their places.
+struct Numbers<'a>(&'a BTreeMap<String, String>);
+
+impl Numbers<'_> {
+    fn number(&self, path: &str, x: f64) -> String {
+        self.0.get(path).map_or_else(|| number(x), |formula| string(formula))
     }
-    if let Some(r) = ring.minor_radius {
-        out += &format!(", minor_radius = {}", number(r));
+
+    fn vector(&self, path: &str, v: [f64; 3]) -> String {
+        let [x, y, z] = [0, 1, 2].map(|k| self.number(&format!("{path}[{k}]"), v[k]));
+        format!("[{x}, {y}, {z}]")
     }
-    out + " }"
+
+    fn ring(&self, path: &str, ring: &RingSpec) -> String {
+        let major_radius = self.number(&format!("{path}.major_radius"), ring.major_radius);
+        let normal = self.vector(&format!("{path}.normal"), ring.normal);
+        let mut out = format!("{{ major_radius = {major_radius}, normal = {normal}");
+        let offset = format!("{path}.offset");
+        if ring.offset != [0.0; 3] || self.0.keys().any(|place| place.starts_with(&offset)) {
+            out += &format!(", offset = {}", self.vector(&offset, ring.offset));
+        }
+        if let Some(r) = ring.minor_radius {
+            out += &format!(", minor_radius = {}", self.number(&format!("{path}.minor_radius"), r));
+        }
+        out + " }"
+    }
 }
 
-fn vector(v: [f64; 3]) -> String {
-    format!("[{}, {}, {}]", number(v[0]), number(v[1]), number(v[2]))
+fn parameter(parameter: &Parameter) -> String {
+    let value = parameter.formula.as_ref().map_or_else(|| number(parameter.value), |formula| string(formula));
+    let bound = |name: &str, x: Option<f64>| x.map_or(String::new(), |x| format!(", {name} = {}", number(x)));
+    match bound("min", parameter.min) + &bound("max", parameter.max) {
+        none if none.is_empty() => value,
+        bounds => format!("{{ value = {value}{bounds} }}"),
+    }
 }
 
 /// Rust's shortest digits that read back the same are TOML but for NaN.

@@ -89,7 +89,7 @@ pub fn radius_svg(records: &[NamedRecord], quantity: Quantity, layout: Layout) -
 
 /// A design without what a radius study varies.
 fn without_radius(design: &Design) -> Design {
-    Design { minor_radius: None, ..design.clone() }
+    Design { minor_radius: None, parameters: Vec::new(), formulas: Default::default(), ..design.clone() }
 }
 
 fn curves(records: &[NamedRecord]) -> Vec<Curve<'_>> {

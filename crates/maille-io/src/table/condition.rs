@@ -86,6 +86,11 @@ impl Condition {
         Ok(Self { field, sign, holds, values })
     }
 
+    /// Refuses a column that none of the records has, as [`Field::check`] does.
+    pub fn check(&self, records: &[NamedRecord]) -> Result<(), TableError> {
+        self.field.check(records)
+    }
+
     /// Whether a row meets the condition. An empty value is neither less nor more than a number, and equals none.
     pub(super) fn holds(&self, row: &Row<'_>) -> bool {
         let cell = self.field.of(row);
@@ -230,7 +235,9 @@ mod tests {
     #[test]
     fn what_is_no_condition_is_named_with_the_nearest_word() {
         let message = |text: &str| Condition::parse_list(text).unwrap_err().to_string();
-        assert_eq!(message("lamda1>0"), "there is no column \"lamda1\"; did you mean lambda1?");
+        assert_eq!(message("lamda.1>0"), "there is no column \"lamda.1\"; did you mean lambda1?");
+        let unknown = Condition::parse_list("lamda1>0").unwrap()[0].check(&[]).unwrap_err().to_string();
+        assert_eq!(unknown, "there is no column \"lamda1\"; did you mean lambda1?");
         assert_eq!(
             message("status=globl"),
             "\"globl\" is not a value of status; did you mean global? status is one of global, local, threshold-reached, \

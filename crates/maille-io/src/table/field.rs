@@ -33,7 +33,8 @@ const RECORD: &str = "record";
 const SHORT: [(&str, &str); 2] = [("direction", "direction_deg"), ("r", "minor_radius")];
 
 impl Field {
-    /// The column of that name; `direction` and `r` stand for `direction_deg` and `minor_radius`.
+    /// The column of that name; `direction` and `r` stand for `direction_deg` and `minor_radius`. Other words are taken for
+    /// names of parameters: see [`check`](Field::check).
     pub fn parse(name: &str) -> Result<Self, TableError> {
         let name = name.trim();
         let long = SHORT.iter().find(|(short, _)| *short == name).map_or(name, |(_, long)| long);
@@ -67,12 +68,33 @@ impl Field {
 
     /// The number that studies vary under this name, if it is one.
     fn varied(name: &str) -> Option<Self> {
-        let length = || name.parse::<NumberPath>().ok().map(|path| path.is_length());
-        let unit = match name == SPACING || !length()? {
-            true => Unit::One,
-            false => Unit::Length,
+        let unit = match name.parse::<NumberPath>() {
+            _ if name == SPACING => Unit::One,
+            // What a parameter measures is not known.
+            Ok(path) if path.parameter().is_some() => Unit::None,
+            Ok(path) if path.is_length() => Unit::Length,
+            Ok(_) => Unit::One,
+            Err(_) => return None,
         };
         Some(Field::Varied(name.to_owned(), unit))
+    }
+
+    /// Refuses the name of a parameter that no design of the records has: any word can be one, and [`parse`](Field::parse)
+    /// knows no records.
+    pub fn check(&self, records: &[NamedRecord]) -> Result<(), TableError> {
+        let Field::Varied(name, Unit::None) = self else { return Ok(()) };
+        let designs = || records.iter().map(|named| &named.record.run.design);
+        let parameters: BTreeSet<&str> = designs().flat_map(|d| d.parameters.iter().map(|p| p.name.as_str())).collect();
+        if parameters.contains(name.as_str()) || designs().any(|design| design.varied.contains_key(name)) {
+            return Ok(());
+        }
+        let known = LIMIT_COLUMNS.iter().map(|column| column.name).chain([RECORD, SPACING]).chain(parameters);
+        let known: Vec<&str> = known.collect();
+        let help = match nearest(name, &known) {
+            Some(near) => format!("did you mean {near}?"),
+            None => format!("columns are {}", known.join(", ")),
+        };
+        Err(TableError { problem: format!("there is no column \"{name}\""), help })
     }
 
     /// All columns; with `record`, the name of the record comes first. The numbers that studies have varied in `records` come last.
@@ -118,6 +140,7 @@ impl Field {
             Field::Record => "the record that the row comes from",
             Field::Limit(column) => column.meaning,
             Field::Varied(name, _) if name == SPACING => "factor of all distances between elements, set by a study",
+            Field::Varied(_, Unit::None) => "parameter of the design",
             Field::Varied(..) => "number of the design, set by a study, before the spacing",
         }
     }
@@ -126,7 +149,10 @@ impl Field {
         match self {
             Field::Record => Entry::Text(row.record),
             Field::Limit(column) => (column.get)(row.limit),
-            Field::Varied(name, _) => row.design.varied.get(name).map_or(Entry::Empty, |x| Entry::Number(*x)),
+            Field::Varied(name, _) => {
+                let parameter = || row.design.parameters.iter().find(|p| p.name == *name).map(|p| p.value);
+                row.design.varied.get(name).copied().or_else(parameter).map_or(Entry::Empty, Entry::Number)
+            }
         }
     }
 }

@@ -1,6 +1,7 @@
 //! `l2,-l1`: the order of the rows.
 
 use super::{Field, Row, TableError};
+use crate::record::NamedRecord;
 use maille::record::Entry;
 use std::cmp::Ordering;
 
@@ -21,6 +22,11 @@ impl SortKey {
             Ok(Self { field: Field::parse(name.strip_prefix('-').unwrap_or(name))?, down })
         };
         text.split(',').map(key).collect()
+    }
+
+    /// Refuses a column that none of the records has, as [`Field::check`] does.
+    pub fn check(&self, records: &[NamedRecord]) -> Result<(), TableError> {
+        self.field.check(records)
     }
 }
 
@@ -71,7 +77,7 @@ mod tests {
         assert_eq!(sorted("-l1"), [3, 2, 1, 0]);
         assert_eq!(sorted("l2,-l1"), [2, 3, 1, 0]);
         assert_eq!(sorted("design"), [0, 1, 2, 3]);
-        let error = SortKey::parse_list("-l3").unwrap_err().to_string();
+        let error = SortKey::parse_list("-l3").unwrap()[0].check(&[]).unwrap_err().to_string();
         assert!(error.starts_with("there is no column \"l3\"; did you mean l"), "{error}");
     }
 }

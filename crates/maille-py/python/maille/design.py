@@ -142,6 +142,21 @@ class Design:
         where `*` stands for anything: all that match are set."""
         return Design._of(self._inner.with_number(path, value))
 
+    @property
+    def parameters(self) -> dict[str, float]:
+        """The named numbers of the design's file with their values, in its order; computed ones too."""
+        return {name: value for name, value, *_ in self._inner.parameters()}
+
+    @property
+    def free_parameters(self) -> dict[str, tuple[float | None, float | None]]:
+        """The parameters that can be set, with their least and largest values where the file gives them."""
+        return {name: (least, most) for name, _, least, most, free in self._inner.parameters() if free}
+
+    def with_parameters(self, **values: float) -> Design:
+        """The same design with other values of parameters, as `design.with_parameters(radius=5.0)`: what is computed from them
+        is computed anew. Refused are names that are no free parameter, and values out of their bounds."""
+        return Design._of(self._inner.with_parameters([(name, float(value)) for name, value in values.items()]))
+
     def spaced(self, factor: float) -> Design:
         """The same rings `factor` times as far apart."""
         return Design._of(self._inner.spaced(factor))

@@ -164,6 +164,6 @@ impl State {
                 ring.offset = (pose.rotation * Vec3::from(ring.offset)).into();
             }
         }
-        out
+        out.settled()
     }
 }

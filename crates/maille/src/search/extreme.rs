@@ -131,6 +131,7 @@ impl Extreme {
         out.minor_radius = out.minor_radius.map(|r| r * factor);
         let rings = out.elements.iter_mut().flat_map(|element| &mut element.rings);
         rings.for_each(|ring| ring.minor_radius = ring.minor_radius.map(|r| r * factor));
+        out = out.settled();
         if design.allow_initial_overlap {
             out.allow_initial_overlap = false;
             out.allow_initial_overlap = Model::compile(&out, Cell::PRIMITIVE).is_err();

@@ -69,14 +69,9 @@ def _plan(of_study: list[dict[str, Any]], folder: Path) -> dict[str, tuple[Desig
 def _varied(
     design: Design | MailleError, minor_radius: float | None, numbers: list[tuple[str, float]], spacing: float | None
 ) -> Design | MailleError:
+    if not isinstance(design, Design) or (minor_radius is None and not numbers and spacing is None):
+        return design
     try:
-        if isinstance(design, Design) and minor_radius is not None:
-            design = design.with_minor_radius(minor_radius)
-        for path, value in numbers:
-            if isinstance(design, Design):
-                design = design.with_number(path, value)
-        if isinstance(design, Design) and spacing is not None:
-            design = design.spaced(spacing)
+        return Design._of(design._inner.varied(minor_radius, [(path, value) for path, value in numbers], spacing))
     except MailleError as error:
         return error
-    return design
