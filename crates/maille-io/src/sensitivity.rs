@@ -3,7 +3,7 @@
 use crate::unit::millimetres;
 use maille::{
     answer::Answer,
-    design::Design,
+    design::{Design, Parameter},
     model::RingPair,
     sensitivity::{DesignVector, OneSided, RingVector, Sensitivity},
 };
@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 pub struct NumberChange {
     /// Which number.
     pub number: String,
-    /// Size of the step: a length in the file's unit, a share (spacing), or radians (tilt).
+    /// Size of the step: a length in the file's unit, a share (spacing), radians (tilt), or in the unit of the parameter.
     pub step: f64,
     /// The step with its unit.
     pub step_words: String,
@@ -31,6 +31,8 @@ const NAMED: usize = 2;
 const STEP_MM: f64 = 0.1;
 /// Step of the spacing, and of a length in a design without a unit of length, as a share of the reference radius.
 const SHARE: f64 = 0.01;
+/// Half of the step over which the numbers' rates by a parameter are taken, relative to the parameter or to 1.
+const PARAMETER_STEP: f64 = 1e-6;
 
 impl NumberChange {
     /// Changes of the limit for a step back and a step forward, to first order; `None` where no state is left, or it is not known.
@@ -63,7 +65,7 @@ impl NumberChange {
 /// The numbers of the design, those that matter most first.
 ///
 /// `step` is that of all lengths, in the file's unit; by default 0.1 mm, or 1 % of the reference radius where the design has no unit
-/// of length. The spacing changes by 1 %, a tilt by 1°. A ring alone in its element has no offset and no tilt here: a limit is sought
+/// of length. The spacing and parameters of the file change by 1 % (a parameter that is 0 by 0.01), a tilt by 1°. A ring alone in its element has no offset and no tilt here: a limit is sought
 /// over all positions and turns of the element.
 pub fn ranked(design: &Design, found: &Sensitivity, step: Option<f64>) -> Vec<NumberChange> {
     let unit = design.unit.as_deref();
@@ -88,6 +90,13 @@ pub fn ranked(design: &Design, found: &Sensitivity, step: Option<f64>) -> Vec<Nu
         let mut change = DesignVector::zeros(labels.len());
         change.lattice[k / 2][k % 2] = 1.0;
         lines.push(of(format!("lattice {name}"), &change, length, &in_unit));
+    }
+    for parameter in design.free_parameters() {
+        if let Some(change) = rate_by(design, parameter) {
+            let share = if parameter.value == 0.0 { SHARE } else { SHARE * parameter.value.abs() };
+            let words = if parameter.value == 0.0 { format!("{SHARE}") } else { "1 %".into() };
+            lines.push(of(format!("parameter {}", parameter.name), &change, share, &words));
+        }
     }
     let gradient = found.gradient();
     let alone = design.elements.iter().flat_map(|e| e.rings.iter().map(|_| e.rings.len() == 1));
@@ -115,6 +124,23 @@ pub fn ranked(design: &Design, found: &Sensitivity, step: Option<f64>) -> Vec<Nu
     }
     lines.sort_by(|a, b| b.largest().total_cmp(&a.largest()));
     lines
+}
+
+/// How the numbers of the design change with a free parameter, by values beside its own; to one side where its bound or another
+/// rule forbids the other one. `None` where both are forbidden.
+fn rate_by(design: &Design, parameter: &Parameter) -> Option<DesignVector> {
+    let half = PARAMETER_STEP * parameter.value.abs().max(1.0);
+    let beside = |by: f64| {
+        let value = parameter.value + by;
+        Some((value, design.with_parameters(&[(&parameter.name, value)]).ok()?))
+    };
+    let own = || Some((parameter.value, design.clone()));
+    let (below, above) = (beside(-half), beside(half));
+    if below.is_none() && above.is_none() {
+        return None;
+    }
+    let ((from, below), (to, above)) = (below.or_else(own)?, above.or_else(own)?);
+    DesignVector::between(&below, &above, to - from).ok()
 }
 
 /// The document of `maille sensitivity --json`, with the keys of `docs/json.md`. `direction_deg` and `l2` are those of the question.

@@ -1,10 +1,12 @@
 //! Named parameters of design files, and formulas over them.
 
 use maille::{
+    Question, Sheet,
     design::{Design, Parameter},
     record::LIMIT_COLUMNS,
+    sensitivity::Sensitivity,
 };
-use maille_io::{DesignSource, NumberPath, read_design, set_parameters, write_design};
+use maille_io::{DesignSource, NumberPath, read_design, sensitivity::ranked, set_parameters, write_design};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -167,4 +169,29 @@ fn any_text_is_read_or_refused() {
         }
     }
     assert!(read > 20, "{read}");
+}
+
+/// The limit along x is (4 R − 2 wire) / (2.5 play R) − 1 with R the radius: its derivatives by the parameters of the file.
+#[test]
+fn a_limit_changes_with_parameters_as_its_closed_form_does() {
+    let (wire, radius, play) = (1.2, 6.0, 0.92);
+    // On its bound, so its rate is one to one side.
+    let design = square().with_parameters(&[("play", play)]).unwrap();
+    let question = Question::stretch_along(0.0);
+    let sheet = Sheet::compile(&design).unwrap();
+    let answer = sheet.answer(&question).unwrap();
+    let pitch = 2.5 * play * radius;
+    assert!((answer.limit().unwrap() - ((4.0 * radius - 2.0 * wire) / pitch - 1.0)).abs() < 1e-9);
+    let found = Sensitivity::of(&sheet.model_of(&answer), &question, &answer).unwrap();
+    let numbers = ranked(&design, &found, None);
+    for (name, slope) in [
+        ("wire", -2.0 / pitch),
+        ("radius", 2.0 * wire / (radius * pitch)),
+        ("play", -(4.0 * radius - 2.0 * wire) / (pitch * play)),
+        ("tilt", 0.0),
+    ] {
+        let line = numbers.iter().find(|line| line.number == format!("parameter {name}")).unwrap();
+        let forward = line.slope.forward.finite().unwrap();
+        assert!((forward - slope).abs() < 1e-5 * slope.abs().max(1e-3), "{name}: {forward}, expected {slope}");
+    }
 }
