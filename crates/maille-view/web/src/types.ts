@@ -37,6 +37,8 @@ export interface Design {
   lattice: LatticeSpec;
   elements: ElementSpec[];
   varied?: Record<string, number>;
+  parameters?: Parameter[];
+  formulas?: Record<string, string>;
 }
 
 export interface DualRecord {
@@ -196,6 +198,14 @@ export interface Palette {
   loads: string[];
   unloaded: string;
   force: string;
+}
+
+export interface Parameter {
+  name: string;
+  value: number;
+  formula: string | null;
+  min: number | null;
+  max: number | null;
 }
 
 export interface PoseRecord {
