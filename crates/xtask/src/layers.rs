@@ -209,7 +209,10 @@ mod tests {
         let (line, problem) =
             only("state.rs", "//! State.\n\nuse crate::{\n    model::Thing,\n    relaxation::Thing as Other,\n};\n");
         assert_eq!(line, 5);
-        assert!(problem.starts_with("state uses relaxation, which stands after it: error ← formula ← design ←"), "{problem}");
+        assert!(
+            problem.starts_with("state uses relaxation, which stands after it: error ← formula ← design ←"),
+            "{problem}"
+        );
         assert_eq!(only("program/gap_kernel.rs", "fn f() -> crate::search::Thing {}").0, 1);
         assert_eq!(only("design.rs", "use super::lattice::Thing;").0, 1);
         assert_eq!(only("design.rs", "\nmod tests {\n use super::super::lattice::Thing;\n}").0, 3);
