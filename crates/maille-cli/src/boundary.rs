@@ -3,7 +3,7 @@
 use crate::{
     effort::SearchArgs,
     exit,
-    input::{Input, Setting, file_name},
+    input::{DesignArgs, Input, file_name},
     interrupt,
     map::{RunArgs, pool},
     numbers::{positive, read},
@@ -56,8 +56,8 @@ Examples:
 
 Exit codes: 0 every ray has a certified end, 5 some have none (0 with --allow-incomplete), 130 interrupted.")]
 pub struct Args {
-    /// A built-in design (see `maille designs`), a TOML file, or - for standard input
-    design: String,
+    #[command(flatten)]
+    design: DesignArgs,
     /// Rays are added until the surface is expected within this strain of its triangles
     #[arg(long, default_value_t = BoundaryOptions::default().tolerance, value_parser = positive)]
     tolerance: f64,
@@ -68,12 +68,6 @@ pub struct Args {
     /// unstable waves through the sheet lead, which can take a hundred times as long
     #[arg(long, default_value = "1x1", value_parser = read::<CellChoice>)]
     cell: CellChoice,
-    /// Minor radius of every ring that gives none, in the file's unit
-    #[arg(long, value_parser = positive)]
-    minor_radius: Option<f64>,
-    /// A value for a parameter of the design's file, as radius=5.0; several with commas
-    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',')]
-    set: Vec<Setting>,
     #[command(flatten)]
     search: SearchArgs,
     /// Folder that is written [default: maille-out/NAME-boundary]
@@ -88,7 +82,7 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    let input = Input::read_with(&args.design, &args.set, args.minor_radius)?;
+    let input = args.design.read()?;
     let options = BoundaryOptions {
         tolerance: args.tolerance,
         most: args.vertices as usize,

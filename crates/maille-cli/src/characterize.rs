@@ -4,7 +4,7 @@ use crate::{
     effort::SearchArgs,
     exit::{self, refused},
     help::ENERGY,
-    input::{Input, Setting, file_name},
+    input::{DesignArgs, file_name},
     map::{self, RunArgs, Solved, unanswered},
     numbers::{Numbers, one_of, parse, parse_l2, positive, read},
     output,
@@ -53,8 +53,8 @@ The energy method of the thesis has options of its own:
 Exit codes: 0 every limit was found, or it was proved that there is none; 5 the record is written, but some limits were \
 not found (0 with --allow-incomplete; 0 where only some of the usual l2 are not reached and --l2 names none); 130 interrupted.")]
 pub struct Args {
-    /// A built-in design (see `maille designs`), a TOML file, or - for standard input
-    design: String,
+    #[command(flatten)]
+    design: DesignArgs,
     /// Directions of the pull, degrees counter-clockwise from x: a list, or first:last:step
     #[arg(long, default_value = "0:180:5", value_parser = parse, allow_hyphen_values = true)]
     directions: Numbers,
@@ -71,12 +71,6 @@ pub struct Args {
     /// limit is global, because a larger cell can fold further (exact method)
     #[arg(long)]
     compression: bool,
-    /// Minor radius of every ring that gives none, in the file's unit
-    #[arg(long, value_parser = positive)]
-    minor_radius: Option<f64>,
-    /// A value for a parameter of the design's file, as radius=5.0; several with commas
-    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',')]
-    set: Vec<Setting>,
     /// How a limit is found
     #[arg(long, value_enum, default_value_t = MethodArg::Exact)]
     method: MethodArg,
@@ -247,14 +241,14 @@ impl EnergyArgs {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
     match args.watch {
-        true => watch(std::slice::from_ref(&args.design), || once(args)),
+        true => watch(std::slice::from_ref(&args.design.design), || once(args)),
         false => once(args),
     }
 }
 
 fn once(args: &Args) -> Result<ExitCode> {
     let question = question(args).map_err(|e| refused(&e))?;
-    let input = Input::read_with(&args.design, &args.set, args.minor_radius)?;
+    let input = args.design.read()?;
     let folder = file_name(&input.design.name) + if args.compression { "-compression" } else { "" };
     let out = args.out.clone().unwrap_or_else(|| PathBuf::from("maille-out").join(folder));
     let overwrite = args.run.overwrite || args.watch;

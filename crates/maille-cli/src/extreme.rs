@@ -5,10 +5,9 @@ use crate::{
     certificate,
     effort::SearchArgs,
     exit::{self, refused, wrong},
-    input::{Input, Setting},
+    input::{DesignArgs, Input},
     interrupt,
     map::pool,
-    numbers::positive,
     output::{self, Replace, say},
     units::{Length, parse_length},
 };
@@ -69,14 +68,8 @@ pub struct RoomiestArgs {
 
 #[derive(clap::Args)]
 struct Common {
-    /// A built-in design (see `maille designs`), a TOML file, or - for standard input
-    design: String,
-    /// Minor radius of every ring that gives none, in the file's unit
-    #[arg(long, value_parser = positive)]
-    minor_radius: Option<f64>,
-    /// A value for a parameter of the design's file, as radius=5.0; several with commas
-    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',')]
-    set: Vec<Setting>,
+    #[command(flatten)]
+    design: DesignArgs,
     /// Whether the lattice may change [default: free for tightest, fixed for roomiest]
     #[arg(long, value_enum)]
     lattice: Option<Lattice>,
@@ -128,7 +121,7 @@ pub fn closest(design: &Design, gap: f64) -> Extreme {
 
 fn run(args: &Common, what: impl FnOnce(&Design) -> Extreme) -> Result<ExitCode> {
     args.save.iter().try_for_each(|file| args.replace.check(file))?;
-    let input = Input::read_with(&args.design, &args.set, args.minor_radius)?;
+    let input = args.design.read()?;
     let what = what(&input.design);
     let begun = Instant::now();
     let answer = search(&input, what, args.lattice, args.search, args.threads)?;

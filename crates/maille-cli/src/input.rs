@@ -1,6 +1,9 @@
 //! A design from a built-in name or a file, and its model.
 
-use crate::exit::{self, wrong};
+use crate::{
+    exit::{self, wrong},
+    numbers::positive,
+};
 use maille::{
     design::Design, error::InvalidInput, lattice::Cell, model::Model, sheet::Sheet, survey::CellChoice, topology,
 };
@@ -35,6 +38,26 @@ impl std::str::FromStr for Setting {
             Some((name, value)) if !name.is_empty() => Ok(Setting { name: name.to_owned(), value }),
             _ => Err(format!("\"{text}\" sets no parameter; write NAME=NUMBER, as radius=5.0")),
         }
+    }
+}
+
+/// The design of a command, and what changes its numbers.
+#[derive(clap::Args)]
+pub struct DesignArgs {
+    /// A built-in design (see `maille designs`), a TOML file, or - for standard input
+    pub design: String,
+    /// Minor radius of every ring that gives none, in the file's unit
+    #[arg(long, value_parser = positive)]
+    minor_radius: Option<f64>,
+    /// A value for a parameter of the design's file, as radius=5.0; several with commas
+    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',')]
+    set: Vec<Setting>,
+}
+
+impl DesignArgs {
+    /// Reads the design.
+    pub fn read(&self) -> Result<Input> {
+        Input::read_with(&self.design, &self.set, self.minor_radius)
     }
 }
 

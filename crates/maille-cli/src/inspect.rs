@@ -2,9 +2,9 @@
 
 use crate::{
     exit,
-    input::{Input, Setting},
+    input::{DesignArgs, Input},
     inspect_piece::{OfCell, Piece, other_states},
-    numbers::{positive, read},
+    numbers::read,
     output,
     piece::known_millimetres,
     source::tolerant,
@@ -38,14 +38,8 @@ Examples:
   maille inspect kings-mail --json | jq .smallest_gap
   maille inspect my-weave.toml --watch")]
 pub struct Args {
-    /// A built-in design (see `maille designs`), a TOML file, or - for standard input
-    design: String,
-    /// Minor radius of every ring that gives none, in the file's unit
-    #[arg(long, value_parser = positive)]
-    minor_radius: Option<f64>,
-    /// A value for a parameter of the design's file, as radius=5.0; several with commas
-    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',')]
-    set: Vec<Setting>,
+    #[command(flatten)]
+    design: DesignArgs,
     /// Cell: 1x1, 2x1, … or an integer matrix as "1,0;-1,2"
     #[arg(long, default_value = "1x1", value_parser = read::<Cell>)]
     cell: Cell,
@@ -152,13 +146,13 @@ struct Bound {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
     match args.watch {
-        true => watch(std::slice::from_ref(&args.design), || once(args)),
+        true => watch(std::slice::from_ref(&args.design.design), || once(args)),
         false => once(args),
     }
 }
 
 fn once(args: &Args) -> Result<ExitCode> {
-    let input = Input::read_with(&args.design, &args.set, args.minor_radius)?;
+    let input = args.design.read()?;
     // Overlaps are shown here, not refused.
     let model = input.compile(&tolerant(&input.design), args.cell)?;
     let found = inspection(&input, &model, args)?;

@@ -4,9 +4,9 @@ use crate::{
     certificate,
     effort::SearchArgs,
     exit::{self, refused, wrong},
-    input::{Input, Setting},
+    input::DesignArgs,
     interrupt,
-    numbers::{finite, one_of, positive, read},
+    numbers::{finite, one_of, read},
     output::{self, say},
 };
 use clap::builder::TypedValueParser;
@@ -38,8 +38,8 @@ Examples:
 
 Exit codes: 0 certified, or proved that what is held cannot be; 5 no certified state was found, 130 interrupted.")]
 pub struct Args {
-    /// A built-in design (see `maille designs`), a TOML file, or - for standard input
-    design: String,
+    #[command(flatten)]
+    design: DesignArgs,
     /// The strain to make as large as can be
     #[arg(long, value_name = "STRAIN", value_parser = strain(), conflicts_with = "minimize")]
     maximize: Option<Strain>,
@@ -55,12 +55,6 @@ pub struct Args {
     /// Direction of the strains' x axis, degrees counter-clockwise from that of the design
     #[arg(long, default_value_t = 0.0, value_parser = finite, allow_hyphen_values = true)]
     direction: f64,
-    /// Minor radius of every ring that gives none, in the file's unit
-    #[arg(long, value_parser = positive)]
-    minor_radius: Option<f64>,
-    /// A value for a parameter of the design's file, as radius=5.0; several with commas
-    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',')]
-    set: Vec<Setting>,
     /// Cell: 1x1, 2x1, …, an integer matrix as "1,0;-1,2", or auto: larger cells where an element presses on its own image or a wave
     /// through the sheet is unstable, and all up to 3x3 with --minimize
     #[arg(long, default_value = "auto", value_parser = read::<CellChoice>)]
@@ -115,7 +109,7 @@ fn question(args: &Args) -> Result<Question> {
 pub fn run(args: &Args) -> Result<ExitCode> {
     let question = question(args)?;
     question.check().map_err(|e| refused(&e))?;
-    let input = Input::read_with(&args.design, &args.set, args.minor_radius)?;
+    let input = args.design.read()?;
     let sheet = input.sheet(args.cell.clone())?;
     let cancel = interrupt::flag(false)?;
     let begun = Instant::now();

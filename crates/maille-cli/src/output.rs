@@ -103,10 +103,7 @@ pub fn line(text: fmt::Arguments<'_>) {
     let _ = writeln!(std::io::stdout(), "{text}");
 }
 
-/// `1 limit`, `2 limits`.
-pub fn counted(count: usize, what: &str) -> String {
-    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
-}
+pub use maille_io::numbers::counted;
 
 /// A document with the time that it took.
 pub fn timed(mut document: serde_json::Value, wall_s: f64) -> serde_json::Value {

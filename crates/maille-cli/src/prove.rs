@@ -3,7 +3,7 @@
 use crate::{
     effort::SearchArgs,
     exit::{self, refused, wrong},
-    input::{Input, Setting, file_name},
+    input::{DesignArgs, Input, file_name},
     interrupt,
     map::pool,
     numbers::{finite, positive},
@@ -41,20 +41,14 @@ Where the search for a proof ends early, the file proves what was reached: a lar
 
 Exit codes: 0 proved; 5 something is left open: a larger value is proved, or none; 130 interrupted, likewise.")]
 pub struct Args {
-    /// A built-in design (see `maille designs`), a TOML file, or - for standard input
-    design: String,
+    #[command(flatten)]
+    design: DesignArgs,
     /// Direction of the pull, degrees counter-clockwise from x
     #[arg(long, value_parser = finite, allow_hyphen_values = true)]
     direction: f64,
     /// Stretch - 1 across the direction
     #[arg(long, default_value_t = 0.0, value_parser = finite, allow_hyphen_values = true)]
     l2: f64,
-    /// Minor radius of every ring that gives none, in the file's unit
-    #[arg(long, value_parser = positive)]
-    minor_radius: Option<f64>,
-    /// A value for a parameter of the design's file, as radius=5.0; several with commas
-    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',')]
-    set: Vec<Setting>,
     /// How far above the limit that is found the proved value may be
     #[arg(long, default_value_t = 1e-3, value_parser = positive, value_name = "L1")]
     within: f64,
@@ -87,7 +81,7 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    let input = Input::read_with(&args.design, &args.set, args.minor_radius)?;
+    let input = args.design.read()?;
     let file = args.out.clone().unwrap_or_else(|| usual_file(args, &input));
     args.replace.check(&file)?;
     input.compile(&input.design, Cell::PRIMITIVE)?;

@@ -3,7 +3,7 @@
 use crate::{
     effort::SearchArgs,
     exit::{self, refused, wrong},
-    input::{Input, Setting},
+    input::DesignArgs,
     interrupt,
     numbers::{finite, positive, read},
     output::{self, say},
@@ -15,8 +15,8 @@ use std::{process::ExitCode, time::Instant};
 
 /// How a limit changes with the numbers of its design
 ///
-/// The forces of a certified limit give its derivative by every number: the wire, each ring's radii, offset and tilt, the spacing and
-/// the lattice vectors. Nothing is solved anew, so the changes are those of first order. The numbers are listed by how much they
+/// The forces of a certified limit give its derivative by every number: the wire, each ring's radii, offset and tilt, the spacing,
+/// the lattice vectors, and the parameters of the file. Nothing is solved anew, so the changes are those of first order. The numbers are listed by how much they
 /// matter, with the pairs of rings through which they act. Where the forces are not unique, a number can act differently to both sides:
 /// then both changes are given. Centres of elements change nothing, as a limit is sought over all positions.
 #[derive(clap::Args)]
@@ -28,8 +28,8 @@ Examples:
 
 Exit codes: 0 done, 5 no certified limit was found, 130 interrupted.")]
 pub struct Args {
-    /// A built-in design (see `maille designs`), a TOML file, or - for standard input
-    design: String,
+    #[command(flatten)]
+    design: DesignArgs,
     /// Direction of the pull, degrees counter-clockwise from x
     #[arg(long, default_value_t = 0.0, value_parser = finite, allow_hyphen_values = true)]
     direction: f64,
@@ -39,12 +39,6 @@ pub struct Args {
     /// Change of a length, in the file's unit [default: 0.1 mm; of a design without unit, 1 % of its reference radius]
     #[arg(long, value_parser = positive)]
     step: Option<f64>,
-    /// Minor radius of every ring that gives none, in the file's unit
-    #[arg(long, value_parser = positive)]
-    minor_radius: Option<f64>,
-    /// A value for a parameter of the design's file, as radius=5.0; several with commas
-    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',')]
-    set: Vec<Setting>,
     /// Cell: 1x1, 2x1, …, an integer matrix as "1,0;-1,2", or auto
     #[arg(long, default_value = "auto", value_parser = read::<CellChoice>)]
     cell: CellChoice,
@@ -59,7 +53,7 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<ExitCode> {
     let question = args.search.of(Question::stretch_along(args.direction).with_lateral(args.l2));
     question.check().map_err(|e| refused(&e))?;
-    let input = Input::read_with(&args.design, &args.set, args.minor_radius)?;
+    let input = args.design.read()?;
     let sheet = input.sheet(args.cell.clone())?;
     let cancel = interrupt::flag(false)?;
     let begun = Instant::now();

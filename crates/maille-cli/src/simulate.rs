@@ -2,7 +2,7 @@
 
 use crate::{
     exit::{self, wrong},
-    input::{Input, Setting, file_name},
+    input::{DesignArgs, Input, file_name},
     interrupt,
     numbers::positive,
     output::{self, counted},
@@ -59,8 +59,8 @@ name, in all cells (flat), or with its cell (flat@0,2). Fixed and pulled element
 
 Exit codes: 0 the pull was done, or the sheet locked; 5 a step did not converge; 130 interrupted.")]
 pub struct Args {
-    /// A built-in design (see `maille designs`), a TOML file, or - for standard input
-    design: String,
+    #[command(flatten)]
+    design: DesignArgs,
     #[command(flatten)]
     piece: PieceArgs,
     /// Where elements are held: left, right, top, bottom or elements, as left,flat@0,2
@@ -92,12 +92,6 @@ pub struct Args {
     /// Another folder with every state that the minimisation accepted as a frame, and no forces.csv
     #[arg(long, value_name = "DIR")]
     frames: Option<PathBuf>,
-    /// Minor radius of every ring that gives none, in the file's unit
-    #[arg(long, value_parser = positive)]
-    minor_radius: Option<f64>,
-    /// A value for a parameter of the design's file, as radius=5.0; several with commas
-    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',')]
-    set: Vec<Setting>,
     /// Weight of the contacts against the pulls, alpha/beta
     #[arg(long, default_value_t = EnergyOptions::default().alpha, value_parser = positive)]
     alpha: f64,
@@ -188,7 +182,7 @@ fn refused(problem: InvalidInput) -> Report {
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    let input = Input::read_with(&args.design, &args.set, args.minor_radius)?;
+    let input = args.design.read()?;
     let out = args
         .out
         .clone()

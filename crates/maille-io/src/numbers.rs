@@ -1,10 +1,15 @@
-//! Lists and ranges of numbers, as on the command line and in studies.
+//! Lists and ranges of numbers, as on the command line and in studies, and counts in words.
 
 use maille::question::Question;
 
 /// Numbers of `--directions` or `--l2`, in the order given, without repetition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Numbers(pub Vec<f64>);
+
+/// `1 limit`, `2 limits`.
+pub fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}
 
 /// Most numbers in one list.
 const MOST: usize = 100_000;

@@ -10,9 +10,8 @@ use crate::{
     question::{Goal, Question, Sense},
     record::Status,
     search::{
-        ExactOptions,
-        closest::closest_cell,
-        extreme::{Extreme, ExtremeOptions, extreme},
+        ExactOptions, ExtremeOptions,
+        extreme::{Extreme, extreme},
         strain::{StrainMethod, StrainOptions},
     },
     state::{Pose, State},
@@ -86,10 +85,7 @@ impl Sheet {
             }
             Goal::Wire { lattice_free } => extreme(Extreme::ThickestWire, lattice_free),
             Goal::Clearance { lattice_free } => extreme(Extreme::LargestClearance, lattice_free),
-            Goal::Area { min_gap } => {
-                let options = ExtremeOptions { lattice_free: true, effort, starts, seed };
-                closest_cell(self.model(), min_gap / self.model().unit, &options, cancel)
-            }
+            Goal::Area { min_gap } => extreme(Extreme::ClosestCell { gap: min_gap / self.model().unit }, true),
             Goal::Strain { .. } | Goal::Ray { .. } => self.strain(question, cancel)?,
         })
     }

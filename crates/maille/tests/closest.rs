@@ -7,7 +7,7 @@ use maille::{
     model::Model,
     question::Question,
     record::Status,
-    search::extreme::{Extreme, ExtremeOptions, extreme},
+    search::{Extreme, ExtremeOptions, extreme::extreme},
     sheet::Sheet,
 };
 use maille_geometry::Vec3;

@@ -6,7 +6,7 @@ use maille::{
     lattice::Cell,
     model::Model,
     record::Status,
-    search::extreme::{Extreme, ExtremeOptions, extreme},
+    search::{Extreme, ExtremeOptions, extreme::extreme},
     topology,
 };
 use std::sync::atomic::AtomicBool;

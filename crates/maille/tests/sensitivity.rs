@@ -1,7 +1,7 @@
 //! Derivatives of limits against differences of limits that are solved anew.
 
 use maille::{
-    Across, Answer, Cell, Design, Goal, Question, Sense, Sheet, Strain,
+    Across, Answer, Cell, Design, Goal, Question, Sense, Sheet, Status, Strain,
     sensitivity::{DesignVector, Sensitivity, gradient},
 };
 use maille_geometry::Vec3;
@@ -73,6 +73,11 @@ fn loaded(answer: &Answer) -> BTreeSet<(usize, usize, [i32; 2])> {
     carrying.map(|contact| (contact.pair.ring_a, contact.pair.ring_b, contact.pair.shift)).collect()
 }
 
+/// The limit. One that attains its bound can stay 1e-10 below it, which differences would multiply.
+fn limit(answer: &Answer) -> Option<f64> {
+    if answer.status == Status::Global { answer.bound } else { answer.limit() }
+}
+
 /// Limits at these multiples of h along `change`, if all are found and `kept` is true of their answers.
 fn limits<const N: usize>(
     (design, question, change): (&Design, &Question, &DesignVector),
@@ -84,9 +89,12 @@ fn limits<const N: usize>(
     if !kept(&answers) {
         return None;
     }
-    let values: Option<Vec<f64>> = answers.iter().map(Answer::limit).collect();
+    let values: Option<Vec<f64>> = answers.iter().map(limit).collect();
     values?.try_into().ok()
 }
+
+/// Derivatives agree with differences to this.
+const AGREE: f64 = 1e-5;
 
 /// Counts and largest errors of compared derivatives. An error is relative to the derivative, or to 0.01 where that is larger, with
 /// lengths in reference radii.
@@ -106,9 +114,7 @@ struct Tally {
     /// One-sided derivatives compared with one-sided differences.
     sides: usize,
     sides_changed: usize,
-    worst_side: f64,
-    where_worst_side: String,
-    /// Derivatives and sides of an error above 1e-5.
+    /// Derivatives and sides of an error above [`AGREE`].
     wrong: usize,
 }
 
@@ -122,8 +128,9 @@ struct Case<'a> {
 }
 
 impl Case<'_> {
-    fn step(&self, number: &str) -> f64 {
-        1e-4 * if number.contains("tilt") { 1.0 } else { self.design.reference_radius }
+    /// Steps of differences, in the design's unit or radians: the solves' rounding spoils short ones, curvature long ones.
+    fn steps(&self, number: &str) -> [f64; 3] {
+        [1e-4, 1e-5, 1e-3].map(|h| h * if number.contains("tilt") { 1.0 } else { self.design.reference_radius })
     }
 
     fn error(&self, number: &str, derivative: f64, difference: f64) -> f64 {
@@ -131,50 +138,71 @@ impl Case<'_> {
         (derivative - difference).abs() * unit / (difference.abs() * unit).max(0.01)
     }
 
+    /// The difference that is nearest to the derivative, with its error: of the first step that agrees, if one does. `None` where
+    /// other contacts carry within the first step.
+    fn nearest(&self, number: &str, derivative: f64, of: impl Fn(f64) -> Option<f64>) -> Option<(f64, f64)> {
+        let mut best = None;
+        for (k, h) in self.steps(number).into_iter().enumerate() {
+            let Some(difference) = of(h) else { if k == 0 { return None } else { continue } };
+            let error = self.error(number, derivative, difference);
+            if best.is_none_or(|(_, least)| error < least) {
+                best = Some((difference, error));
+            }
+            if error <= AGREE {
+                break;
+            }
+        }
+        best
+    }
+
     /// By central differences of fourth order, where the loaded contacts stay.
     fn central(&self, number: &str, change: &DesignVector, tally: &mut Tally) {
-        let h = self.step(number);
+        let derivative = self.found.along(change);
         let kept = |answers: &[Answer]| answers.iter().all(|a| loaded(a) == loaded(self.answer));
-        let asked = (self.design, self.question, change);
-        let Some([f0, f1, f2, f3]) = limits(asked, h, [-2.0, -1.0, 1.0, 2.0], kept) else {
+        let difference = |h: f64| {
+            let asked = (self.design, self.question, change);
+            let [f0, f1, f2, f3] = limits(asked, h, [-2.0, -1.0, 1.0, 2.0], kept)?;
+            Some((f0 - 8.0 * f1 + 8.0 * f2 - f3) / (12.0 * h))
+        };
+        let Some((difference, error)) = self.nearest(number, derivative, difference) else {
             tally.changed += 1;
             return;
         };
-        let (difference, derivative) = ((f0 - 8.0 * f1 + 8.0 * f2 - f3) / (12.0 * h), self.found.along(change));
         tally.compared += 1;
-        let error = self.error(number, derivative, difference);
-        tally.wrong += usize::from(error > 1e-5);
-        if error > tally.worst {
-            tally.worst = error;
-            tally.where_worst = format!("{} {number}: {derivative} {difference}", self.label);
-        }
+        tally.judge(error, format!("{} {number}: {derivative} {difference}", self.label));
     }
 
     /// By differences of third order to each side, where the loaded contacts stay the same on that side.
     fn sides(&self, number: &str, change: &DesignVector, tally: &mut Tally) {
         let both = self.found.one_sided(change);
         tally.kinks += usize::from(both.is_kink());
-        let f0 = self.answer.value.unwrap();
+        let f0 = limit(self.answer).unwrap();
         for (slope, sign) in [(both.backward, -1.0), (both.forward, 1.0)] {
-            let h = sign * self.step(number);
+            let derivative = slope.finite().unwrap_or(f64::NAN);
             let kept = |answers: &[Answer]| answers.iter().all(|a| loaded(a) == loaded(&answers[0]));
-            let asked = (self.design, self.question, change);
-            let Some([f1, f2, f3]) = limits(asked, h, [1.0, 2.0, 3.0], kept) else {
+            let difference = |h: f64| {
+                let (asked, h) = ((self.design, self.question, change), sign * h);
+                let [f1, f2, f3] = limits(asked, h, [1.0, 2.0, 3.0], kept)?;
+                Some((-11.0 * f0 + 18.0 * f1 - 9.0 * f2 + 2.0 * f3) / (6.0 * h))
+            };
+            let Some((difference, error)) = self.nearest(number, derivative, difference) else {
                 tally.sides_changed += 1;
                 continue;
             };
-            let difference = (-11.0 * f0 + 18.0 * f1 - 9.0 * f2 + 2.0 * f3) / (6.0 * h);
-            let derivative = slope.finite().unwrap_or(f64::NAN);
             tally.sides += 1;
-            let error = self.error(number, derivative, difference);
-            if error.is_nan() || error > 1e-5 {
-                tally.wrong += 1;
-                println!("  {} {number} {sign}: {both:?} {difference}", self.label);
-            }
-            if error.is_nan() || error > tally.worst_side {
-                tally.worst_side = error;
-                tally.where_worst_side = format!("{} {number} {sign}: {both:?} {difference}", self.label);
-            }
+            tally.judge(error, format!("{} {number} {sign}: {both:?} {difference}", self.label));
+        }
+    }
+}
+
+impl Tally {
+    fn judge(&mut self, error: f64, words: String) {
+        if error.is_nan() || error > AGREE {
+            self.wrong += 1;
+            println!("  {words}");
+        }
+        if error.is_nan() || error > self.worst {
+            (self.worst, self.where_worst) = (error, words);
         }
     }
 }
@@ -214,13 +242,14 @@ fn derivatives_are_those_of_limits_solved_anew() {
 #[test]
 #[ignore = "minutes"]
 fn derivatives_of_all_builtin_designs() {
+    let mut wrong = 0;
     for builtin in maille_io::builtin_designs() {
         let mut tally = Tally::default();
         compare(builtin.name, &[0.0, 10.0, 33.0], &[0.0, -0.05], &mut tally);
         println!("{}: {tally:?}", builtin.name);
-        // A limit is solved to about 1e-10, which a step of 1e-4 makes 1e-6: derivatives that are 0 may miss their bound.
-        assert!(tally.wrong * 20 <= tally.compared + tally.sides, "{}: {tally:?}", builtin.name);
+        wrong += tally.wrong;
     }
+    assert_eq!(wrong, 0);
 }
 
 /// Along 45° the chains of 1.1 along 0° and 90° are taut at once: longer rings in one of them alone do nothing, shorter ones cost.

@@ -19,7 +19,7 @@ use maille_io::{
     Tile,
     mesh::{self, Colours, Fineness, MeshFile, Objects, Scene, TorusMesh, WriteOptions},
 };
-use miette::Result;
+use miette::{Result, WrapErr};
 use std::{
     fs,
     io::Cursor,
@@ -176,7 +176,14 @@ fn write_options(args: &Args) -> WriteOptions {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
     let source = match args.min_gap {
-        Some(gap) => args.source.closest(|design| Ok(closest(design, torus_gap(args, design, gap)?)))?,
+        Some(gap) => {
+            args.source.closest(|design| Ok(closest(design, torus_gap(args, design, gap)?))).wrap_err_with(|| {
+                format!(
+                    "no cell in which meshes keep {} mm: their tori need a little more, as meshes stand out of them",
+                    gap.mm
+                )
+            })?
+        }
         None => args.source.read(Wanted { locked: args.frames.is_some(), overlaps: false, threads: None })?,
     };
     let (destination, formats) = destination(args.out.as_deref(), &args.format, args.frames.is_some(), &source)?;

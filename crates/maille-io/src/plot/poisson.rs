@@ -1,6 +1,7 @@
 //! The kinematic Poisson ratio ν = −ln(1 + l2)/ln(1 + l1) at the limits with free width, against the direction of the pull.
 //!
-//! At a limit the width need not be unique: the ratio is a band between the values of the largest and the least l2.
+//! At a limit the width need not be unique: the ratio is then a bar between the values of the largest and the least l2, and a band
+//! between neighbouring bars.
 
 use super::chart::{Chart, Point, Series, legend_of_records};
 use super::compare::{captions, differences, title};
@@ -24,6 +25,18 @@ fn ratios(row: &LimitRow) -> Option<[f64; 2]> {
     let free = row.lateral.as_deref() == Some("free") && l1 > LEAST_L1 && least > -1.0;
     let ends = if most - least < ONE_WIDTH { [0.5 * (least + most); 2] } else { [most, least] };
     free.then(|| ends.map(|l2| -l2.ln_1p() / l1.ln_1p()))
+}
+
+/// The widths of a limit.
+#[derive(Clone, Copy, PartialEq)]
+enum Widths {
+    One,
+    Range,
+}
+
+/// Those of a row with a ratio.
+fn widths(row: &LimitRow) -> Option<Widths> {
+    ratios(row).map(|[low, high]| if low == high { Widths::One } else { Widths::Range })
 }
 
 /// What limits the ratio is of: where the sheet is folded, no ratio of small strains.
@@ -50,22 +63,25 @@ pub fn poisson_svg(records: &[NamedRecord], layout: Layout) -> Option<String> {
     for (named, look) in records.iter().zip(&looks) {
         let mut rows: Vec<&LimitRow> = named.record.rows.iter().collect();
         rows.sort_by(|a, b| a.direction_deg.total_cmp(&b.direction_deg));
-        let ends = |k: usize| {
-            let point = |row: &&LimitRow| Point { x: row.direction_deg, y: ratios(row).map(|r| r[k]), hollow: false };
-            rows.iter().map(point).collect::<Vec<_>>()
-        };
-        let [least, most] = [ends(0), ends(1)];
-        // A gap in the limits is a gap in the band.
-        let runs = least.split(|p| p.y.is_none()).zip(most.split(|p| p.y.is_none()));
-        for (low, high) in runs.filter(|(low, _)| !low.is_empty()) {
-            let around = low.iter().chain(high.iter().rev()).copied().collect();
-            bands.push((around, format!("{}40", look.color)));
+        // Between a direction with one width and one with a range nothing is known: no line joins them.
+        for run in rows.chunk_by(|a, b| widths(a) == widths(b)) {
+            let ends = |k: usize| {
+                let point =
+                    |row: &&LimitRow| Point { x: row.direction_deg, y: ratios(row).map(|r| r[k]), hollow: false };
+                run.iter().map(point).collect::<Vec<_>>()
+            };
+            let (least, most) = (ends(0), ends(1));
+            if widths(run[0]) == Some(Widths::Range) {
+                let around = least.iter().chain(most.iter().rev()).copied().collect();
+                bands.push((around, format!("{}40", look.color)));
+                // A bar joins the two ends of a direction.
+                let thin = Look { width: 1.2, dash: "", ..look.clone() };
+                let bar = |(low, high): (&Point, &Point)| Series { look: thin.clone(), points: vec![*low, *high] };
+                bars.extend(least.iter().zip(&most).map(bar));
+                series.push(Series { look: look.clone(), points: most });
+            }
+            series.push(Series { look: look.clone(), points: least });
         }
-        // A bar joins the two ends of a direction.
-        let ends = least.iter().zip(&most).filter(|(low, high)| low.y != high.y);
-        let thin = Look { width: 1.2, dash: "", ..look.clone() };
-        bars.extend(ends.map(|(low, high)| Series { look: thin.clone(), points: vec![*low, *high] }));
-        series.extend([least, most].map(|points| Series { look: look.clone(), points }));
     }
     let values: Vec<f64> = series.iter().flat_map(|s| &s.points).filter_map(|point| point.y).collect();
     if values.is_empty() {

@@ -6,13 +6,8 @@ use super::frame::{Entry, Frame, Layout, SOFT};
 use super::look::{self, Look};
 use super::outcome::Outcome;
 use super::scale::Axis;
-use crate::{quantity::Quantity, record::NamedRecord};
+use crate::{numbers::counted, quantity::Quantity, record::NamedRecord};
 use maille::{design::Design, record::LimitRow};
-
-/// `1 limit`, `2 limits`.
-fn counted(count: usize, what: &str) -> String {
-    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
-}
 
 /// Rows that differ in the radius alone.
 struct Curve<'a> {

@@ -1,7 +1,7 @@
 //! A table for the terminal: aligned, rounded, as wide as the terminal.
 
 use super::{Field, Table};
-use crate::record::NamedRecord;
+use crate::{numbers::counted, record::NamedRecord};
 use maille::record::{Entry, Kind};
 use std::fmt::Write;
 
@@ -98,11 +98,11 @@ impl Table<'_> {
     /// `12 of 37 rows that fit, of 185`.
     fn count(&self, shown: usize) -> String {
         let (chosen, total) = (self.rows.len(), self.total);
-        let rows = |n: usize| if n == 1 { "row" } else { "rows" };
+        let rows = counted(total, "row");
         match (shown == chosen, chosen == total) {
-            (true, true) => format!("{total} {}\n", rows(total)),
-            (true, false) => format!("{chosen} of {total} {}\n", rows(total)),
-            (false, true) => format!("first {shown} of {total} {}\n", rows(total)),
+            (true, true) => format!("{rows}\n"),
+            (true, false) => format!("{chosen} of {rows}\n"),
+            (false, true) => format!("first {shown} of {rows}\n"),
             (false, false) => format!("first {shown} of {chosen} chosen rows, of {total}\n"),
         }
     }

@@ -180,6 +180,21 @@ fn a_free_width_is_a_bar() {
     assert_eq!((bars(&wide), bars(&narrow)), (12, 0));
     assert!(wide.contains("12 of 12 limits are folded states") && wide.contains("30 %"));
     assert!(!narrow.contains("folded") && wide.contains(">no limit, or no free width<"));
+
+    // One range between single widths: no line leads to its bar, and no band.
+    let free = |(k, row): (usize, LimitRow)| {
+        let least = if k == 6 { -0.7 } else { 0.2 };
+        LimitRow { lateral: Some("free".into()), l2_min: Some(least), l2_max: Some(0.2), ..row }
+    };
+    let rows = turn(0.0, 15.0).into_iter().enumerate().map(free).collect();
+    let mixed = poisson_svg(&[record("a", design(), rows)], Layout::Beside).unwrap();
+    assert_eq!(bars(&mixed), 1);
+    let x = |line: &&str| -> Vec<f64> {
+        attribute(line, "d").split(['M', 'L', ' ']).filter_map(|x| x.parse().ok()).step_by(2).collect()
+    };
+    let all = lines(&mixed);
+    let bar = all.iter().map(x).find(|x| x.len() == 2 && x[0] == x[1]).unwrap()[0];
+    assert!(all.iter().map(x).filter(|x| x.contains(&bar)).all(|x| x.iter().all(|other| *other == bar)));
 }
 
 #[test]

@@ -7,10 +7,10 @@
 //! `local`.
 
 use super::{
-    extreme::{Extreme, ExtremeOptions, Sought, extreme},
     local::LocalSolution,
     multistart::{Entered, Multistart, Target, verdict},
-    options::FEASIBLE,
+    options::{ExtremeOptions, FEASIBLE},
+    room::{Room, Sought, largest_room},
     starts::{Start, explored_with_own_wire},
     stop::StopRule,
 };
@@ -31,7 +31,7 @@ const SPARED_GAP: f64 = 1e-11;
 struct LeastArea;
 
 /// The clearance that a start first needs, with the lattice free.
-const ROOM: Sought = Sought { what: Extreme::LargestClearance, lattice_free: true };
+const ROOM: Sought = Sought { what: Room::Clearance, lattice_free: true };
 
 impl Target for LeastArea {
     /// t first, then the lattice.
@@ -66,9 +66,9 @@ impl Target for LeastArea {
 /// Searches for the cell of least area in which every gap is at least `gap` (in reference radii), on the current thread pool. The
 /// result does not depend on the number of threads. The lattice is free, whatever the options say.
 ///
-/// The value is the area as a share of the written one. The status is `local` with a complete certificate, else `uncertified`. Where no start led to such a cell, the answer is `not-converged`, with the state and the gap
-/// of the widest that was found.
-pub fn closest_cell(model: &Model, gap: f64, options: &ExtremeOptions, cancel: &AtomicBool) -> Answer {
+/// The value is the area as a share of the written one. Where no start led to such a cell, the answer has the state and the gap of
+/// the widest that was found.
+pub(super) fn closest_cell(model: &Model, gap: f64, options: &ExtremeOptions, cancel: &AtomicBool) -> Answer {
     let mut thick = model.clone();
     thick.rings.iter_mut().for_each(|ring| ring.minor_radius += 0.5 * (gap + SPARED_GAP));
     let search = Multistart { target: &LeastArea, upper_bound: f64::INFINITY, seed: options.seed, cancel };
@@ -80,7 +80,7 @@ pub fn closest_cell(model: &Model, gap: f64, options: &ExtremeOptions, cancel: &
             return found.counted(Answer::new(model, Status::Interrupted));
         }
         let options = ExtremeOptions { lattice_free: true, ..options.clone() };
-        let widest = extreme(model, Extreme::LargestClearance, &options, cancel);
+        let widest = largest_room(model, Room::Clearance, &options, cancel);
         let Answer { state, gradient, gap, .. } = widest;
         return found.counted(Answer { state, gradient, gap, ..Answer::new(model, Status::NotConverged) });
     };

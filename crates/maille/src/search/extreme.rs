@@ -1,35 +1,13 @@
-//! Extremes of a weave that are no strains: the thickest wire with which it exists, the state with the largest clearance, and the
-//! closest cell (in [`super::closest`]).
-//!
-//! The program of a limit with another parameter p in place of l1. All rings must keep the core distance
-//!
-//! - thickest wire: (1 + p)(r_a + r_b), so that the minor radii (1 + p) r are as large as can be;
-//! - largest clearance: r_a + r_b + p, so that the smallest gap p is as large as can be.
-//!
-//! Over all poses, and over the lattice where it is free: a1 along its direction, a2 in the plane (a common turn changes
-//! nothing). Links are kept as in a limit, and the certificate is the same. No bound is known that proves such a state
-//! the best of all, so the most that is claimed is `local`, with the number of starts and of distinct values they led to.
+//! Extremes of a weave that are no strains: the thickest wire with which it exists, the state with the largest clearance
+//! (`room.rs`), and the closest cell (`closest.rs`).
 
 use super::{
-    local::LocalSolution,
-    multistart::{Entered, Multistart, Target, verdict},
-    options::THIN_WIRE,
-    starts::{Start, explored_with_own_wire},
-    stop::StopRule,
+    closest::closest_cell,
+    options::ExtremeOptions,
+    room::{Room, largest_room},
 };
-use crate::{
-    answer::Answer,
-    design::Design,
-    lattice::Cell,
-    model::Model,
-    program::{LatticeFamily, Parameter},
-    question::Effort,
-    record::Status,
-    state::State,
-    topology,
-};
-use maille_geometry::Vec3;
-use std::sync::atomic::{AtomicBool, Ordering};
+use crate::{answer::Answer, design::Design, lattice::Cell, model::Model};
+use std::sync::atomic::AtomicBool;
 
 /// What is as large, or as small, as can be.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,25 +21,6 @@ pub enum Extreme {
         /// The gap.
         gap: f64,
     },
-}
-
-/// How the search goes.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ExtremeOptions {
-    /// Whether the lattice may change.
-    pub lattice_free: bool,
-    /// How long it is searched.
-    pub effort: Effort,
-    /// So many starts in place of an effort.
-    pub starts: Option<usize>,
-    /// Seed of the starts that are drawn.
-    pub seed: u64,
-}
-
-impl Default for ExtremeOptions {
-    fn default() -> Self {
-        ExtremeOptions { lattice_free: true, effort: Effort::Normal, starts: None, seed: 1 }
-    }
 }
 
 /// A ring's size in the design's unit.
@@ -140,80 +99,15 @@ impl Extreme {
     }
 }
 
-/// An extreme, with the lattice free or held.
-pub(super) struct Sought {
-    pub what: Extreme,
-    pub lattice_free: bool,
-}
-
-impl Target for Sought {
-    /// p first, then the lattice where it is free.
-    fn family(&self, model: &Model) -> LatticeFamily {
-        let base = [model.start.a1, model.start.a2];
-        let goal = match self.what {
-            Extreme::ThickestWire => Parameter { thicken: 1.0, weight: 1.0, ..Parameter::default() },
-            // A closest cell first needs room.
-            Extreme::LargestClearance | Extreme::ClosestCell { .. } => {
-                Parameter { widen: 1.0, weight: 1.0, ..Parameter::default() }
-            }
-        };
-        let mut parameters = vec![goal];
-        if self.lattice_free {
-            let rates = [[base[0].normalize(), Vec3::zeros()], [Vec3::zeros(), Vec3::x()], [Vec3::zeros(), Vec3::y()]];
-            parameters.extend(rates.map(|rate| Parameter { rate, ..Parameter::default() }));
-        }
-        LatticeFamily { base, parameters, metric: None }
-    }
-
-    /// With thin wire, or with a p below every gap.
-    fn enter(&self, model: &Model, start: Start, _: &AtomicBool) -> Entered {
-        let p = self.first_parameters(model, &start.state);
-        Entered { at: Some((start.state, p)), iterations: 0 }
-    }
-
-    fn explored(&self, model: &Model, seed: u64, number: usize) -> Start {
-        explored_with_own_wire(model, seed, number)
-    }
-
-    fn start(&self, solution: &LocalSolution) -> Start {
-        Start::written(solution.state.clone())
-    }
-}
-
-impl Sought {
-    /// Parameters at a start.
-    pub(crate) fn first_parameters(&self, model: &Model, state: &State) -> Vec<f64> {
-        let goal = match self.what {
-            Extreme::ThickestWire => THIN_WIRE - 1.0,
-            Extreme::LargestClearance | Extreme::ClosestCell { .. } => {
-                topology::smallest_gap(model, state).map_or(0.0, |(gap, _)| gap.min(0.0))
-            }
-        };
-        let lattice = if self.lattice_free { 3 } else { 0 };
-        std::iter::once(goal).chain(std::iter::repeat_n(0.0, lattice)).collect()
-    }
-}
-
 /// Searches for an extreme of `model` on the current thread pool. The result does not depend on the number of threads.
 ///
-/// The value is the factor of the minor radii, or the clearance in reference radii. The status is `local` with a complete
-/// certificate, else `uncertified`; `not-converged` where no start led to a state without overlap.
-///
-/// # Panics
-/// For a closest cell, which [`closest_cell`](super::closest::closest_cell) searches.
+/// The value is the factor of the minor radii, the clearance in reference radii, or the area of the cell as a share of the written
+/// one. The status is `local` with a complete certificate, else `uncertified`; `not-converged` where no start led to a state without
+/// overlap, or to a cell with the gap: then the state is that of the widest gap that was found.
 pub fn extreme(model: &Model, what: Extreme, options: &ExtremeOptions, cancel: &AtomicBool) -> Answer {
-    assert!(!matches!(what, Extreme::ClosestCell { .. }), "a closest cell is searched by closest_cell");
-    let target = Sought { what, lattice_free: options.lattice_free };
-    let search = Multistart { target: &target, upper_bound: f64::INFINITY, seed: options.seed, cancel };
-    let straight = vec![Start::written(model.start.clone())];
-    let mut found = search.run(model, straight, StopRule::of(options.effort, options.starts));
-    let interrupted = cancel.load(Ordering::Relaxed);
-    let Some(best) = found.best.take() else {
-        let status = if interrupted { Status::Interrupted } else { Status::NotConverged };
-        return found.counted(Answer::new(model, status));
-    };
-    let status = if interrupted { Status::Interrupted } else { verdict(&best, f64::INFINITY) };
-    let value = Some(if what == Extreme::ThickestWire { 1.0 + best.value() } else { best.value() });
-    let gradient = best.state.deformation_gradient(model);
-    found.counted(Answer { value, gradient, ..Answer::new(model, status) }).with_solution(model, best)
+    match what {
+        Extreme::ThickestWire => largest_room(model, Room::Wire, options, cancel),
+        Extreme::LargestClearance => largest_room(model, Room::Clearance, options, cancel),
+        Extreme::ClosestCell { gap } => closest_cell(model, gap, options, cancel),
+    }
 }

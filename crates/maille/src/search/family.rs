@@ -1,8 +1,8 @@
 //! The program of which an answer is the solution: its family of lattices, and the parameters there.
 
 use super::{
-    extreme::{Extreme, Sought},
     multistart::Target,
+    room::{Room, Sought},
     stretch::Stretch,
 };
 use crate::{
@@ -47,7 +47,7 @@ pub(crate) fn family_at(
         }
     };
     let wire = matches!(question.goal, Goal::Wire { .. });
-    let what = if wire { Extreme::ThickestWire } else { Extreme::LargestClearance };
+    let what = if wire { Room::Wire } else { Room::Clearance };
     let mut p = vec![if wire { value - 1.0 } else { value }];
     if lattice_free {
         let [first, second] = [answer.state.a1 - model.start.a1, answer.state.a2 - model.start.a2];

@@ -1,12 +1,11 @@
 //! The exact method: answers by local maximisation from many starts, certified and compared with proven bounds.
 //!
-//! `starts` are states to begin with, `stop` says when they are enough, `local` is one maximisation, `multistart` the search from many starts and in larger cells, and the other files say what is
-//! maximised and from where: `stretch` (with `stretch_lattices`, and `unlinked` where no chain of links binds), `strain`, `extreme`
-//! (wire and clearance), `closest` (the area of the cell). `family` is the program that an answer solves. `waves` tells whether a limit
-//! can go on in a larger cell. `overlap` frees a start that overlaps. Every tolerance is in `options`.
+//! `starts` are states to begin with, `stop` says when they are enough, `local` is one maximisation, `multistart` the search from
+//! many starts and in larger cells, and the other files say what is maximised and from where: `stretch` (with `stretch_lattices`,
+//! and `unlinked` where no chain of links binds), `strain`, and `extreme`: `room` (wire and clearance) or `closest` (the area of
+//! the cell). `family` is the program that an answer solves. `waves` tells whether a limit can go on in a larger cell. `overlap` frees a start that overlaps. Every tolerance is in `options`.
 
-#[doc(hidden)]
-pub mod closest;
+mod closest;
 #[doc(hidden)]
 pub mod extreme;
 pub(crate) mod family;
@@ -14,6 +13,7 @@ mod local;
 mod multistart;
 mod options;
 mod overlap;
+mod room;
 mod starts;
 mod stop;
 #[doc(hidden)]
@@ -25,4 +25,4 @@ mod unlinked;
 mod waves;
 
 pub use extreme::Extreme;
-pub use options::{ExactOptions, ExactParameters};
+pub use options::{ExactOptions, ExactParameters, ExtremeOptions};

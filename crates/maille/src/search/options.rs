@@ -36,6 +36,25 @@ impl Default for ExactOptions {
     }
 }
 
+/// What a user chooses of the search for an extreme.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ExtremeOptions {
+    /// Whether the lattice may change; that of a closest cell always may.
+    pub lattice_free: bool,
+    /// How long it is searched.
+    pub effort: Effort,
+    /// So many starts in place of an effort.
+    pub starts: Option<usize>,
+    /// Seed of the starts that are drawn.
+    pub seed: u64,
+}
+
+impl Default for ExtremeOptions {
+    fn default() -> Self {
+        ExtremeOptions { lattice_free: true, effort: Effort::Normal, starts: None, seed: 1 }
+    }
+}
+
 /// Values that differ by less are the same.
 pub(super) const SAME_VALUE: f64 = 1e-7;
 /// A bound is attained within this.
@@ -159,6 +178,7 @@ pub struct ExactParameters {
     wire_pause: f64,
     straight_perturbation: f64,
     rounds: usize,
+    stalled_gain: f64,
     restarts: usize,
     larger_cell_restarts: usize,
     restart_size: f64,
@@ -202,6 +222,7 @@ impl ExactOptions {
             wire_pause: WIRE_PAUSE,
             straight_perturbation: STRAIGHT,
             rounds: ROUNDS,
+            stalled_gain: STALLED_GAIN,
             restarts: RESTARTS,
             larger_cell_restarts: LARGER_CELL_RESTARTS,
             restart_size: RESTART_SIZE,

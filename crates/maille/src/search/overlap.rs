@@ -2,14 +2,14 @@
 //!
 //! A design may say that its start overlaps (`allow_initial_overlap`). A limit is then sought from states that overlap, and where
 //! no arrangement of such rings exists, every search for it ends in vain, after a long time. So the rings are asked first, with the
-//! lattice free: by the two programs of [`super::extreme`], the largest clearance and the thickest wire, from a few perturbed starts each,
+//! lattice free: by the two programs of [`super::room`], the largest clearance and the thickest wire, from a few perturbed starts each,
 //! and each is stopped as soon as there is no overlap. Where none gets there nothing is proved: the answer is
 //! [`Status::InfeasibleStart`](crate::record::Status::InfeasibleStart), which says what was tried.
 
 use super::{
-    extreme::{Extreme, Sought},
     multistart::Target,
     options::{FREEING_PERTURBATIONS, SLIGHT_OVERLAP},
+    room::{Room, Sought},
     starts::{Use, perturbed, rng},
 };
 use crate::{
@@ -51,7 +51,7 @@ pub(super) fn beyond_repair(model: &Model, seed: u64, cancel: &AtomicBool) -> Op
     }
     let options = SqpOptions { enough: 0.0, ..SqpOptions::default() };
     let mut starts = 0;
-    for what in [Extreme::LargestClearance, Extreme::ThickestWire] {
+    for what in [Room::Clearance, Room::Wire] {
         let sought = Sought { what, lattice_free: true };
         let pull = sought.family(model);
         for (k, size) in FREEING_PERTURBATIONS.into_iter().enumerate() {

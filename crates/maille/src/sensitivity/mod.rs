@@ -160,12 +160,18 @@ impl Sensitivity {
     }
 
     /// The derivative along a change of the design, with the forces of the answer.
+    ///
+    /// # Panics
+    /// For a change of a design with another number of rings.
     pub fn along(&self, change: &DesignVector) -> f64 {
         self.sign * self.multipliers.first_sum(&self.rates(change))
     }
 
     /// The derivatives along a change of the design to both sides. A maximum rises by the least Σ μ ∂g/∂q over all forces that
     /// balance, forward, and falls by the largest, backward.
+    ///
+    /// # Panics
+    /// For a change of a design with another number of rings.
     pub fn one_sided(&self, change: &DesignVector) -> OneSided {
         let rates = self.rates(change);
         let slope = |sign: f64| {
@@ -181,6 +187,9 @@ impl Sensitivity {
 
     /// What each pair of rings contributes to [`Self::along`], the largest first; pairs that contribute nothing are left out. Rings and
     /// shifts are those of the design's own cell: the copies of a pair in a larger one are summed.
+    ///
+    /// # Panics
+    /// For a change of a design with another number of rings.
     pub fn by_pair(&self, change: &DesignVector) -> Vec<(RingPair, f64)> {
         let mut out: Vec<(RingPair, f64)> = Vec::new();
         for ((point, mu), rate) in self.points.iter().zip(&self.multipliers.first).zip(self.rates(change)) {
@@ -221,7 +230,7 @@ impl Sensitivity {
 /// The derivatives of an answer along changes of its design.
 ///
 /// # Errors
-/// As [`Sensitivity::of`].
+/// As [`Sensitivity::of`], and for changes of a design with another number of rings.
 pub fn gradient(
     model: &Model,
     question: &Question,
@@ -229,6 +238,10 @@ pub fn gradient(
     changes: &[DesignVector],
 ) -> Result<Vec<f64>, InvalidInput> {
     let all = Sensitivity::of(model, question, answer)?.gradient();
+    if changes.iter().any(|change| change.rings.len() != all.rings.len()) {
+        let help = "give changes of the design of this model";
+        return Err(InvalidInput::new("changes", "one is of a design with another number of rings", help));
+    }
     Ok(changes.iter().map(|change| all.dot(change)).collect())
 }
 
