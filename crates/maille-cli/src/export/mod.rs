@@ -9,6 +9,7 @@ use crate::{
     numbers::positive,
     output,
     piece::PieceArgs,
+    remedy,
     source::{Frame, Source, SourceArgs, Wanted},
     units::{Length, parse_length},
 };
@@ -19,7 +20,7 @@ use maille_io::{
     Tile,
     mesh::{self, Colours, Fineness, MeshFile, Objects, Scene, TorusMesh, WriteOptions},
 };
-use miette::{Result, WrapErr};
+use miette::Result;
 use std::{
     fs,
     io::Cursor,
@@ -177,11 +178,13 @@ fn write_options(args: &Args) -> WriteOptions {
 pub fn run(args: &Args) -> Result<()> {
     let source = match args.min_gap {
         Some(gap) => {
-            args.source.closest(|design| Ok(closest(design, torus_gap(args, design, gap)?))).wrap_err_with(|| {
-                format!(
+            let found = args.source.closest(|design| Ok(closest(design, torus_gap(args, design, gap)?)));
+            found.map_err(|report| match remedy::code(&report) {
+                exit::INCOMPLETE => report.wrap_err(format!(
                     "no cell in which meshes keep {} mm: their tori need a little more, as meshes stand out of them",
                     gap.mm
-                )
+                )),
+                _ => report,
             })?
         }
         None => args.source.read(Wanted { locked: args.frames.is_some(), overlaps: false, threads: None })?,
