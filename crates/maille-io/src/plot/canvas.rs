@@ -98,7 +98,9 @@ impl Canvas {
 
     pub(super) fn line(&mut self, from: [f64; 2], to: [f64; 2], stroke: Stroke<'_>) {
         let [x1, y1, x2, y2] = [from[0], from[1], to[0], to[1]].map(short);
-        self.line_out(format!("<line x1=\"{x1}\" y1=\"{y1}\" x2=\"{x2}\" y2=\"{y2}\" {}/>", stroke.attributes()));
+        // Without `none` a viewer of PDF draws the area of the line, a hairline under its dashes.
+        let ends = format!("x1=\"{x1}\" y1=\"{y1}\" x2=\"{x2}\" y2=\"{y2}\"");
+        self.line_out(format!("<line {ends} fill=\"none\" {}/>", stroke.attributes()));
     }
 
     pub(super) fn circle(&mut self, center: [f64; 2], radius: f64, fill: &str, stroke: Stroke<'_>) {

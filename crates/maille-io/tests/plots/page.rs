@@ -138,6 +138,18 @@ fn a_pdf_has_lines_areas_and_outlines() {
     assert!(svg_to_pdf(picture).is_err());
 }
 
+/// The area of a line is empty, but viewers draw a hairline where it is filled.
+#[test]
+fn no_line_of_a_pdf_is_filled() {
+    let svg = polar_svg(&PolarPlot::from_records(&three(), Quantity::L1), Layout::Below);
+    let page = pdf_page(&svg_to_pdf(&svg).unwrap());
+    let steps: Vec<&str> = page.lines().collect();
+    let line = |w: &&[&str]| w[0].ends_with(" m") && w[1].ends_with(" l");
+    let lines: Vec<&[&str]> = steps.windows(3).filter(line).collect();
+    assert!(lines.iter().any(|w| w[2] == "S"), "{page}");
+    assert!(!lines.iter().any(|w| w[2].starts_with('f')), "{page}");
+}
+
 /// On a page the legend stands below the data, without a heading, and nothing leaves the picture.
 #[test]
 fn a_narrow_plot_has_its_legend_below() {
