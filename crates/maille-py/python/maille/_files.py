@@ -22,5 +22,6 @@ def write_whole(path: Path, data: bytes) -> None:
         os.chmod(temporary, 0o666 & ~mask)
         os.replace(temporary, path)
     except BaseException:
-        os.unlink(temporary)
+        # Ctrl-C may come once the name is gone.
+        Path(temporary).unlink(missing_ok=True)
         raise
