@@ -3,7 +3,7 @@
 use crate::unit::millimetres;
 use maille::{
     answer::Answer,
-    design::{Design, Parameter},
+    design::Design,
     model::RingPair,
     sensitivity::{DesignVector, OneSided, RingVector, Sensitivity},
 };
@@ -31,9 +31,6 @@ const NAMED: usize = 2;
 const STEP_MM: f64 = 0.1;
 /// Step of the spacing, and of a length in a design without a unit of length, as a share of the reference radius.
 const SHARE: f64 = 0.01;
-/// Half of the step over which the numbers' rates by a parameter are taken, relative to the parameter or to 1.
-const PARAMETER_STEP: f64 = 1e-6;
-
 impl NumberChange {
     /// Changes of the limit for a step back and a step forward, to first order; `None` where no state is left, or it is not known.
     pub fn changes(&self) -> [Option<f64>; 2] {
@@ -92,7 +89,8 @@ pub fn ranked(design: &Design, found: &Sensitivity, step: Option<f64>) -> Vec<Nu
         lines.push(of(format!("lattice {name}"), &change, length, &in_unit));
     }
     for parameter in design.free_parameters() {
-        if let Some(change) = rate_by(design, parameter) {
+        let with = |value: f64| design.with_parameters(&[(&parameter.name, value)]).ok();
+        if let Some(change) = DesignVector::by_number(parameter.value, &with) {
             let share = if parameter.value == 0.0 { SHARE } else { SHARE * parameter.value.abs() };
             let words = if parameter.value == 0.0 { format!("{SHARE}") } else { "1 %".into() };
             lines.push(of(format!("parameter {}", parameter.name), &change, share, &words));
@@ -124,23 +122,6 @@ pub fn ranked(design: &Design, found: &Sensitivity, step: Option<f64>) -> Vec<Nu
     }
     lines.sort_by(|a, b| b.largest().total_cmp(&a.largest()));
     lines
-}
-
-/// How the numbers of the design change with a free parameter, by values beside its own; to one side where its bound or another
-/// rule forbids the other one. `None` where both are forbidden.
-fn rate_by(design: &Design, parameter: &Parameter) -> Option<DesignVector> {
-    let half = PARAMETER_STEP * parameter.value.abs().max(1.0);
-    let beside = |by: f64| {
-        let value = parameter.value + by;
-        Some((value, design.with_parameters(&[(&parameter.name, value)]).ok()?))
-    };
-    let own = || Some((parameter.value, design.clone()));
-    let (below, above) = (beside(-half), beside(half));
-    if below.is_none() && above.is_none() {
-        return None;
-    }
-    let ((from, below), (to, above)) = (below.or_else(own)?, above.or_else(own)?);
-    DesignVector::between(&below, &above, to - from).ok()
 }
 
 /// The document of `maille sensitivity --json`, with the keys of `docs/json.md`. `direction_deg` and `l2` are those of the question.

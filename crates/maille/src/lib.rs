@@ -35,6 +35,7 @@
 //! | `solver` | solvers that know nothing of rings: sequential quadratic programming, Newton's method, certificates |
 //! | [`relaxation`] | the thesis's energy method, and finite sheets under weight and pulls |
 //! | [`sensitivity`] | how a certified value changes with the numbers of its design |
+//! | [`fit`] | a design for wanted limits |
 //! | [`survey`] | many questions: maps over directions and lateral strains, as rows of a [`record`], and the surface of all strains |
 //!
 //! Inside, lengths are in units of the design's reference radius R; records are in the file's unit. The searches use the current
@@ -46,6 +47,7 @@
 pub mod answer;
 pub mod design;
 pub mod error;
+pub mod fit;
 pub mod formula;
 pub mod lattice;
 pub mod model;

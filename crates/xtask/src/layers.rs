@@ -37,6 +37,7 @@ const MODULES: &[&[&str]] = &[
     &["sensitivity"],
     &["survey"],
     &["sheet"],
+    &["fit"],
 ];
 
 /// Stands aside from the order: it uses no other module and no ring, and only [`ASIDE_USERS`] use it.

@@ -7,6 +7,9 @@ use crate::{
 use maille_geometry::Vec3;
 use nalgebra::Vector2;
 
+/// Half of the step of [`DesignVector::by_number`], relative to the value or to 1.
+const HALF_STEP: f64 = 1e-6;
+
 /// One entry for each raw number of a design: as a change, lengths are in the design's unit and tilts in radians.
 ///
 /// The elements' centres have no entry: a limit is sought over all positions, so they change nothing.
@@ -97,6 +100,25 @@ impl DesignVector {
             tilt: Vec3::zeros(),
         };
         DesignVector { rings: ring_numbers(design).into_iter().map(of).collect(), ..Self::spacing(design) }
+    }
+
+    /// Every entry times `factor`.
+    pub(crate) fn times(&self, factor: f64) -> Self {
+        let rings = self.rings.iter().map(|ring| ring.times(factor, factor)).collect();
+        DesignVector { lattice: self.lattice.map(|a| a * factor), rings }
+    }
+
+    /// How the numbers of a design change with one that it is made from: from the designs with values beside `value`, and to one
+    /// side where `make` refuses the other one. `None` where it refuses both.
+    pub fn by_number(value: f64, make: &dyn Fn(f64) -> Option<Design>) -> Option<Self> {
+        let half = HALF_STEP * value.abs().max(1.0);
+        let at = |value: f64| Some((value, make(value)?));
+        let (below, above) = (at(value - half), at(value + half));
+        if below.is_none() && above.is_none() {
+            return None;
+        }
+        let ((from, below), (to, above)) = (below.or_else(|| at(value))?, above.or_else(|| at(value))?);
+        DesignVector::between(&below, &above, to - from).ok()
     }
 
     /// (`to` − `from`)/`step`: the rate of a family of designs from two members, `step` apart in its parameter. With the members
