@@ -1,0 +1,125 @@
+//! Fits: hidden numbers are found again, bounds and impossible targets are told.
+
+use maille::{
+    CellChoice, Design, Sheet,
+    fit::{Ended, Family, Fit, FitOptions, FreeNumber, Target, Targets, Wanted, fit},
+};
+use maille_io::{builtin, design_toml::NumberPath, read_design};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use std::{sync::atomic::AtomicBool, time::Instant};
+
+fn design(name: &str) -> Design {
+    Design { allow_initial_overlap: true, ..read_design(name, builtin(name).unwrap()).unwrap() }
+}
+
+/// The wire and every element's rings.
+fn radii(design: &Design) -> Vec<NumberPath> {
+    let rings = design.elements.iter().map(|e| format!("elements.{}.rings.major_radius", e.name));
+    std::iter::once("minor_radius".to_owned()).chain(rings).map(|text| text.parse().unwrap()).collect()
+}
+
+fn values(design: &Design) -> Vec<f64> {
+    let rings = design.elements.iter().map(|e| e.rings[0].major_radius);
+    std::iter::once(design.minor_radius.unwrap()).chain(rings).collect()
+}
+
+fn with(design: &Design, paths: &[NumberPath], values: &[f64]) -> Result<Design, Vec<maille::InvalidInput>> {
+    let set = paths.iter().zip(values).try_fold(design.clone(), |design, (path, x)| path.set(&design, *x));
+    set.map_err(|problem| vec![problem])
+}
+
+fn own_cell() -> CellChoice {
+    CellChoice::These(vec![maille::Cell::PRIMITIVE])
+}
+
+fn options() -> FitOptions {
+    FitOptions { cells: own_cell(), ..FitOptions::default() }
+}
+
+fn run(design: &Design, start: &[f64], targets: &Targets, options: &FitOptions) -> Fit {
+    let paths = radii(design);
+    let make = |values: &[f64]| with(design, &paths, values);
+    let number = |(path, x): (&NumberPath, &f64)| FreeNumber {
+        name: path.to_string(),
+        value: *x,
+        min: x * 0.6,
+        max: x * 1.5,
+    };
+    let family = Family { numbers: paths.iter().zip(start).map(number).collect(), make: &make };
+    fit(&family, targets, options, &|_| (), &AtomicBool::new(false)).unwrap()
+}
+
+const DIRECTIONS_DEG: [f64; 13] = [0., 15., 30., 45., 60., 75., 90., 105., 120., 135., 150., 165., 180.];
+
+/// The limits of a design, as targets. `None` where one is not certified.
+fn profile(design: &Design) -> Option<Targets> {
+    let sheet = Sheet::in_cells(design, own_cell()).ok()?;
+    let of = |direction_deg: f64| {
+        let target = Target { direction_deg, l2: 0.0, wanted: Wanted::Value(0.0), weight: 1.0 };
+        let l1 = sheet.answer(&target.question()).ok()?.limit()?;
+        Some(Target { wanted: Wanted::Value(l1), ..target })
+    };
+    let all = DIRECTIONS_DEG.into_iter().map(of).collect::<Option<Vec<_>>>()?;
+    Targets::new(all, false).ok()
+}
+
+/// A design with hidden radii, each up to 10 % from the built-in one's, and a start with each 20 % off; both linked as the
+/// built-in one is.
+fn hidden(name: &str, seed: u64) -> (Design, Targets, Vec<f64>) {
+    let built_in = design(name);
+    let paths = radii(&built_in);
+    let links = |design: &Design| Sheet::in_cells(design, own_cell()).ok().map(|sheet| sheet.model().links.clone());
+    let linked = links(&built_in).unwrap();
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    for _ in 0..1000 {
+        let draw = |x: f64, by: f64| x * (1.0 + by);
+        let truth: Vec<f64> = values(&built_in).iter().map(|x| draw(*x, random.random_range(-0.1..0.1))).collect();
+        let start: Vec<f64> =
+            truth.iter().map(|x| draw(*x, if random.random_range(0.0..1.0) < 0.5 { -0.2 } else { 0.2 })).collect();
+        let [truth, begun] = [&truth, &start].map(|values| with(&built_in, &paths, values).unwrap());
+        if [&truth, &begun].iter().any(|d| links(d).as_ref() != Some(&linked)) || profile(&begun).is_none() {
+            continue;
+        }
+        if let Some(targets) = profile(&truth) {
+            return (built_in, targets, start);
+        }
+    }
+    panic!("no hidden design of {name}");
+}
+
+fn worst(fit: &Fit) -> f64 {
+    fit.misses.iter().map(|x| x.abs()).fold(0.0, f64::max)
+}
+
+#[test]
+#[ignore = "minutes: run it by its name; docs/theory/fit.md has what it found"]
+fn hidden_radii_of_seven_designs_are_found_again() {
+    let names = ["1.1", "1.2", "2", "3.1", "3.2", "4.2", "european-4-in-1"];
+    let mut found = 0;
+    for case in 0..20 {
+        let name = names[case % names.len()];
+        let (design, targets, start) = hidden(name, case as u64);
+        let begun = Instant::now();
+        let fit = run(&design, &start, &targets, &options());
+        let (miss, seconds) = (worst(&fit), begun.elapsed().as_secs_f64());
+        println!("{name}: miss {miss:.1e}, {} starts, {} designs, {seconds:.1} s", fit.starts, fit.designs);
+        found += usize::from(miss <= 1e-4);
+    }
+    println!("{found} of 20");
+    assert!(found >= 18);
+}
+
+#[test]
+fn hidden_radii_are_found_again() {
+    for (name, seed) in [("1.1", 1), ("2", 2)] {
+        let (design, targets, start) = hidden(name, seed);
+        let fit = run(&design, &start, &targets, &options());
+        assert_eq!(fit.ended, Ended::Reached, "{name}: {}", worst(&fit));
+        // An independent solve of the design that was found.
+        let again = profile(&fit.design).unwrap();
+        for (found, wanted) in again.iter().zip(targets.iter()) {
+            assert!((found.value() - wanted.value()).abs() < 2e-6);
+        }
+    }
+}
