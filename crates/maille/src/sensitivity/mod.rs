@@ -15,6 +15,7 @@
 //! as the lattice is F a_j, and F is fixed with the unknowns. Centres of elements are unknowns, so the value does not depend on
 //! them. Copies of a ring add up. Derivation, kinks and measurements: `docs/theory/sensitivity.md`.
 
+mod images;
 mod multipliers;
 mod numbers;
 
@@ -31,9 +32,11 @@ use crate::{
     search::family::family_at,
     solver::{constraints::Row, sqp::Program},
     state::State,
+    symmetry::Operation,
 };
 use maille_geometry::{Vec3, point_circle_distance};
 use nalgebra::{Matrix2, Vector2};
+use std::sync::OnceLock;
 
 /// The derivatives of a certified value by the numbers of its design.
 pub struct Sensitivity {
@@ -43,6 +46,10 @@ pub struct Sensitivity {
     /// 1 where the value was maximised, −1 where it was minimised.
     sign: f64,
     loose: usize,
+    model: Model,
+    question: Question,
+    /// The symmetries that keep the question, and the design in its own cell, once they are asked for.
+    symmetries: OnceLock<(Vec<Operation>, Model)>,
 }
 
 /// A closed point with the derivatives of its gap by the design's numbers, in the design's unit.
@@ -144,12 +151,15 @@ impl Sensitivity {
             rings: kinematics.own,
             sign: if question.sense == Sense::Least { -1.0 } else { 1.0 },
             loose: answer.certificate.as_ref().map_or(0, |certificate| certificate.zero_modes),
+            model: model.clone(),
+            question: question.clone(),
+            symmetries: OnceLock::new(),
         })
     }
 
     /// The derivatives by all numbers of the design, in the design's unit: of l1, a strain or the factor of the wire by lengths per
     /// unit of length, of a clearance as they are; by tilts per radian. With the forces of the answer, which at a kink are one
-    /// choice of many.
+    /// choice of many, and of the answer's own state, which may be one of several images ([`Self::one_sided`]).
     pub fn gradient(&self) -> DesignVector {
         let mut out = DesignVector::zeros(self.rings);
         for (point, mu) in self.points.iter().zip(&self.multipliers.first).filter(|(_, mu)| **mu != 0.0) {
@@ -159,7 +169,7 @@ impl Sensitivity {
         out
     }
 
-    /// The derivative along a change of the design, with the forces of the answer.
+    /// The derivative along a change of the design, with the forces and the state of the answer.
     ///
     /// # Panics
     /// For a change of a design with another number of rings.
@@ -168,11 +178,41 @@ impl Sensitivity {
     }
 
     /// The derivatives along a change of the design to both sides. A maximum rises by the least Σ μ ∂g/∂q over all forces that
-    /// balance, forward, and falls by the largest, backward.
+    /// balance, forward, and falls by the largest, backward. Where symmetries of the design make other states of the limit, it is the best
+    /// of them all to each side.
     ///
     /// # Panics
     /// For a change of a design with another number of rings.
     pub fn one_sided(&self, change: &DesignVector) -> OneSided {
+        let images = self.images_of(change);
+        let all = std::iter::once(change).chain(&images).map(|change| self.own_one_sided(change));
+        images::best(all, self.sign).expect("the state itself")
+    }
+
+    /// Whether symmetries of the design make other states of the limit with other derivatives along a change: limits that tie, between
+    /// which the change chooses. Then [`Self::along`] is the derivative of the answer's own state alone.
+    ///
+    /// # Panics
+    /// For a change of a design with another number of rings.
+    pub fn images_tie(&self, change: &DesignVector) -> bool {
+        let own = self.own_one_sided(change);
+        self.images_of(change).iter().any(|image| {
+            let there = self.own_one_sided(image);
+            [(own.backward, there.backward), (own.forward, there.forward)]
+                .into_iter()
+                .any(|(backward, forward)| OneSided { backward, forward }.is_kink())
+        })
+    }
+
+    fn images_of(&self, change: &DesignVector) -> Vec<DesignVector> {
+        assert_eq!(change.rings.len(), self.rings, "a change of a design with as many rings");
+        let (operations, design) =
+            self.symmetries.get_or_init(|| (images::symmetries(&self.model, &self.question), self.model.primitive()));
+        images::changes(operations, design, &self.points, change)
+    }
+
+    /// Of the answer's own state.
+    fn own_one_sided(&self, change: &DesignVector) -> OneSided {
         let rates = self.rates(change);
         let slope = |sign: f64| {
             let turned: Vec<f64> = rates.iter().map(|rate| rate * sign).collect();
