@@ -170,6 +170,18 @@ pub fn ranked(design: &Design, found: &Sensitivity, step: Option<f64>) -> Vec<Nu
     lines
 }
 
+/// What all rings share and what the file names, with what changes: the wire if rings have a common one, the spacing, each free
+/// parameter. Named as in `sensitivities.csv`.
+pub(crate) fn common_numbers(design: &Design) -> Vec<(String, DesignVector)> {
+    let wire = DesignVector::common_minor_radius(design);
+    let has_wire = wire.rings.iter().any(|ring| ring.minor_radius != 0.0);
+    let mut out: Vec<_> = has_wire.then(|| ("minor_radius".to_owned(), wire)).into_iter().collect();
+    out.push(("spacing".into(), DesignVector::spacing(design)));
+    let of = |p: &Parameter| Some((format!("parameters.{}", p.name), rate_by(design, p)?));
+    out.extend(design.free_parameters().filter_map(of));
+    out
+}
+
 /// How the numbers of the design change with a free parameter, by values beside its own; to one side where its bound or another
 /// rule forbids the other one. `None` where both are forbidden.
 fn rate_by(design: &Design, parameter: &Parameter) -> Option<DesignVector> {

@@ -11,6 +11,7 @@ use crate::plot::{
     outcome::Outcome,
     records::Looks,
     scale::Scale,
+    tolerance::Band,
 };
 use crate::record::Reference;
 
@@ -31,6 +32,10 @@ pub fn polar_svg(input: &PolarPlot, layout: Layout) -> String {
     back_to_front.sort_by(|a, b| (a.0.record.cmp(&b.0.record)).then(b.0.l2.abs().total_cmp(&a.0.l2.abs())));
     let disc = Disc::new(frame.area(layout), scale);
     frame.svg(layout, disc.center[1] + disc.radius + 22.0, |canvas| {
+        for band in &input.bands {
+            let look = back_to_front.iter().find(|(curve, _)| curve.l2 == band.l2 && curve.kind == CurveKind::Limits);
+            look.iter().for_each(|(_, look)| disc.draw_band(canvas, band, look));
+        }
         disc.draw_grid(canvas, input.quantity.base());
         disc.draw_rays(canvas, &input.rays);
         for (curve, look) in back_to_front.iter().filter(|(curve, _)| curve.kind != CurveKind::Check) {
@@ -146,6 +151,21 @@ impl Disc {
         }
     }
 
+    /// Between its edges: out along the one and back along the other.
+    fn draw_band(&self, canvas: &mut Canvas, band: &Band, look: &Look) {
+        let ((low, closed), (high, _)) = (band.low.runs(), band.high.runs());
+        for (low, high) in low.iter().zip(&high).filter(|(low, _)| low.len() > 1) {
+            let mut points: Vec<_> = high.iter().map(|&(degrees, value)| self.at(degrees, value)).collect();
+            let mut back: Vec<_> = low.iter().map(|&(degrees, value)| self.at(degrees, value)).collect();
+            if closed {
+                points.push(points[0]);
+                back.push(back[0]);
+            }
+            points.extend(back.into_iter().rev());
+            canvas.path(&points, true, &tint(&look.color), Stroke::solid("none", 0.0));
+        }
+    }
+
     /// Points along the drawn lines, close to each other.
     fn line_points(&self, curve: &Curve) -> Vec<[f64; 2]> {
         let (mut runs, closed) = curve.runs();
@@ -190,6 +210,17 @@ impl Disc {
     }
 }
 
+/// A colour mixed with white.
+fn tint(color: &str) -> String {
+    let part = |k: usize| color.get(2 * k + 1..2 * k + 3).and_then(|hex| u8::from_str_radix(hex, 16).ok());
+    let mixed = [0, 1, 2].map(|k| part(k).map_or(230.0, |x| 255.0 - SHARE_OF_COLOR * (255.0 - f64::from(x))));
+    let [r, g, b] = mixed.map(|x| x.round() as u8);
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+/// Of the line's colour in the band about it.
+const SHARE_OF_COLOR: f64 = 0.28;
+
 fn legend(input: &PolarPlot, of_all: &Looks, looks: &[Look], scale: &Scale) -> Vec<Entry> {
     let empty =
         |l2: f64| input.curves.iter().filter(|curve| curve.l2 == l2).all(|curve| curve.values().next().is_none());
@@ -207,6 +238,10 @@ fn legend(input: &PolarPlot, of_all: &Looks, looks: &[Look], scale: &Scale) -> V
         let cut = if cut { format!(", cut off at {}", scale.label(scale.high)) } else { String::new() };
         let look = Look { color: SOFT.into(), ..look.clone() };
         out.push(Entry::sample(&look, true, false, &format!("proven bound{cut}")));
+    }
+    if !input.bands.is_empty() {
+        let look = Look { color: tint(SOFT), width: 9.0, ..look::hollow() };
+        out.push(Entry::sample(&look, true, false, "within the tolerance"));
     }
     let shown = if input.check.is_empty() { CurveKind::Limits } else { CurveKind::Check };
     let statuses = of_kind(shown).flat_map(|(curve, _)| curve.turn()).map(|(_, value, status)| (value, status));
