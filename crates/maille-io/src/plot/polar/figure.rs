@@ -32,10 +32,13 @@ pub fn polar_svg(input: &PolarPlot, layout: Layout) -> String {
     back_to_front.sort_by(|a, b| (a.0.record.cmp(&b.0.record)).then(b.0.l2.abs().total_cmp(&a.0.l2.abs())));
     let disc = Disc::new(frame.area(layout), scale);
     frame.svg(layout, disc.center[1] + disc.radius + 22.0, |canvas| {
-        for band in &input.bands {
-            let look = back_to_front.iter().find(|(curve, _)| curve.l2 == band.l2 && curve.kind == CurveKind::Limits);
-            look.iter().for_each(|(_, look)| disc.draw_band(canvas, band, look));
-        }
+        let own = |band: &Band| {
+            let curve = back_to_front.iter().find(|(c, _)| c.l2 == band.l2 && c.kind == CurveKind::Limits);
+            curve.map_or(SOFT, |(_, look)| look.color.as_str())
+        };
+        input.bands.iter().for_each(|band| disc.draw_band(canvas, band, own(band)));
+        // Above all of them: bands hide each other, their edges do not.
+        input.bands.iter().for_each(|band| disc.draw_edges(canvas, band, own(band)));
         disc.draw_grid(canvas, input.quantity.base());
         disc.draw_rays(canvas, &input.rays);
         for (curve, look) in back_to_front.iter().filter(|(curve, _)| curve.kind != CurveKind::Check) {
@@ -152,7 +155,7 @@ impl Disc {
     }
 
     /// Between its edges: out along the one and back along the other.
-    fn draw_band(&self, canvas: &mut Canvas, band: &Band, look: &Look) {
+    fn draw_band(&self, canvas: &mut Canvas, band: &Band, color: &str) {
         let ((low, closed), (high, _)) = (band.low.runs(), band.high.runs());
         for (low, high) in low.iter().zip(&high).filter(|(low, _)| low.len() > 1) {
             let mut points: Vec<_> = high.iter().map(|&(degrees, value)| self.at(degrees, value)).collect();
@@ -162,7 +165,17 @@ impl Disc {
                 back.push(back[0]);
             }
             points.extend(back.into_iter().rev());
-            canvas.path(&points, true, &tint(&look.color), Stroke::solid("none", 0.0));
+            canvas.path(&points, true, &tint(color, BAND), Stroke::solid("none", 0.0));
+        }
+    }
+
+    fn draw_edges(&self, canvas: &mut Canvas, band: &Band, color: &str) {
+        for edge in [&band.low, &band.high] {
+            let (runs, closed) = edge.runs();
+            for run in runs.iter().filter(|run| run.len() > 1) {
+                let points: Vec<_> = run.iter().map(|&(degrees, value)| self.at(degrees, value)).collect();
+                canvas.path(&points, closed, "none", Stroke::solid(&tint(color, EDGE), 1.0));
+            }
         }
     }
 
@@ -210,16 +223,17 @@ impl Disc {
     }
 }
 
-/// A colour mixed with white.
-fn tint(color: &str) -> String {
+/// Shares of a line's colour in the band about it, and in the edges of the band.
+const BAND: f64 = 0.18;
+const EDGE: f64 = 0.5;
+
+/// A share of a colour in white.
+fn tint(color: &str, share: f64) -> String {
     let part = |k: usize| color.get(2 * k + 1..2 * k + 3).and_then(|hex| u8::from_str_radix(hex, 16).ok());
-    let mixed = [0, 1, 2].map(|k| part(k).map_or(230.0, |x| 255.0 - SHARE_OF_COLOR * (255.0 - f64::from(x))));
+    let mixed = [0, 1, 2].map(|k| part(k).map_or(230.0, |x| 255.0 - share * (255.0 - f64::from(x))));
     let [r, g, b] = mixed.map(|x| x.round() as u8);
     format!("#{r:02x}{g:02x}{b:02x}")
 }
-
-/// Of the line's colour in the band about it.
-const SHARE_OF_COLOR: f64 = 0.28;
 
 fn legend(input: &PolarPlot, of_all: &Looks, looks: &[Look], scale: &Scale) -> Vec<Entry> {
     let empty =
@@ -240,7 +254,7 @@ fn legend(input: &PolarPlot, of_all: &Looks, looks: &[Look], scale: &Scale) -> V
         out.push(Entry::sample(&look, true, false, &format!("proven bound{cut}")));
     }
     if !input.bands.is_empty() {
-        let look = Look { color: tint(SOFT), width: 9.0, ..look::hollow() };
+        let look = Look { color: tint(SOFT, BAND), width: 9.0, ..look::hollow() };
         out.push(Entry::sample(&look, true, false, "within the tolerance"));
     }
     let shown = if input.check.is_empty() { CurveKind::Limits } else { CurveKind::Check };
