@@ -2,7 +2,7 @@
 //!
 //! A wire of radius r + dr closes the gap of a contact by dr for each of its two rings that has no r of its own. So with the forces
 //! μ of a state dl1/dr = −Σ μ n / R, n such rings at the contact and R the reference radius; a least l1 has the opposite sign. Where
-//! other forces balance, too, this is one value between those to both sides. Derivatives by other numbers are not derived anew.
+//! other forces balance, too, the forward derivative is at most this and the backward one at least (of a least l1 the other way round). Derivatives by other numbers are not derived anew.
 
 use crate::{
     files::key,
@@ -47,7 +47,7 @@ pub(crate) fn check(text: &str, design: &Design, rows: &[Row], states: &[State])
         };
         match (number.as_str(), sides) {
             (WIRE, [Some(forward), Some(back)]) => match by_forces(design, row, state) {
-                Some(sum) if between(sum, [forward, back]) => proved += 1,
+                Some(sum) if between(sum, [forward, back], least(row)) => proved += 1,
                 Some(sum) => wrong.push(format!(
                     "{at}: {forward} forward and {back} back by {WIRE}, where the forces at {direction_deg}°, l2 = {l2} sum up to {sum}"
                 )),
@@ -79,6 +79,10 @@ pub(crate) fn check(text: &str, design: &Design, rows: &[Row], states: &[State])
     out
 }
 
+fn least(row: &Row) -> bool {
+    row.end.as_deref() == Some("least")
+}
+
 /// Direction, l2, number, and the derivatives forward and back.
 fn cells(line: &str) -> Option<(f64, f64, String, [Option<f64>; 2])> {
     let cells: Vec<&str> = line.split(',').collect();
@@ -88,10 +92,11 @@ fn cells(line: &str) -> Option<(f64, f64, String, [Option<f64>; 2])> {
     Some((finite(direction)?, finite(l2)?, number.to_owned(), [side(forward)?, side(back)?]))
 }
 
-/// Whether a value is one between the two, or one of them.
-fn between(value: f64, [a, b]: [f64; 2]) -> bool {
-    let off = SAME * value.abs().max(1e-3);
-    (a.min(b) - off..=a.max(b) + off).contains(&value)
+/// Whether the sum of forces is at least the forward derivative and at most the backward one; of a least l1 the other way round.
+fn between(sum: f64, [forward, back]: [f64; 2], least: bool) -> bool {
+    let off = SAME * sum.abs().max(1e-3);
+    let [low, high] = if least { [back, forward] } else { [forward, back] };
+    low <= sum + off && sum <= high + off
 }
 
 /// −Σ μ n / R, or Σ μ n / R of a least l1; `None` where a contact names a ring that is not there.
@@ -111,7 +116,7 @@ fn by_forces(design: &Design, row: &Row, state: &State) -> Option<f64> {
         let shared = [*common.get(contact.ring_a)?, *common.get(contact.ring_b)?];
         sum += contact.force * shared.iter().filter(|common| **common).count() as f64;
     }
-    let sign = if row.end.as_deref() == Some("least") { 1.0 } else { -1.0 };
+    let sign = if least(row) { 1.0 } else { -1.0 };
     Some(sign * sum / design.reference_radius)
 }
 
@@ -121,8 +126,9 @@ mod tests {
 
     #[test]
     fn a_value_lies_between_both_sides_but_for_rounding() {
-        assert!(between(-2.0, [-2.0 - 1e-9, -2.0]) && between(-2.0, [-1.0, -3.0]));
-        assert!(!between(-2.0, [-2.1, -2.1]) && !between(0.0, [1e-6, 1e-6]));
+        assert!(between(-2.0, [-2.0 + 1e-9, -2.0], false) && between(-2.0, [-3.0, -1.0], false));
+        assert!(!between(-2.0, [-1.0, -3.0], false) && between(-2.0, [-1.0, -3.0], true));
+        assert!(!between(-2.0, [-2.1, -2.1], false) && !between(0.0, [1e-6, 1e-6], true));
     }
 
     #[test]
