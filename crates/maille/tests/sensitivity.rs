@@ -225,7 +225,7 @@ fn derivatives_are_those_of_limits_solved_anew() {
 }
 
 #[test]
-#[ignore = "an hour; fails at the limits that docs/theory/sensitivity.md names"]
+#[ignore = "an hour; fails by 1.2e-5 at one number of king's mail, see docs/theory/sensitivity.md"]
 fn derivatives_of_all_builtin_designs() {
     let mut wrong = 0;
     for builtin in maille_io::builtin_designs() {
@@ -269,7 +269,7 @@ fn images_of_a_limit_tie() {
         let design = builtin(name);
         let asked = stretch(direction, l2);
         let found = |seed: u64| {
-            let question = Question { seed, starts: Some(4), ..asked.clone() };
+            let question = Question { seed, ..asked.clone() };
             let (sheet, answer) = solved(&design, &question);
             let found = Sensitivity::of(&sheet.model_of(&answer), &question, &answer).unwrap();
             (answer, found)
@@ -279,7 +279,6 @@ fn images_of_a_limit_tie() {
         let mut tally = Tally::default();
         let case = Case { design: &design, question: &asked, answer: &answer, found: &first, label: name.into() };
         tied.iter().for_each(|(number, change)| case.sides(number, change, &mut tally));
-        println!("{name}: {tally:?}");
         assert!(tied.len() == ties && tally.sides == 2 * ties && tally.wrong == 0, "{name}: {tally:#?}");
         let mut others = 0;
         for seed in 2..6 {
@@ -289,8 +288,9 @@ fn images_of_a_limit_tie() {
             }
             for (number, change) in &tied {
                 let [a, b] = [&first, &again].map(|found| found.one_sided(change));
-                let close = |a: Slope, b: Slope| (a.finite().unwrap() - b.finite().unwrap()).abs() < 1e-6;
-                assert!(close(a.backward, b.backward) && close(a.forward, b.forward), "{name} {number}: {a:?} {b:?}");
+                let apart = |a: Slope, b: Slope| (a.finite().unwrap() - b.finite().unwrap()).abs();
+                let most = apart(a.backward, b.backward).max(apart(a.forward, b.forward));
+                assert!(most < 1e-6, "{name} {number}: {a:?} {b:?}");
                 others += usize::from((first.along(change) - again.along(change)).abs() > 1e-3);
             }
         }
