@@ -288,8 +288,7 @@ fn turn_of_axis(normal: &Vector3<f64>) -> UnitQuaternion<f64> {
 
 /// The state of a record's line, for the model that was solved.
 pub fn state_of(model: &Model, record: &StateRecord) -> Result<State, MeshError> {
-    state_at(model, record)
-        .ok_or_else(|| MeshError::OtherElements { state: record.poses.len(), cell: model.elements.len() })
+    state_at(model, record).ok_or(MeshError::OtherElements { state: record.poses.len(), cell: model.elements.len() })
 }
 
 /// A state of a record in words, or the start.

@@ -6,7 +6,11 @@
 //! group has g⁻¹, so that all g⁻¹ v are all g v. The maximum of the changed design is the largest of them: forward the largest of the
 //! derivatives, backward, where the value falls by the derivative times the step, the least.
 
-use super::{DesignVector, OneSided, Point, RingVector, Slope};
+use super::{
+    numbers::{DesignVector, RingVector},
+    point::Point,
+    slope::{OneSided, Slope},
+};
 use crate::{
     model::Model,
     question::{Goal, Question},

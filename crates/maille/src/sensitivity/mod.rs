@@ -18,10 +18,16 @@
 mod images;
 mod multipliers;
 mod numbers;
+mod point;
+mod slope;
 
 pub use numbers::{DesignVector, RingVector};
+pub use slope::{OneSided, Slope};
 
-use self::multipliers::{Least, Multipliers};
+use self::{
+    multipliers::{Least, Multipliers},
+    point::Point,
+};
 use crate::{
     answer::Answer,
     error::InvalidInput,
@@ -35,7 +41,7 @@ use crate::{
     symmetry::Operation,
 };
 use maille_geometry::{Vec3, point_circle_distance};
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::Matrix2;
 use std::sync::OnceLock;
 
 /// The derivatives of a certified value by the numbers of its design.
@@ -50,52 +56,6 @@ pub struct Sensitivity {
     question: Question,
     /// The symmetries that keep the question, and the design in its own cell, once they are asked for.
     symmetries: OnceLock<(Vec<Operation>, Model)>,
-}
-
-/// A closed point with the derivatives of its gap by the design's numbers, in the design's unit.
-struct Point {
-    /// The pair as the design's own cell has it.
-    pair: RingPair,
-    /// The rings as the design counts them; of one ring and its own image both.
-    rings: [(usize, RingVector); 2],
-    lattice: [Vector2<f64>; 2],
-}
-
-/// Derivatives of a value along a change of the design.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OneSided {
-    /// For a step back, as a derivative: the value falls by this times the step.
-    pub backward: Slope,
-    /// For a step forward.
-    pub forward: Slope,
-}
-
-/// A one-sided derivative.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Slope {
-    /// Its value.
-    Finite(f64),
-    /// No state near this one has what is held: its forces hold it already without any pull.
-    NoState,
-    /// The linear program over the forces was not solved to its tolerance.
-    NotFound,
-}
-
-impl Slope {
-    /// The value, where it is finite.
-    pub fn finite(self) -> Option<f64> {
-        if let Slope::Finite(value) = self { Some(value) } else { None }
-    }
-}
-
-impl OneSided {
-    /// Whether the two differ by more than rounding: by a millionth of the larger one or of 1 in the units of the slope.
-    pub fn is_kink(&self) -> bool {
-        match (self.backward, self.forward) {
-            (Slope::Finite(a), Slope::Finite(b)) => (a - b).abs() > 1e-6 * a.abs().max(b.abs()).max(1e-2),
-            (a, b) => a != b,
-        }
-    }
 }
 
 /// Forces of a state that is taken for a limit may be out of balance by this; those below 1e-9 are not recorded.
