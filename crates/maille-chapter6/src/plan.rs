@@ -82,6 +82,7 @@ fn maps_of(Chosen { name, design, .. }: &Chosen, quick: bool, rectangular: Cell,
             question: MapQuestion { method, cells: CellChoice::from(cell), directions_deg, l2: l2.to_vec() },
             quantity: Quantity::Lambda1,
             out: Some(records.join(&name)),
+            sensitivities: false,
             overwrite: false,
         };
         let minor_radius = design.reference_radius / f64::from(divisor);

@@ -2,7 +2,7 @@
 
 use crate::{
     effort::SearchArgs,
-    exit::{self, refused},
+    exit::{self, refused, wrong},
     help::ENERGY,
     input::{DesignArgs, file_name},
     map::{self, RunArgs, Solved, unanswered},
@@ -45,6 +45,7 @@ Examples:
   maille characterize 1.1 --lateral free --out maille-out/1.1-free
   maille characterize 1.1 --lateral free --compression --directions 0:180:15
   maille characterize my-weave.toml --directions 0,45,90 --l2 0 --watch
+  maille characterize 1.1 --sensitivities
   maille characterize 1.1 --json | jq '.limits[] | .largest.l1'
 
 The energy method of the thesis has options of its own:
@@ -81,6 +82,10 @@ pub struct Args {
     /// What polar.svg and polar.png show
     #[arg(long, value_enum, default_value_t = Shown::Stretch)]
     quantity: Shown,
+    /// Write sensitivities.csv, too: the derivatives of each certified limit by the wire, the spacing and the parameters of the file.
+    /// They follow from the forces: a finished record is not solved again (exact method)
+    #[arg(long)]
+    sensitivities: bool,
     /// Folder that is written [default: maille-out/NAME, or maille-out/NAME-compression with --compression]
     #[arg(long)]
     out: Option<PathBuf>,
@@ -247,12 +252,22 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 }
 
 fn once(args: &Args) -> Result<ExitCode> {
+    if args.sensitivities && matches!(args.method, MethodArg::Energy) {
+        let help = "leave --sensitivities out, or --method energy";
+        return Err(wrong(exit::USAGE, "limits of the energy method have no forces, and so no derivatives", help));
+    }
     let question = question(args).map_err(|e| refused(&e))?;
     let input = args.design.read()?;
     let folder = file_name(&input.design.name) + if args.compression { "-compression" } else { "" };
     let out = args.out.clone().unwrap_or_else(|| PathBuf::from("maille-out").join(folder));
     let overwrite = args.run.overwrite || args.watch;
-    let map = Map { question, quantity: args.quantity.into(), out: Some(out.clone()), overwrite };
+    let map = Map {
+        question,
+        quantity: args.quantity.into(),
+        out: Some(out.clone()),
+        overwrite,
+        sensitivities: args.sensitivities,
+    };
     let begun = Instant::now();
     let open = map::open(&map, &input)?;
     if !args.quiet && open.is_unlinked() {

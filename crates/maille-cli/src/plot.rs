@@ -10,10 +10,10 @@ use crate::{
 use maille_io::{
     Quantity,
     plot::{
-        Cost, Layout, NamedSimulation, OfStep, PolarPlot, cost_svg, difference_svg, force_svg, parameter_words,
-        poisson_svg, polar_svg, radius_svg, run_svg,
+        Cost, Layout, NamedSimulation, OfStep, PolarPlot, Tolerance, cost_svg, difference_svg, force_svg,
+        parameter_words, poisson_svg, polar_svg, radius_svg, run_svg,
     },
-    record::{NamedRecord, Reference, ReferenceCell, SIMULATION, open_simulation},
+    record::{NamedRecord, Record, Reference, ReferenceCell, SIMULATION, SensitivityRow, open_simulation},
 };
 use miette::Result;
 use std::path::{Path, PathBuf};
@@ -28,6 +28,7 @@ Examples:
   maille plot 1.1                                      maille-out/polar-1.1.svg and .png
   maille plot 1.1 1.2 --where l2=0                     two records of maille-out in one
   maille plot exact-3.1 energy-3.1 --kind steps -o steps.png
+  maille plot 1.1 --tolerance minor_radius=0.05        of `maille characterize 1.1 --sensitivities`
   maille plot 1.1 -o small.png --scale 0.75 --palette   645 pixels wide, in few bytes
   maille plot 1.1 --style paper -o fig1.pdf             one column of a journal, 89 mm wide, letters of 7 points
   maille plot 1.1 --style paper --width 183mm --font-size 8 -o fig2.pdf    two columns
@@ -59,8 +60,46 @@ pub struct Args {
     /// Only rows that meet these conditions, as l2=0; may be given several times
     #[arg(long = "where", value_name = "CONDITIONS", value_parser = table::conditions, allow_hyphen_values = true)]
     conditions: Vec<table::Conditions>,
+    /// Shade what a number that is off to both sides does to the limits, as minor_radius=0.05: a number of sensitivities.csv, and how
+    /// far it is off in its unit (polar plots of one record with --sensitivities)
+    #[arg(long, value_name = "NUMBER=AMOUNT", value_parser = tolerance)]
+    tolerance: Option<Tolerance>,
     #[command(flatten)]
     figure: FigureArgs,
+}
+
+/// `minor_radius=0.05`.
+fn tolerance(text: &str) -> Result<Tolerance, String> {
+    let parts = text.split_once('=').map(|(number, amount)| (number.trim(), amount.trim().parse::<f64>()));
+    match parts {
+        Some((number, Ok(amount))) if !number.is_empty() && amount.is_finite() && amount > 0.0 => {
+            Ok(Tolerance { number: number.into(), amount })
+        }
+        _ => Err(format!("\"{text}\" is no number of the design with an amount above 0, as minor_radius=0.05")),
+    }
+}
+
+/// The derivatives by the tolerance's number in the folder of the record.
+fn derivatives(args: &Args, tolerance: &Tolerance) -> Result<Vec<SensitivityRow>> {
+    let usual = matches!(args.quantity, None | Some(Shown::Stretch | Shown::L1));
+    if args.kind != Kind::Polar || args.records.len() != 1 || !usual || args.reference != MeasuredFrom::Start {
+        let help = "name one record, with --kind polar and --quantity stretch or l1, without --reference";
+        return Err(wrong(exit::USAGE, "--tolerance is for polar plots of the limits of one record", help));
+    }
+    let folder = records::folder(&args.records[0]);
+    let found = Record::read_sensitivities(&folder)?.ok_or_else(|| {
+        let problem = format!("the record {} has no sensitivities.csv", folder.display());
+        let help = "give its `maille characterize` again with --sensitivities: it writes them, and solves nothing that is there";
+        wrong(exit::RECORD, problem, help)
+    })?;
+    let mut numbers: Vec<&str> = found.iter().map(|row| row.number.as_str()).collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    if !numbers.contains(&tolerance.number.as_str()) {
+        let problem = format!("the record has no derivatives by \"{}\"", tolerance.number);
+        return Err(wrong(exit::USAGE, problem, format!("there are those by {}", numbers.join(", "))));
+    }
+    Ok(found)
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -140,6 +179,9 @@ pub fn run(args: &Args) -> Result<()> {
             "only plots of limits have a --quantity",
             "leave --quantity out, or choose --kind polar, difference or radius",
         ));
+    }
+    if let Some(tolerance) = &args.tolerance {
+        derivatives(args, tolerance)?;
     }
     args.figure.check()?;
     let layout = args.figure.layout()?;
@@ -285,7 +327,12 @@ fn svg(args: &Args, records: &[NamedRecord], cells: &[ReferenceCell], layout: La
         (Kind::Polar, [one]) => {
             let (run, rows) = (&one.record.run, &one.record.rows);
             let quantity = args.quantity.map_or_else(Quantity::default, Into::into);
-            let plot = PolarPlot::from_rows(&run.design, rows, quantity, &parameter_words(run));
+            let mut plot = PolarPlot::from_rows(&run.design, rows, quantity, &parameter_words(run));
+            if let Some(tolerance) = &args.tolerance {
+                let unit = run.design.unit.as_ref().filter(|_| tolerance.number == "minor_radius");
+                let unit = unit.map(|unit| format!(" {unit}")).unwrap_or_default();
+                plot = plot.with_tolerance(rows, &derivatives(args, tolerance)?, tolerance, &unit);
+            }
             polar_svg(&measured(plot), layout)
         }
         (Kind::Polar, several) => {

@@ -8,22 +8,24 @@ use crate::{
     numbers::{finite, positive, read},
     output::{self, say},
 };
-use maille::{question::Question, sensitivity::Sensitivity, survey::CellChoice};
-use maille_io::sensitivity::{NO_CHANGE, NumberChange, document, ranked};
+use maille::{Sheet, design::Design, question::Question, record::Status, sensitivity::Sensitivity, survey::CellChoice};
+use maille_io::sensitivity::{NO_CHANGE, NumberChange, SolvedChange, document, ranked};
 use miette::Result;
-use std::{process::ExitCode, time::Instant};
+use std::{process::ExitCode, sync::atomic::AtomicBool, time::Instant};
 
 /// How a limit changes with the numbers of its design
 ///
 /// The forces of a certified limit give its derivative by every number: the wire, each ring's radii, offset and tilt, the spacing,
 /// the lattice vectors, and the parameters of the file. Nothing is solved anew, so the changes are those of first order. The numbers are listed by how much they
-/// matter, with the pairs of rings through which they act. Where the forces are not unique, a number can act differently to both sides:
-/// then both changes are given. Centres of elements change nothing, as a limit is sought over all positions.
+/// matter, with the pairs of rings through which they act. Where the forces are not unique, or states that symmetries of the design make
+/// of each other tie, a number can act differently to both sides: then both changes are given. Centres of elements change nothing, as a
+/// limit is sought over all positions. How far the first order reaches is not known without a solve: --solve N shows it.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   maille sensitivity 1.1 --direction 30
   maille sensitivity european-4-in-1 --direction 90 --l2 -0.05 --step 0.05
+  maille sensitivity kings-mail --solve 3
   maille sensitivity my-weave.toml --json
 
 Exit codes: 0 done, 5 no certified limit was found, 130 interrupted.")]
@@ -39,6 +41,9 @@ pub struct Args {
     /// Change of a length, in the file's unit [default: 0.1 mm; of a design without unit, 1 % of its reference radius]
     #[arg(long, value_parser = positive)]
     step: Option<f64>,
+    /// Solve the limits of the designs with each of the first N numbers changed by its step, and print these changes, too
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    solve: usize,
     /// Cell: 1x1, 2x1, …, an integer matrix as "1,0;-1,2", or auto
     #[arg(long, default_value = "auto", value_parser = read::<CellChoice>)]
     cell: CellChoice,
@@ -69,7 +74,8 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     };
     let model = sheet.model_of(&answer);
     let found = Sensitivity::of(&model, &question, &answer).map_err(|e| refused(&e))?;
-    let lines = ranked(&input.design, &found, args.step);
+    let mut lines = ranked(&input.design, &found, args.step);
+    solve(args, &mut lines, &input.design, (&question, value), &cancel)?;
     if args.json {
         let document = document(&input.design, (args.direction, args.l2), &answer, &found, &lines);
         output::print_json(&output::timed(document, begun.elapsed().as_secs_f64()))?;
@@ -89,7 +95,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             still.push(line.number.as_str());
             continue;
         }
-        print(line, printed == 0);
+        print(line, printed == 0, args.solve > 0);
         printed += 1;
     }
     if !still.is_empty() {
@@ -100,27 +106,71 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             "  several choices of forces hold this state; changes to both sides are by the least and the largest of them"
         );
     }
+    if lines.iter().any(|line| line.images_tie) {
+        say!(
+            "  states that symmetries of the design make of each other tie; a change that breaks the symmetry has the best of them"
+        );
+    }
+    if printed > 0 && args.solve == 0 {
+        say!("  changes are of first order, and may hold over a part of the step only; --solve N solves the first N");
+    }
     if found.loose_motions() > 0 {
         say!("  {} motions of loose rings change nothing here", found.loose_motions());
     }
     Ok(exit::of_answer(answer.status))
 }
 
-fn print(line: &NumberChange, first: bool) {
-    if first {
-        say!("  {:<34} {:>12}  {:>13}  through", "number", "step", "change of l1");
+/// Solves the limits of the changed designs for the first numbers that matter, to both sides at a kink.
+fn solve(
+    args: &Args,
+    lines: &mut [NumberChange],
+    design: &Design,
+    (question, value): (&Question, f64),
+    cancel: &AtomicBool,
+) -> Result<()> {
+    for line in lines.iter_mut().filter(|line| line.largest() > NO_CHANGE).take(args.solve) {
+        for side in [1, 0].into_iter().take(if line.slope.is_kink() { 2 } else { 1 }) {
+            let changed = line.changed(design, side == 1);
+            let sheet = changed.and_then(|design| Sheet::in_cells(&design, args.cell.clone()).ok());
+            let Some(sheet) = sheet else {
+                line.solved[side] = Some(SolvedChange { status: None, change: None });
+                continue;
+            };
+            let answer = sheet.answer_until(question, cancel).map_err(|e| refused(&e))?;
+            if answer.status == Status::Interrupted {
+                let problem = format!("interrupted while {} was changed", line.number);
+                return Err(wrong(exit::INTERRUPTED, problem, "give a smaller --solve"));
+            }
+            let change = answer.limit().map(|limit| limit - value);
+            line.solved[side] = Some(SolvedChange { status: Some(answer.status), change });
+        }
     }
-    let change = |x: Option<f64>| {
-        x.map_or("no state".to_owned(), |x| match (x * 1e6).round() {
-            0.0 => "0".to_owned(),
-            _ => format!("{x:+.6}"),
-        })
+    Ok(())
+}
+
+fn print(line: &NumberChange, first: bool, with_solved: bool) {
+    let column = |words: &str| if with_solved { format!("  {words:>14}") } else { String::new() };
+    if first {
+        let (number, step, change, solved) = ("number", "step", "change of l1", column("solved anew"));
+        say!("  {number:<34} {step:>12}  {change:>13}{solved}  through");
+    }
+    let number = |x: f64| match (x * 1e6).round() {
+        0.0 => "0".to_owned(),
+        _ => format!("{x:+.6}"),
+    };
+    let change = |x: Option<f64>| x.map_or("no state".to_owned(), number);
+    let solved = |side: usize| {
+        column(&line.solved[side].map_or(String::new(), |solved| match (solved.change, solved.status) {
+            (Some(change), _) => number(change),
+            (None, status) => status.map_or("no design", Status::name).to_owned(),
+        }))
     };
     let [back, forward] = line.changes();
     let through: Vec<String> =
         line.through.iter().map(|(pair, share)| format!("{pair} {:.0} %", share * 100.0)).collect();
-    say!("  {:<34} {:>12}  {:>13}  {}", line.number, line.step_words, change(forward), through.join(", "));
+    let (words, through) = (&line.step_words, through.join(", "));
+    say!("  {:<34} {words:>12}  {:>13}{}  {through}", line.number, change(forward), solved(1));
     if line.slope.is_kink() {
-        say!("  {:<34} {:>12}  {:>13}", "", format!("-{}", line.step_words), change(back));
+        say!("  {:<34} {:>12}  {:>13}{}", "", format!("-{words}"), change(back), solved(0));
     }
 }

@@ -109,7 +109,13 @@ fn verified(folder: &Path, pool: &rayon::ThreadPool, quiet: bool) -> Result<Veri
     is_record(folder)?;
     let run = text(folder, "run.json")?.unwrap_or_default();
     let (limits, states) = (text(folder, "limits.csv")?, text(folder, "states.jsonl")?);
-    let texts = Texts { run: &run, limits: limits.as_deref(), states: states.as_deref() };
+    let sensitivities = text(folder, "sensitivities.csv")?;
+    let texts = Texts {
+        run: &run,
+        limits: limits.as_deref(),
+        states: states.as_deref(),
+        sensitivities: sensitivities.as_deref(),
+    };
     let verifier = Verifier::new(&texts).map_err(|e| {
         wrong(exit::RECORD, format!("{}:{}: {}", folder.join(e.file).display(), e.line, e.problem), DAMAGED)
     })?;

@@ -21,6 +21,7 @@ mod radius;
 mod records;
 mod run;
 mod scale;
+mod tolerance;
 
 pub use boundary::boundary_svg;
 pub use compare::parameter_words;
@@ -37,3 +38,4 @@ pub use poisson::poisson_svg;
 pub use polar::{PolarPlot, Ray, RayKind, polar_svg};
 pub use radius::radius_svg;
 pub use run::{OfStep, run_svg};
+pub use tolerance::{Band, Tolerance};

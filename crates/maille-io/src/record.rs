@@ -6,6 +6,7 @@
 //! | `states.jsonl` | one [`StateRecord`](maille::record::StateRecord) a line |
 //! | `run.json` | a [`RunRecord`]: design, parameters, hash of both, counters |
 //! | `polar.svg`, `polar.png` | the plot |
+//! | `sensitivities.csv` | where it was asked for: one [`SensitivityRow`] a line |
 //!
 //! A simulated sheet leaves `simulation.json`, a [`SimulationRecord`], `frames.jsonl`, one
 //! [`FrameRecord`](maille::record::FrameRecord) a line, and `forces.csv`, a [`ForceTable`].
@@ -22,6 +23,7 @@ mod lock;
 mod plan;
 mod reference;
 mod run;
+mod sensitivities;
 mod simulation;
 mod states;
 
@@ -36,8 +38,10 @@ pub use plan::{LoadedPlace, PulledPlace, SheetPlan};
 pub use reference::{Reference, ReferenceCell};
 pub(crate) use run::sha256;
 pub use run::{Counters, RunRecord, input_hash, read_run, write_run};
+pub use sensitivities::{SENSITIVITY_COLUMNS, SensitivityRow, read_sensitivities, write_sensitivities};
 pub use simulation::{
     SIMULATION, SimulationFiles, SimulationOutcome, SimulationRecord, open_simulation, read_frames, read_simulation,
     save_simulation, write_frames, write_simulation,
 };
+pub(crate) use states::state_at;
 pub use states::{read_states, write_states};

@@ -2,8 +2,10 @@
 
 mod map;
 mod replay;
+mod sensitivities;
 mod side_by_side;
 
 pub use map::{Chain, Map, MapError, OpenMap, save_record};
 pub use replay::{ReplayError, Replayed, replay};
+pub use sensitivities::sensitivities;
 pub use side_by_side::run_all;

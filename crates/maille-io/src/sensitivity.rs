@@ -5,6 +5,7 @@ use maille::{
     answer::Answer,
     design::Design,
     model::RingPair,
+    record::Status,
     sensitivity::{DesignVector, OneSided, RingVector, Sensitivity},
 };
 use serde_json::{Value, json};
@@ -19,8 +20,29 @@ pub struct NumberChange {
     pub step_words: String,
     /// Derivatives of the limit by the number.
     pub slope: OneSided,
+    /// Whether states that symmetries of the design make of each other tie along this change.
+    pub images_tie: bool,
     /// The pairs of rings that carry most of it, each with its share of all that is carried up or down.
     pub through: Vec<(String, f64)>,
+    /// What the limit of the changed design is, for a step back and one forward, where it was solved.
+    pub solved: [Option<SolvedChange>; 2],
+    change: Change,
+}
+
+/// The limit of a changed design, solved anew.
+#[derive(Clone, Copy, Debug)]
+pub struct SolvedChange {
+    /// Outcome of the search; `None` where the changed numbers are no design that can be used.
+    pub status: Option<Status>,
+    /// How far its limit is from that of the design; `None` where none was found.
+    pub change: Option<f64>,
+}
+
+/// How a design is changed.
+enum Change {
+    Numbers(DesignVector),
+    Spacing,
+    Parameter { name: String, value: f64 },
 }
 
 /// A change below this is 0.
@@ -42,8 +64,21 @@ impl NumberChange {
         self.changes().into_iter().map(|change| change.map_or(f64::INFINITY, f64::abs)).fold(0.0, f64::max)
     }
 
+    /// The design with this number changed by its step, back or forward; `None` where a rule of its parameter forbids it.
+    pub fn changed(&self, design: &Design, forward: bool) -> Option<Design> {
+        let step = if forward { self.step } else { -self.step };
+        match &self.change {
+            Change::Numbers(change) => Some(change.applied(design, step)),
+            Change::Spacing => Some(design.spaced(1.0 + step)),
+            Change::Parameter { name, value } => design.with_parameters(&[(name, value + step)]).ok(),
+        }
+    }
+
     fn json(&self) -> Value {
         let [back, forward] = self.changes();
+        let [solved_back, solved] = self.solved.map(|solved| {
+            solved.map(|s| json!({ "status": s.status.map_or("no-design", Status::name), "change": s.change }))
+        });
         let through = self.through.iter().map(|(pair, share)| json!({ "pair": pair, "share": share }));
         json!({
             "number": self.number,
@@ -54,6 +89,9 @@ impl NumberChange {
             "derivative": self.slope.forward.finite(),
             "derivative_back": self.slope.backward.finite(),
             "kink": self.slope.is_kink(),
+            "images_tie": self.images_tie,
+            "solved": solved,
+            "solved_back": solved_back,
             "through": through.collect::<Vec<_>>(),
         })
     }
@@ -75,14 +113,18 @@ pub fn ranked(design: &Design, found: &Sensitivity, step: Option<f64>) -> Vec<Nu
         step,
         step_words: words.to_owned(),
         slope: found.one_sided(change),
+        images_tie: found.images_tie(change),
         through: through(&labels, &found.by_pair(change)),
+        solved: [None; 2],
+        change: Change::Numbers(change.clone()),
     };
     let mut lines = Vec::new();
     let wire = DesignVector::common_minor_radius(design);
     if wire.rings.iter().any(|ring| ring.minor_radius != 0.0) {
         lines.push(of("minor_radius, the wire".into(), &wire, length, &in_unit));
     }
-    lines.push(of("spacing".into(), &DesignVector::spacing(design), SHARE, "1 %"));
+    let spacing = of("spacing".into(), &DesignVector::spacing(design), SHARE, "1 %");
+    lines.push(NumberChange { change: Change::Spacing, ..spacing });
     for (k, name) in ["a1.x", "a1.y", "a2.x", "a2.y"].into_iter().enumerate() {
         let mut change = DesignVector::zeros(labels.len());
         change.lattice[k / 2][k % 2] = 1.0;
@@ -93,7 +135,9 @@ pub fn ranked(design: &Design, found: &Sensitivity, step: Option<f64>) -> Vec<Nu
         if let Some(change) = DesignVector::by_number(parameter.value, &with) {
             let share = if parameter.value == 0.0 { SHARE } else { SHARE * parameter.value.abs() };
             let words = if parameter.value == 0.0 { format!("{SHARE}") } else { "1 %".into() };
-            lines.push(of(format!("parameter {}", parameter.name), &change, share, &words));
+            let line = of(format!("parameter {}", parameter.name), &change, share, &words);
+            let own = Change::Parameter { name: parameter.name.clone(), value: parameter.value };
+            lines.push(NumberChange { change: own, ..line });
         }
     }
     let gradient = found.gradient();
@@ -122,6 +166,20 @@ pub fn ranked(design: &Design, found: &Sensitivity, step: Option<f64>) -> Vec<Nu
     }
     lines.sort_by(|a, b| b.largest().total_cmp(&a.largest()));
     lines
+}
+
+/// What all rings share and what the file names, with what changes: the wire if rings have a common one, the spacing, each free
+/// parameter. Named as in `sensitivities.csv`.
+pub(crate) fn common_numbers(design: &Design) -> Vec<(String, DesignVector)> {
+    let wire = DesignVector::common_minor_radius(design);
+    let has_wire = wire.rings.iter().any(|ring| ring.minor_radius != 0.0);
+    let mut out: Vec<_> = has_wire.then(|| ("minor_radius".to_owned(), wire)).into_iter().collect();
+    out.push(("spacing".into(), DesignVector::spacing(design)));
+    out.extend(design.free_parameters().filter_map(|p| {
+        let with = |value: f64| design.with_parameters(&[(&p.name, value)]).ok();
+        Some((format!("parameters.{}", p.name), DesignVector::by_number(p.value, &with)?))
+    }));
+    out
 }
 
 /// The document of `maille sensitivity --json`, with the keys of `docs/json.md`. `direction_deg` and `l2` are those of the question.

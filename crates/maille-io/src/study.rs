@@ -86,7 +86,7 @@ impl Variant {
 impl StudyDesign {
     /// The map of each of its variants, with the record in `out`.
     pub fn map(&self, out: Option<PathBuf>, overwrite: bool) -> Map {
-        Map { question: self.question.clone(), quantity: Quantity::Stretch, out, overwrite }
+        Map { question: self.question.clone(), quantity: Quantity::Stretch, out, overwrite, sensitivities: false }
     }
 
     /// Every radius with every value of the other numbers and every spacing; a design without values of a parameter keeps its own.

@@ -371,7 +371,7 @@ fn tables_of_forces_are_read_as_they_were_written() {
 fn open_map(directions_deg: &[f64]) -> OpenMap {
     let (method, cells) = (Method::Exact(ExactOptions::default()), Cell::PRIMITIVE.into());
     let question = MapQuestion::new(method, cells, Some(directions_deg.to_vec()), Some(vec![-0.125, 0.0])).unwrap();
-    let map = Map { question, quantity: Quantity::default(), out: None, overwrite: false };
+    let map = Map { question, quantity: Quantity::default(), out: None, overwrite: false, sensitivities: false };
     let models = map.cells(&design()).into_iter().map(|cell| Model::compile(&design(), cell).unwrap()).collect();
     map.open(&design(), models).unwrap()
 }

@@ -127,7 +127,7 @@ pub fn open(
     overwrite: bool,
 ) -> PyResult<maille_io::run::OpenMap> {
     let question = serde_json::from_str(question).map_err(|e| error::other(&format!("no question: {e}")))?;
-    let map = Map { question, quantity: quantity(quantity_name)?, out, overwrite };
+    let map = Map { question, quantity: quantity(quantity_name)?, out, overwrite, sensitivities: false };
     let models = map.cells(&design.design).into_iter().map(|cell| design.compile(cell)).collect::<PyResult<_>>()?;
     map.open(&design.design, models).map_err(|e| error::record(&e))
 }

@@ -19,6 +19,7 @@ mod linking;
 pub mod proof;
 mod record;
 mod report;
+mod sensitivities;
 mod sheet;
 mod start;
 mod strain;

@@ -16,6 +16,8 @@ pub struct Texts<'a> {
     pub limits: Option<&'a str>,
     /// `states.jsonl`.
     pub states: Option<&'a str>,
+    /// `sensitivities.csv`, which a record has where it was asked for.
+    pub sensitivities: Option<&'a str>,
 }
 
 /// A file that cannot be read as what it should be.

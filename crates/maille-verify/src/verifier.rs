@@ -8,6 +8,7 @@ use crate::{
     gaps::gaps_and_links,
     record::{Row, Run, State, Texts, Unreadable, read_rows, read_run, read_states},
     report::{Check, Finding, RowReport, Verdict},
+    sensitivities,
     sheet::{self, Sheet},
     start::{Start, names, same_rings, start},
     strain,
@@ -34,7 +35,10 @@ impl Verifier {
         let run = read_run(texts.run)?;
         let (rows, columns) = texts.limits.map(read_rows).transpose()?.unwrap_or_default();
         let states = texts.states.map(read_states).transpose()?.unwrap_or_default();
-        let files = files::check(texts, &run, &rows, &states);
+        let mut files = files::check(texts, &run, &rows, &states);
+        files.extend(
+            texts.sensitivities.into_iter().flat_map(|text| sensitivities::check(text, &run.design, &rows, &states)),
+        );
         let key = |state: &State| files::key(state.direction_deg, state.l2);
         let states: BTreeMap<_, _> = states.into_iter().map(|state| (key(&state), state)).collect();
         let mut starts = BTreeMap::new();

@@ -48,7 +48,7 @@ pub fn map_of(directions_deg: Vec<f64>, l2: Vec<f64>, lateral_free: bool) -> Res
     let l2 = Some(l2).filter(|l2| !(lateral_free && *l2 == [0.0]));
     let question = MapQuestion::new(method, CellChoice::Auto, Some(directions_deg), l2)
         .map_err(|e| Refusal::wrong(e.to_string(), e.help))?;
-    Ok(Map { question, quantity: Quantity::default(), out: None, overwrite: false })
+    Ok(Map { question, quantity: Quantity::default(), out: None, overwrite: false, sensitivities: false })
 }
 
 /// Starts the solve and answers with its events. It ends when the answer is dropped.

@@ -55,6 +55,12 @@ impl Operation {
         self.matrix[(0, 0)] * self.matrix[(1, 1)] < self.matrix[(0, 1)] * self.matrix[(1, 0)]
     }
 
+    /// Whether every deformation goes to itself: it turns the plane by 180° or not at all.
+    pub(crate) fn keeps_deformations(&self) -> bool {
+        let turns = self.matrix[(0, 0)].abs() == 1.0 && self.matrix[(0, 0)] == self.matrix[(1, 1)];
+        turns && self.matrix[(0, 1)] == 0.0 && self.matrix[(1, 0)] == 0.0
+    }
+
     /// Where a direction goes, in [0, 180): D and −D are one. Rounded to 10⁻¹² degrees.
     pub fn direction_deg(&self, direction_deg: f64) -> f64 {
         let sign = if self.mirrors() { -1.0 } else { 1.0 };
@@ -85,6 +91,19 @@ impl Operation {
 ///
 /// A finite sheet has the identity alone.
 pub fn operations(model: &Model) -> Vec<Operation> {
+    let mut out = all_operations(model);
+    let mut seen = Vec::new();
+    out.retain(|operation| {
+        let first = !seen.contains(&operation.matrix);
+        seen.push(operation.matrix);
+        first
+    });
+    out
+}
+
+/// As [`operations`], with each translation of each M that is none of the lattice: a design whose elements are copies of each other
+/// has several.
+pub(crate) fn all_operations(model: &Model) -> Vec<Operation> {
     let own = model.primitive();
     let identity = Operation {
         matrix: Matrix3::identity(),
@@ -101,11 +120,10 @@ pub fn operations(model: &Model) -> Vec<Operation> {
         for up in [1.0, -1.0] {
             let mut matrix = Matrix3::from_diagonal_element(up);
             matrix.fixed_view_mut::<2, 2>(0, 0).copy_from(&plane);
-            if matrix == Matrix3::identity() {
-                continue;
-            }
             let operation = |translation| Operation { matrix, translation, integers, angle_deg };
-            out.extend(bodies.translations(&matrix).map(operation).find(|operation| bodies.kept(operation)));
+            let found = bodies.translations(&matrix).map(operation).filter(|operation| bodies.kept(operation));
+            // The identity itself is there.
+            out.extend(found.filter(|o| o.matrix != Matrix3::identity() || o.translation.norm() > TOLERANCE));
         }
     }
     out.retain(|operation| operation.cell(model.cell).is_some_and(|cell| cell.same_lattice(&model.cell)));
@@ -296,6 +314,19 @@ impl<'a> Image<'a> {
         self.operation.matrix * v
     }
 
+    /// The image of an axis of a turn, an axial vector: a mirror turns it once more.
+    pub(crate) fn axial(&self, v: &Vec3) -> Vec3 {
+        self.operation.matrix * v * self.operation.matrix.determinant().signum()
+    }
+
+    /// The images M A N⁻¹ of two lattice vectors, or of their changes.
+    pub(crate) fn lattice(&self, [a1, a2]: [&Vec3; 2]) -> [Vec3; 2] {
+        // A N⁻¹, by columns; the determinant of N is its own inverse.
+        let [[p, q], [r, s]] = self.shifts.map(|column| column.map(f64::from));
+        let det = f64::from(determinant(self.shifts));
+        [self.vector(&(a1 * s - a2 * q)) * det, self.vector(&(a2 * p - a1 * r)) * det]
+    }
+
     /// The ring, with its cell, that `ring` in the cell `shift` goes to.
     pub(crate) fn ring(&self, ring: usize, shift: Shift) -> (usize, Shift) {
         let ((image, own), there) = (self.rings[ring], self.shift(shift));
@@ -304,18 +335,11 @@ impl<'a> Image<'a> {
 
     /// The image of a state.
     pub fn state(&self, state: &State) -> State {
-        let matrix = &self.operation.matrix;
-        // A N⁻¹, by columns; the determinant of N is its own inverse.
-        let [[p, q], [r, s]] = self.shifts.map(|column| column.map(f64::from));
-        let det = f64::from(determinant(self.shifts));
-        let a1 = matrix * (state.a1 * s - state.a2 * q) * det;
-        let a2 = matrix * (state.a2 * p - state.a1 * r) * det;
+        let [a1, a2] = self.lattice([&state.a1, &state.a2]);
         let mut out = State { poses: self.to.start.poses.clone(), a1, a2 };
         for (pose, (image, shift, miss)) in state.poses.iter().zip(&self.elements) {
             let q = pose.rotation.quaternion();
-            // The axis of a turn is an axial vector: a mirror turns it once more.
-            let axis = matrix * q.imag() * matrix.determinant().signum();
-            let rotation = UnitQuaternion::new_normalize(Quaternion::from_parts(q.w, axis));
+            let rotation = UnitQuaternion::new_normalize(Quaternion::from_parts(q.w, self.axial(&q.imag())));
             let position = self.operation.maps(&pose.position) - rotation * miss - out.translation(*shift);
             out.poses[*image] = Pose { position, rotation };
         }

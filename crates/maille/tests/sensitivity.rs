@@ -2,7 +2,7 @@
 
 use maille::{
     Across, Answer, Cell, Design, Goal, Question, Sense, Sheet, Status, Strain,
-    sensitivity::{DesignVector, Sensitivity, gradient},
+    sensitivity::{DesignVector, Sensitivity, Slope, gradient},
 };
 use maille_geometry::Vec3;
 use nalgebra::UnitQuaternion;
@@ -24,22 +24,6 @@ fn stretch(direction_deg: f64, l2: f64) -> Question {
 
 fn rings(design: &Design) -> usize {
     design.elements.iter().map(|element| element.rings.len()).sum()
-}
-
-/// The design changed by `step` times `change`.
-fn moved(design: &Design, change: &DesignVector, step: f64) -> Design {
-    let mut out = design.clone();
-    for (a, rate) in [&mut out.lattice.a1, &mut out.lattice.a2].into_iter().zip(&change.lattice) {
-        (0..2).for_each(|k| a[k] += step * rate[k]);
-    }
-    let own = out.elements.iter_mut().flat_map(|element| &mut element.rings);
-    for (ring, rate) in own.zip(&change.rings) {
-        ring.major_radius += step * rate.major_radius;
-        ring.minor_radius = Some(ring.minor_radius.or(design.minor_radius).unwrap() + step * rate.minor_radius);
-        ring.offset = (Vec3::from(ring.offset) + rate.offset * step).into();
-        ring.normal = (UnitQuaternion::from_scaled_axis(rate.tilt * step) * Vec3::from(ring.normal)).into();
-    }
-    out
 }
 
 /// One unit change for each raw number of the design, by its name.
@@ -85,7 +69,7 @@ fn limits<const N: usize>(
     steps: [f64; N],
     kept: impl Fn(&[Answer]) -> bool,
 ) -> Option<[f64; N]> {
-    let answers = steps.map(|step| solved(&moved(design, change, step * h), question).1);
+    let answers = steps.map(|step| solved(&change.applied(design, step * h), question).1);
     if !kept(&answers) {
         return None;
     }
@@ -221,7 +205,7 @@ fn compare(name: &str, directions: &[f64], l2: &[f64], tally: &mut Tally) {
         let case = Case { design, question, answer, found, label: format!("{name} {direction}° l2 {l2}") };
         tally.unique += usize::from(found.forces_are_unique());
         for (number, change) in raw_numbers(design) {
-            match found.forces_are_unique() {
+            match found.forces_are_unique() && !found.images_tie(&change) {
                 true => case.central(&number, &change, tally),
                 false => case.sides(&number, &change, tally),
             }
@@ -241,7 +225,7 @@ fn derivatives_are_those_of_limits_solved_anew() {
 }
 
 #[test]
-#[ignore = "an hour; fails at the limits that docs/theory/sensitivity.md names"]
+#[ignore = "an hour; fails by 1.2e-5 at one number of king's mail, see docs/theory/sensitivity.md"]
 fn derivatives_of_all_builtin_designs() {
     let mut wrong = 0;
     for builtin in maille_io::builtin_designs() {
@@ -273,6 +257,45 @@ fn both_sides_of_a_kink() {
     assert!(both.is_kink(), "{both:?}");
     let [backward, forward] = [both.backward, both.forward].map(|slope| slope.finite().unwrap());
     assert!((backward - slope).abs() < 1e-8 && forward.abs() < 1e-8, "{both:?}, expected {slope} and 0");
+}
+
+/// A state of the limit and its images under symmetries of the design carry other forces: a change that breaks the symmetry chooses
+/// the best of them. So both sides are the same whichever of them was found, and the value rises to both sides.
+#[test]
+fn images_of_a_limit_tie() {
+    for (name, direction, l2, ties) in
+        [("3.4-chapter6", 33.0, 0.0, 18), ("3.4-chapter6", 33.0, -0.05, 18), ("2-chapter6", 0.0, -0.05, 2)]
+    {
+        let design = builtin(name);
+        let asked = stretch(direction, l2);
+        let found = |seed: u64| {
+            let question = Question { seed, ..asked.clone() };
+            let (sheet, answer) = solved(&design, &question);
+            let found = Sensitivity::of(&sheet.model_of(&answer), &question, &answer).unwrap();
+            (answer, found)
+        };
+        let (answer, first) = found(1);
+        let tied: Vec<_> = raw_numbers(&design).into_iter().filter(|(_, change)| first.images_tie(change)).collect();
+        let mut tally = Tally::default();
+        let case = Case { design: &design, question: &asked, answer: &answer, found: &first, label: name.into() };
+        tied.iter().for_each(|(number, change)| case.sides(number, change, &mut tally));
+        assert!(tied.len() == ties && tally.sides == 2 * ties && tally.wrong == 0, "{name}: {tally:#?}");
+        let mut others = 0;
+        for seed in 2..6 {
+            let (other, again) = found(seed);
+            if (other.value.unwrap() - answer.value.unwrap()).abs() > 1e-9 {
+                continue;
+            }
+            for (number, change) in &tied {
+                let [a, b] = [&first, &again].map(|found| found.one_sided(change));
+                let apart = |a: Slope, b: Slope| (a.finite().unwrap() - b.finite().unwrap()).abs();
+                let most = apart(a.backward, b.backward).max(apart(a.forward, b.forward));
+                assert!(most < 1e-6, "{name} {number}: {a:?} {b:?}");
+                others += usize::from((first.along(change) - again.along(change)).abs() > 1e-3);
+            }
+        }
+        assert!(others > 0, "{name}: every search ends in the same state");
+    }
 }
 
 /// Prints what the derivatives of a limit take beside the limit.

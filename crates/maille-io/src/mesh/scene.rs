@@ -4,14 +4,14 @@ use super::{
     error::MeshError,
     torus::{Fineness, TorusMesh},
 };
-use crate::tile::Tile;
+use crate::{record::state_at, tile::Tile};
 use maille::{
     model::Model,
-    record::{ContactRecord, PoseRecord, StateRecord},
+    record::{ContactRecord, StateRecord},
     state::{Pose, State},
 };
 use maille_geometry::Vec3;
-use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
 /// Most rings of one export.
 const MOST_RINGS: usize = 5_000_000;
@@ -288,17 +288,7 @@ fn turn_of_axis(normal: &Vector3<f64>) -> UnitQuaternion<f64> {
 
 /// The state of a record's line, for the model that was solved.
 pub fn state_of(model: &Model, record: &StateRecord) -> Result<State, MeshError> {
-    let names = model.elements.iter().map(|e| e.name.as_str());
-    if !record.poses.iter().map(|p| p.element.as_str()).eq(names) {
-        return Err(MeshError::OtherElements { state: record.poses.len(), cell: model.elements.len() });
-    }
-    let length = |x: [f64; 3]| Vec3::from(x) / model.unit;
-    let pose = |p: &PoseRecord| {
-        let [w, x, y, z] = p.rotation;
-        let rotation = UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z));
-        Pose { position: length(p.position), rotation }
-    };
-    Ok(State { poses: record.poses.iter().map(pose).collect(), a1: length(record.a1), a2: length(record.a2) })
+    state_at(model, record).ok_or(MeshError::OtherElements { state: record.poses.len(), cell: model.elements.len() })
 }
 
 /// A state of a record in words, or the start.

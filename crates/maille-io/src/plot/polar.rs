@@ -10,9 +10,10 @@ use super::compare::{
 use super::curve::{Curve, CurveKind};
 use super::look::{self, Look};
 use super::records::Looks;
+use super::tolerance::{Band, Tolerance};
 use crate::{
     quantity::Quantity,
-    record::{NamedRecord, Reference, ReferenceCell},
+    record::{NamedRecord, Reference, ReferenceCell, SensitivityRow},
 };
 use maille::design::Design;
 use maille::record::{LimitRow, Status};
@@ -84,6 +85,8 @@ pub struct PolarPlot {
     pub lateral_free: bool,
     /// Which cell the radius is measured from.
     pub reference: Reference,
+    /// What tolerances do to the curves.
+    pub bands: Vec<Band>,
     /// Values that the scale has room for, too: those of a plot that is compared with this one.
     pub room_for: Vec<f64>,
 }
@@ -167,6 +170,7 @@ impl PolarPlot {
             caption: Vec::new(),
             lateral_free: lateral_free(rows),
             reference: Reference::Start,
+            bands: Vec::new(),
             room_for: Vec::new(),
         }
     }
@@ -256,6 +260,24 @@ impl PolarPlot {
         out.curves.extend(l2_values(rows.iter()).into_iter().map(check));
         out.check = what.into();
         out
+    }
+
+    /// The same plot with the band that a tolerance makes of each curve of limits, from the derivatives of the record's rows. The radius
+    /// is 1 + l1 or l1.
+    pub fn with_tolerance(
+        mut self,
+        rows: &[LimitRow],
+        derivatives: &[SensitivityRow],
+        tolerance: &Tolerance,
+        unit: &str,
+    ) -> Self {
+        let quantity = self.quantity;
+        let band = |l2: f64| tolerance.band(rows, derivatives, l2, |row| quantity.of(row));
+        self.bands = l2_values(rows.iter()).into_iter().map(band).collect();
+        self.room_for.extend(self.bands.iter().flat_map(|band| band.low.values().chain(band.high.values())));
+        let (name, amount) = (tolerance.number.trim_start_matches("parameters."), tolerance.amount);
+        self.caption.push(format!("Shaded: {name} ± {amount}{unit}, to first order of the derivatives at each limit."));
+        self
     }
 
     fn looks(&self) -> Looks {

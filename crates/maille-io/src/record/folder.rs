@@ -20,6 +20,7 @@ use super::journal::{self, Journal};
 use super::limits::{read_limits, write_limits};
 use super::lock::{FolderLock, LOCK};
 use super::run::{Counters, RunRecord, read_run, sha256, write_run};
+use super::sensitivities::{SensitivityRow, read_sensitivities, write_sensitivities};
 use super::states::{read_states, write_states};
 use crate::files::{self, is_temporary};
 use maille::design::Design;
@@ -36,6 +37,7 @@ const LIMITS: &str = "limits.csv";
 const STATES: &str = "states.jsonl";
 const SVG: &str = "polar.svg";
 const PNG: &str = "polar.png";
+const SENSITIVITIES: &str = "sensitivities.csv";
 const JOURNAL: &str = "limits.journal";
 
 /// A design's name as a file or folder: path separators and other odd characters become underscores.
@@ -82,6 +84,13 @@ impl Record {
         let rows = read_checked(folder, LIMITS, &run, read_limits)?;
         let states = read_checked(folder, STATES, &run, read_states)?;
         Ok(Self { run, rows, states })
+    }
+
+    /// The derivatives of a folder's limits, where it has some.
+    pub fn read_sensitivities(folder: &Path) -> Result<Option<Vec<SensitivityRow>>, RecordError> {
+        let path = folder.join(SENSITIVITIES);
+        let read = |text: String| read_sensitivities(&path.display().to_string(), &text);
+        read_if_there(&path)?.map(read).transpose()
     }
 
     /// The rows that need no computing again, each with its state: those with a state and not `interrupted`.
@@ -215,8 +224,18 @@ impl RecordFolder {
         self.apply(Step::Write(PNG, png.into()))
     }
 
+    /// Whether the folder has derivatives of its limits.
+    pub fn has_sensitivities(&self) -> bool {
+        self.path.join(SENSITIVITIES).is_file()
+    }
+
+    /// Writes the derivatives of the limits.
+    pub fn write_sensitivities(&self, rows: &[SensitivityRow]) -> Result<(), RecordError> {
+        self.apply(Step::Write(SENSITIVITIES, write_sensitivities(rows).into()))
+    }
+
     fn steps_to_replace(&self) -> Vec<Step> {
-        let mut steps: Vec<_> = [LIMITS, JOURNAL, STATES, SVG, PNG].map(Step::Remove).into();
+        let mut steps: Vec<_> = [LIMITS, JOURNAL, STATES, SENSITIVITIES, SVG, PNG].map(Step::Remove).into();
         steps.push(Step::Write(RUN, write_run(&self.run).into()));
         steps
     }

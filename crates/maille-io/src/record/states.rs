@@ -1,7 +1,13 @@
 //! `states.jsonl`.
 
 use super::error::{RecordError, complete};
-use maille::record::StateRecord;
+use maille::{
+    model::Model,
+    record::{PoseRecord, StateRecord},
+    state::{Pose, State},
+};
+use maille_geometry::Vec3;
+use nalgebra::{Quaternion, UnitQuaternion};
 
 /// The states as text, one a line.
 ///
@@ -21,6 +27,21 @@ pub fn read_states(file: &str, text: &str) -> Result<Vec<StateRecord>, RecordErr
     complete(file, text)?;
     let read = |(i, line): (usize, &str)| serde_json::from_str(line).map_err(|e| RecordError::json(file, i + 1, &e));
     text.lines().enumerate().map(read).collect()
+}
+
+/// The state of a line, for the model of its cell; `None` where it has other elements.
+pub(crate) fn state_at(model: &Model, record: &StateRecord) -> Option<State> {
+    let names = model.elements.iter().map(|e| e.name.as_str());
+    if !record.poses.iter().map(|p| p.element.as_str()).eq(names) {
+        return None;
+    }
+    let length = |x: [f64; 3]| Vec3::from(x) / model.unit;
+    let pose = |p: &PoseRecord| {
+        let [w, x, y, z] = p.rotation;
+        let rotation = UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z));
+        Pose { position: length(p.position), rotation }
+    };
+    Some(State { poses: record.poses.iter().map(pose).collect(), a1: length(record.a1), a2: length(record.a2) })
 }
 
 fn finite(state: &StateRecord) -> Result<(), RecordError> {

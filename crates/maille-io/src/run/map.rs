@@ -1,5 +1,6 @@
 //! Maps, from a design to its record: what is there is read, what is left is asked for, each limit is kept as it comes.
 
+use super::sensitivities::sensitivities;
 use crate::quantity::Quantity;
 use crate::record::{Counters, Record, RecordError, RecordFolder, RunRecord, input_hash};
 use maille::design::Design;
@@ -39,6 +40,8 @@ pub struct Map {
     pub out: Option<PathBuf>,
     /// Replace a record of other inputs.
     pub overwrite: bool,
+    /// Write the derivatives of the limits beside them; where the folder has them, they are always kept up to date.
+    pub sensitivities: bool,
 }
 
 impl Map {
@@ -195,6 +198,9 @@ impl OpenMap {
         let record = Record { run, rows, states };
         if let Some(folder) = &collected.folder {
             write_polar(&record, folder, map.quantity)?;
+            if map.sensitivities || folder.has_sensitivities() {
+                folder.write_sensitivities(&sensitivities(&record)?)?;
+            }
         }
         Ok(record)
     }

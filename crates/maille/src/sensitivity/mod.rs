@@ -15,12 +15,19 @@
 //! as the lattice is F a_j, and F is fixed with the unknowns. Centres of elements are unknowns, so the value does not depend on
 //! them. Copies of a ring add up. Derivation, kinks and measurements: `docs/theory/sensitivity.md`.
 
+mod images;
 mod multipliers;
 mod numbers;
+mod point;
+mod slope;
 
 pub use numbers::{DesignVector, RingVector};
+pub use slope::{OneSided, Slope};
 
-use self::multipliers::{Least, Multipliers};
+use self::{
+    multipliers::{Least, Multipliers},
+    point::Point,
+};
 use crate::{
     answer::Answer,
     error::InvalidInput,
@@ -31,9 +38,11 @@ use crate::{
     search::family::family_at,
     solver::{constraints::Row, sqp::Program},
     state::State,
+    symmetry::Operation,
 };
 use maille_geometry::{Vec3, point_circle_distance};
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::Matrix2;
+use std::sync::OnceLock;
 
 /// The derivatives of a certified value by the numbers of its design.
 pub struct Sensitivity {
@@ -43,52 +52,10 @@ pub struct Sensitivity {
     /// 1 where the value was maximised, −1 where it was minimised.
     sign: f64,
     loose: usize,
-}
-
-/// A closed point with the derivatives of its gap by the design's numbers, in the design's unit.
-struct Point {
-    /// The pair as the design's own cell has it.
-    pair: RingPair,
-    /// The rings as the design counts them; of one ring and its own image both.
-    rings: [(usize, RingVector); 2],
-    lattice: [Vector2<f64>; 2],
-}
-
-/// Derivatives of a value along a change of the design.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OneSided {
-    /// For a step back, as a derivative: the value falls by this times the step.
-    pub backward: Slope,
-    /// For a step forward.
-    pub forward: Slope,
-}
-
-/// A one-sided derivative.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Slope {
-    /// Its value.
-    Finite(f64),
-    /// No state near this one has what is held: its forces hold it already without any pull.
-    NoState,
-    /// The linear program over the forces was not solved to its tolerance.
-    NotFound,
-}
-
-impl Slope {
-    /// The value, where it is finite.
-    pub fn finite(self) -> Option<f64> {
-        if let Slope::Finite(value) = self { Some(value) } else { None }
-    }
-}
-
-impl OneSided {
-    /// Whether the two differ by more than rounding: by a millionth of the larger one or of 1 in the units of the slope.
-    pub fn is_kink(&self) -> bool {
-        match (self.backward, self.forward) {
-            (Slope::Finite(a), Slope::Finite(b)) => (a - b).abs() > 1e-6 * a.abs().max(b.abs()).max(1e-2),
-            (a, b) => a != b,
-        }
-    }
+    model: Model,
+    question: Question,
+    /// The symmetries that keep the question, and the design in its own cell, once they are asked for.
+    symmetries: OnceLock<(Vec<Operation>, Model)>,
 }
 
 /// Forces of a state that is taken for a limit may be out of balance by this; those below 1e-9 are not recorded.
@@ -144,12 +111,15 @@ impl Sensitivity {
             rings: kinematics.own,
             sign: if question.sense == Sense::Least { -1.0 } else { 1.0 },
             loose: answer.certificate.as_ref().map_or(0, |certificate| certificate.zero_modes),
+            model: model.clone(),
+            question: question.clone(),
+            symmetries: OnceLock::new(),
         })
     }
 
     /// The derivatives by all numbers of the design, in the design's unit: of l1, a strain or the factor of the wire by lengths per
     /// unit of length, of a clearance as they are; by tilts per radian. With the forces of the answer, which at a kink are one
-    /// choice of many.
+    /// choice of many, and of the answer's own state, which may be one of several images ([`Self::one_sided`]).
     pub fn gradient(&self) -> DesignVector {
         let mut out = DesignVector::zeros(self.rings);
         for (point, mu) in self.points.iter().zip(&self.multipliers.first).filter(|(_, mu)| **mu != 0.0) {
@@ -159,7 +129,7 @@ impl Sensitivity {
         out
     }
 
-    /// The derivative along a change of the design, with the forces of the answer.
+    /// The derivative along a change of the design, with the forces and the state of the answer.
     ///
     /// # Panics
     /// For a change of a design with another number of rings.
@@ -168,11 +138,41 @@ impl Sensitivity {
     }
 
     /// The derivatives along a change of the design to both sides. A maximum rises by the least Σ μ ∂g/∂q over all forces that
-    /// balance, forward, and falls by the largest, backward.
+    /// balance, forward, and falls by the largest, backward. Where symmetries of the design make other states of the limit, it is the best
+    /// of them all to each side.
     ///
     /// # Panics
     /// For a change of a design with another number of rings.
     pub fn one_sided(&self, change: &DesignVector) -> OneSided {
+        let images = self.images_of(change);
+        let all = std::iter::once(change).chain(&images).map(|change| self.own_one_sided(change));
+        images::best(all, self.sign).expect("the state itself")
+    }
+
+    /// Whether symmetries of the design make other states of the limit with other derivatives along a change: limits that tie, between
+    /// which the change chooses. Then [`Self::along`] is the derivative of the answer's own state alone.
+    ///
+    /// # Panics
+    /// For a change of a design with another number of rings.
+    pub fn images_tie(&self, change: &DesignVector) -> bool {
+        let own = self.own_one_sided(change);
+        self.images_of(change).iter().any(|image| {
+            let there = self.own_one_sided(image);
+            [(own.backward, there.backward), (own.forward, there.forward)]
+                .into_iter()
+                .any(|(backward, forward)| OneSided { backward, forward }.is_kink())
+        })
+    }
+
+    fn images_of(&self, change: &DesignVector) -> Vec<DesignVector> {
+        assert_eq!(change.rings.len(), self.rings, "a change of a design with as many rings");
+        let (operations, design) =
+            self.symmetries.get_or_init(|| (images::symmetries(&self.model, &self.question), self.model.primitive()));
+        images::changes(operations, design, &self.points, change)
+    }
+
+    /// Of the answer's own state.
+    fn own_one_sided(&self, change: &DesignVector) -> OneSided {
         let rates = self.rates(change);
         let slope = |sign: f64| {
             let turned: Vec<f64> = rates.iter().map(|rate| rate * sign).collect();

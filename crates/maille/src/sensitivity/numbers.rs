@@ -3,9 +3,10 @@
 use crate::{
     design::{Design, RingSpec},
     error::InvalidInput,
+    symmetry::Image,
 };
 use maille_geometry::Vec3;
-use nalgebra::Vector2;
+use nalgebra::{UnitQuaternion, Vector2};
 
 /// Half of the step of [`DesignVector::by_number`], relative to the value or to 1.
 const HALF_STEP: f64 = 1e-6;
@@ -51,6 +52,11 @@ impl RingVector {
         self.tilt += other.tilt * factor;
     }
 
+    /// Its offset and its tilt mapped.
+    pub(super) fn turned(&self, vector: impl Fn(&Vec3) -> Vec3, axial: impl Fn(&Vec3) -> Vec3) -> Self {
+        RingVector { offset: vector(&self.offset), tilt: axial(&self.tilt), ..*self }
+    }
+
     /// Lengths times `length`, the tilt times `angle`.
     pub(crate) fn times(&self, length: f64, angle: f64) -> RingVector {
         RingVector {
@@ -72,6 +78,47 @@ impl DesignVector {
     pub fn dot(&self, other: &DesignVector) -> f64 {
         let lattice = self.lattice.iter().zip(&other.lattice).map(|(a, b)| a.dot(b)).sum::<f64>();
         lattice + self.rings.iter().zip(&other.rings).map(|(a, b)| a.dot(b)).sum::<f64>()
+    }
+
+    /// The design changed by `step` times this change, each ring with its own r. Centres of elements stay.
+    ///
+    /// # Panics
+    /// For a change of a design with another number of rings.
+    pub fn applied(&self, design: &Design, step: f64) -> Design {
+        let mut out = design.clone();
+        for (a, rate) in [&mut out.lattice.a1, &mut out.lattice.a2].into_iter().zip(&self.lattice) {
+            (0..2).for_each(|k| a[k] += step * rate[k]);
+        }
+        let numbers = ring_numbers(design);
+        assert_eq!(numbers.len(), self.rings.len(), "a change of a design with as many rings");
+        let rings = out.elements.iter_mut().flat_map(|element| &mut element.rings);
+        for ((ring, own), rate) in rings.zip(numbers).zip(&self.rings) {
+            ring.major_radius += step * rate.major_radius;
+            ring.minor_radius = Some(own.minor_radius + step * rate.minor_radius);
+            ring.offset = (own.offset + rate.offset * step).into();
+            ring.normal = (UnitQuaternion::from_scaled_axis(rate.tilt * step) * Vec3::from(ring.normal)).into();
+        }
+        out
+    }
+
+    /// Whether the two differ by at most `share` of this one.
+    pub(super) fn is_close_to(&self, other: &DesignVector, share: f64) -> bool {
+        let mut apart = self.clone();
+        (0..2).for_each(|k| apart.lattice[k] -= other.lattice[k]);
+        apart.rings.iter_mut().zip(&other.rings).for_each(|(ring, other)| ring.add(-1.0, other));
+        apart.dot(&apart) <= share * share * self.dot(self)
+    }
+
+    /// What a symmetry of the design makes of a change of it: each ring's entries go to the ring that it goes to.
+    pub(super) fn image(&self, image: &Image<'_>) -> Self {
+        let mut out = Self::zeros(self.rings.len());
+        for (ring, own) in self.rings.iter().enumerate() {
+            let (there, _) = image.ring(ring, [0, 0]);
+            out.rings[there] = own.turned(|v| image.vector(v), |v| image.axial(v));
+        }
+        let [a1, a2] = self.lattice.map(|a| a.push(0.0));
+        out.lattice = image.lattice([&a1, &a2]).map(|a| a.xy());
+        out
     }
 
     /// The wire: r of every ring that gives none, each by 1.

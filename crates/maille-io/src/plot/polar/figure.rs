@@ -11,6 +11,7 @@ use crate::plot::{
     outcome::Outcome,
     records::Looks,
     scale::Scale,
+    tolerance::Band,
 };
 use crate::record::Reference;
 
@@ -31,6 +32,13 @@ pub fn polar_svg(input: &PolarPlot, layout: Layout) -> String {
     back_to_front.sort_by(|a, b| (a.0.record.cmp(&b.0.record)).then(b.0.l2.abs().total_cmp(&a.0.l2.abs())));
     let disc = Disc::new(frame.area(layout), scale);
     frame.svg(layout, disc.center[1] + disc.radius + 22.0, |canvas| {
+        let own = |band: &Band| {
+            let curve = back_to_front.iter().find(|(c, _)| c.l2 == band.l2 && c.kind == CurveKind::Limits);
+            curve.map_or(SOFT, |(_, look)| look.color.as_str())
+        };
+        input.bands.iter().for_each(|band| disc.draw_band(canvas, band, own(band)));
+        // Above all of them: bands hide each other, their edges do not.
+        input.bands.iter().for_each(|band| disc.draw_edges(canvas, band, own(band)));
         disc.draw_grid(canvas, input.quantity.base());
         disc.draw_rays(canvas, &input.rays);
         for (curve, look) in back_to_front.iter().filter(|(curve, _)| curve.kind != CurveKind::Check) {
@@ -146,6 +154,31 @@ impl Disc {
         }
     }
 
+    /// Between its edges: out along the one and back along the other.
+    fn draw_band(&self, canvas: &mut Canvas, band: &Band, color: &str) {
+        let ((low, closed), (high, _)) = (band.low.runs(), band.high.runs());
+        for (low, high) in low.iter().zip(&high).filter(|(low, _)| low.len() > 1) {
+            let mut points: Vec<_> = high.iter().map(|&(degrees, value)| self.at(degrees, value)).collect();
+            let mut back: Vec<_> = low.iter().map(|&(degrees, value)| self.at(degrees, value)).collect();
+            if closed {
+                points.push(points[0]);
+                back.push(back[0]);
+            }
+            points.extend(back.into_iter().rev());
+            canvas.path(&points, true, &tint(color, BAND), Stroke::solid("none", 0.0));
+        }
+    }
+
+    fn draw_edges(&self, canvas: &mut Canvas, band: &Band, color: &str) {
+        for edge in [&band.low, &band.high] {
+            let (runs, closed) = edge.runs();
+            for run in runs.iter().filter(|run| run.len() > 1) {
+                let points: Vec<_> = run.iter().map(|&(degrees, value)| self.at(degrees, value)).collect();
+                canvas.path(&points, closed, "none", Stroke::solid(&tint(color, EDGE), 1.0));
+            }
+        }
+    }
+
     /// Points along the drawn lines, close to each other.
     fn line_points(&self, curve: &Curve) -> Vec<[f64; 2]> {
         let (mut runs, closed) = curve.runs();
@@ -190,6 +223,18 @@ impl Disc {
     }
 }
 
+/// Shares of a line's colour in the band about it, and in the edges of the band.
+const BAND: f64 = 0.18;
+const EDGE: f64 = 0.5;
+
+/// A share of a colour in white.
+fn tint(color: &str, share: f64) -> String {
+    let part = |k: usize| color.get(2 * k + 1..2 * k + 3).and_then(|hex| u8::from_str_radix(hex, 16).ok());
+    let mixed = [0, 1, 2].map(|k| part(k).map_or(230.0, |x| 255.0 - share * (255.0 - f64::from(x))));
+    let [r, g, b] = mixed.map(|x| x.round() as u8);
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
 fn legend(input: &PolarPlot, of_all: &Looks, looks: &[Look], scale: &Scale) -> Vec<Entry> {
     let empty =
         |l2: f64| input.curves.iter().filter(|curve| curve.l2 == l2).all(|curve| curve.values().next().is_none());
@@ -207,6 +252,10 @@ fn legend(input: &PolarPlot, of_all: &Looks, looks: &[Look], scale: &Scale) -> V
         let cut = if cut { format!(", cut off at {}", scale.label(scale.high)) } else { String::new() };
         let look = Look { color: SOFT.into(), ..look.clone() };
         out.push(Entry::sample(&look, true, false, &format!("proven bound{cut}")));
+    }
+    if !input.bands.is_empty() {
+        let look = Look { color: tint(SOFT, BAND), width: 9.0, ..look::hollow() };
+        out.push(Entry::sample(&look, true, false, "within the tolerance"));
     }
     let shown = if input.check.is_empty() { CurveKind::Limits } else { CurveKind::Check };
     let statuses = of_kind(shown).flat_map(|(curve, _)| curve.turn()).map(|(_, value, status)| (value, status));
