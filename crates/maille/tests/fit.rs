@@ -40,12 +40,8 @@ fn options() -> FitOptions {
 fn run(design: &Design, start: &[f64], targets: &Targets, options: &FitOptions) -> Fit {
     let paths = radii(design);
     let make = |values: &[f64]| with(design, &paths, values);
-    let number = |(path, x): (&NumberPath, &f64)| FreeNumber {
-        name: path.to_string(),
-        value: *x,
-        min: x * 0.6,
-        max: x * 1.5,
-    };
+    let number =
+        |(path, x): (&NumberPath, &f64)| FreeNumber { name: path.to_string(), value: *x, min: x * 0.6, max: x * 1.5 };
     let family = Family { numbers: paths.iter().zip(start).map(number).collect(), make: &make };
     fit(&family, targets, options, &|_| (), &AtomicBool::new(false)).unwrap()
 }

@@ -177,7 +177,11 @@ pub fn fit(
         let begin = if starts == 1 { Some(given.clone()) } else { search.drawn(&best, starts, &mut random) };
         let tell = |point: &Point, best: &Point| {
             let better = if point.cost() < best.cost() { point } else { best };
-            progress(FitProgress { start: starts, designs: search.solved.get(), worst_miss: search.worst_miss(better) });
+            progress(FitProgress {
+                start: starts,
+                designs: search.solved.get(),
+                worst_miss: search.worst_miss(better),
+            });
         };
         if let Some(found) = begin.map(|begin| descend(&search, begin, &|point| tell(point, &best)))
             && found.cost() < best.cost()

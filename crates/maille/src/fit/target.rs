@@ -149,7 +149,8 @@ mod tests {
     use super::*;
 
     fn targets(shape: bool) -> Targets {
-        let of = |(direction_deg, value, weight)| Target { direction_deg, l2: 0.0, wanted: Wanted::Value(value), weight };
+        let of =
+            |(direction_deg, value, weight)| Target { direction_deg, l2: 0.0, wanted: Wanted::Value(value), weight };
         Targets::new([(0.0, 1.0, 1.0), (90.0, 3.0, 2.0), (45.0, 0.5, 0.5)].map(of).to_vec(), shape).unwrap()
     }
 
