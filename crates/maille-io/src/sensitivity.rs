@@ -3,7 +3,7 @@
 use crate::unit::millimetres;
 use maille::{
     answer::Answer,
-    design::Design,
+    design::{Design, Parameter},
     model::RingPair,
     record::Status,
     sensitivity::{DesignVector, OneSided, RingVector, Sensitivity},
@@ -53,6 +53,7 @@ const NAMED: usize = 2;
 const STEP_MM: f64 = 0.1;
 /// Step of the spacing, and of a length in a design without a unit of length, as a share of the reference radius.
 const SHARE: f64 = 0.01;
+
 impl NumberChange {
     /// Changes of the limit for a step back and a step forward, to first order; `None` where no state is left, or it is not known.
     pub fn changes(&self) -> [Option<f64>; 2] {
@@ -119,26 +120,22 @@ pub fn ranked(design: &Design, found: &Sensitivity, step: Option<f64>) -> Vec<Nu
         change: Change::Numbers(change.clone()),
     };
     let mut lines = Vec::new();
-    let wire = DesignVector::common_minor_radius(design);
-    if wire.rings.iter().any(|ring| ring.minor_radius != 0.0) {
-        lines.push(of("minor_radius, the wire".into(), &wire, length, &in_unit));
+    for (number, rate) in shared_numbers(design) {
+        lines.push(match number {
+            Shared::Wire => of("minor_radius, the wire".into(), &rate, length, &in_unit),
+            Shared::Spacing => NumberChange { change: Change::Spacing, ..of("spacing".into(), &rate, SHARE, "1 %") },
+            Shared::Parameter(Parameter { name, value, .. }) => {
+                let share = if *value == 0.0 { SHARE } else { SHARE * value.abs() };
+                let words = if *value == 0.0 { format!("{SHARE}") } else { "1 %".into() };
+                let change = Change::Parameter { name: name.clone(), value: *value };
+                NumberChange { change, ..of(format!("parameter {name}"), &rate, share, &words) }
+            }
+        });
     }
-    let spacing = of("spacing".into(), &DesignVector::spacing(design), SHARE, "1 %");
-    lines.push(NumberChange { change: Change::Spacing, ..spacing });
     for (k, name) in ["a1.x", "a1.y", "a2.x", "a2.y"].into_iter().enumerate() {
         let mut change = DesignVector::zeros(labels.len());
         change.lattice[k / 2][k % 2] = 1.0;
         lines.push(of(format!("lattice {name}"), &change, length, &in_unit));
-    }
-    for parameter in design.free_parameters() {
-        let with = |value: f64| design.with_parameters(&[(&parameter.name, value)]).ok();
-        if let Some(change) = DesignVector::by_number(parameter.value, &with) {
-            let share = if parameter.value == 0.0 { SHARE } else { SHARE * parameter.value.abs() };
-            let words = if parameter.value == 0.0 { format!("{SHARE}") } else { "1 %".into() };
-            let line = of(format!("parameter {}", parameter.name), &change, share, &words);
-            let own = Change::Parameter { name: parameter.name.clone(), value: parameter.value };
-            lines.push(NumberChange { change: own, ..line });
-        }
     }
     let gradient = found.gradient();
     let alone = design.elements.iter().flat_map(|e| e.rings.iter().map(|_| e.rings.len() == 1));
@@ -168,16 +165,36 @@ pub fn ranked(design: &Design, found: &Sensitivity, step: Option<f64>) -> Vec<Nu
     lines
 }
 
-/// What all rings share and what the file names, with what changes: the wire if rings have a common one, the spacing, each free
-/// parameter. Named as in `sensitivities.csv`.
-pub(crate) fn common_numbers(design: &Design) -> Vec<(String, DesignVector)> {
+/// A number that is of no single ring.
+pub(crate) enum Shared<'a> {
+    /// The minor radius that rings have in common.
+    Wire,
+    Spacing,
+    /// A free one of the file.
+    Parameter(&'a Parameter),
+}
+
+impl Shared<'_> {
+    /// Its name in `sensitivities.csv`.
+    pub fn name(&self) -> String {
+        match self {
+            Shared::Wire => "minor_radius".into(),
+            Shared::Spacing => "spacing".into(),
+            Shared::Parameter(parameter) => format!("parameters.{}", parameter.name),
+        }
+    }
+}
+
+/// The shared numbers of a design, each with how the raw numbers change with it. Left out are a wire that no ring has, and parameters
+/// that cannot change.
+pub(crate) fn shared_numbers(design: &Design) -> Vec<(Shared<'_>, DesignVector)> {
     let wire = DesignVector::common_minor_radius(design);
     let has_wire = wire.rings.iter().any(|ring| ring.minor_radius != 0.0);
-    let mut out: Vec<_> = has_wire.then(|| ("minor_radius".to_owned(), wire)).into_iter().collect();
-    out.push(("spacing".into(), DesignVector::spacing(design)));
-    out.extend(design.free_parameters().filter_map(|p| {
-        let with = |value: f64| design.with_parameters(&[(&p.name, value)]).ok();
-        Some((format!("parameters.{}", p.name), DesignVector::by_number(p.value, &with)?))
+    let mut out: Vec<_> = has_wire.then_some((Shared::Wire, wire)).into_iter().collect();
+    out.push((Shared::Spacing, DesignVector::spacing(design)));
+    out.extend(design.free_parameters().filter_map(|parameter| {
+        let with = |value: f64| design.with_parameters(&[(&parameter.name, value)]).ok();
+        Some((Shared::Parameter(parameter), DesignVector::by_number(parameter.value, &with)?))
     }));
     out
 }

@@ -1,4 +1,4 @@
-//! Fits: hidden numbers are found again, bounds and impossible targets are told.
+//! Fits: hidden numbers are found again, bounds are kept, and what is missed or cannot begin is told.
 
 use maille::{
     CellChoice, Design, Sheet,
@@ -33,18 +33,28 @@ fn own_cell() -> CellChoice {
     CellChoice::These(vec![maille::Cell::PRIMITIVE])
 }
 
-fn options() -> FitOptions {
-    FitOptions { cells: own_cell(), ..FitOptions::default() }
-}
-
-fn run(design: &Design, start: &[f64], targets: &Targets, options: &FitOptions) -> Fit {
+/// A fit of the wire and the rings, each between `share` of its value at first.
+fn run(
+    design: &Design,
+    start: &[f64],
+    share: [f64; 2],
+    targets: &Targets,
+    stopped: bool,
+) -> Result<Fit, maille::InvalidInput> {
     let paths = radii(design);
     let make = |values: &[f64]| with(design, &paths, values);
-    let number =
-        |(path, x): (&NumberPath, &f64)| FreeNumber { name: path.to_string(), value: *x, min: x * 0.6, max: x * 1.5 };
+    let number = |(path, x): (&NumberPath, &f64)| FreeNumber {
+        name: path.to_string(),
+        value: *x,
+        min: x * share[0],
+        max: x * share[1],
+    };
     let family = Family { numbers: paths.iter().zip(start).map(number).collect(), make: &make };
-    fit(&family, targets, options, &|_| (), &AtomicBool::new(false)).unwrap()
+    let options = FitOptions { cells: own_cell(), ..FitOptions::default() };
+    fit(&family, targets, &options, &|_| (), &AtomicBool::new(stopped))
 }
+
+const WIDE: [f64; 2] = [0.6, 1.5];
 
 const DIRECTIONS_DEG: [f64; 13] = [0., 15., 30., 45., 60., 75., 90., 105., 120., 135., 150., 165., 180.];
 
@@ -97,7 +107,7 @@ fn hidden_radii_of_seven_designs_are_found_again() {
         let name = names[case % names.len()];
         let (design, targets, start) = hidden(name, case as u64);
         let begun = Instant::now();
-        let fit = run(&design, &start, &targets, &options());
+        let fit = run(&design, &start, WIDE, &targets, false).unwrap();
         let (miss, seconds) = (worst(&fit), begun.elapsed().as_secs_f64());
         println!("{name}: miss {miss:.1e}, {} starts, {} designs, {seconds:.1} s", fit.starts, fit.designs);
         found += usize::from(miss <= 1e-4);
@@ -110,7 +120,7 @@ fn hidden_radii_of_seven_designs_are_found_again() {
 fn hidden_radii_are_found_again() {
     for (name, seed) in [("1.1", 1), ("2", 2)] {
         let (design, targets, start) = hidden(name, seed);
-        let fit = run(&design, &start, &targets, &options());
+        let fit = run(&design, &start, WIDE, &targets, false).unwrap();
         assert_eq!(fit.ended, Ended::Reached, "{name}: {}", worst(&fit));
         // An independent solve of the design that was found.
         let again = profile(&fit.design).unwrap();
@@ -118,4 +128,56 @@ fn hidden_radii_are_found_again() {
             assert!((found.value() - wanted.value()).abs() < 2e-6);
         }
     }
+}
+
+fn target(direction_deg: f64, wanted: Wanted) -> Target {
+    Target { direction_deg, l2: 0.0, wanted, weight: 1.0 }
+}
+
+#[test]
+fn an_impossible_target_ends_at_the_bounds() {
+    let design = design("1.1");
+    let start = values(&design);
+    let targets = Targets::new(vec![target(0.0, Wanted::AtLeast(2.0))], false).unwrap();
+    let fit = run(&design, &start, [0.9, 1.1], &targets, false).unwrap();
+    assert_eq!(fit.ended, Ended::Missed);
+    // The chain along 0°: the flat ring and the one that stands across, 2.5 long; the other one takes no part.
+    for (number, (share, x)) in [0.9, 1.1, 1.1].into_iter().zip(&start).enumerate() {
+        assert!((fit.numbers[number] - share * x).abs() < 1e-12, "{:?}", fit.numbers);
+    }
+    let expected = 2.0 * (1.1 + 1.1 - 2.0 * 0.09) / 2.5 - 1.0;
+    let answer = &fit.answers[0];
+    assert!((answer.value.unwrap() - expected).abs() < 1e-7 && (fit.misses[0] - (expected - 2.0)).abs() < 1e-7);
+    // What forbids it, at this design: no state goes further.
+    assert_eq!(answer.status, maille::Status::Global);
+    assert!(answer.bound.unwrap() < 2.0);
+}
+
+#[test]
+fn a_shape_is_reached_at_some_size() {
+    let design = design("1.1");
+    let wanted = [(0.0, 1.0), (90.0, 1.2)].map(|(direction, value)| target(direction, Wanted::Value(value)));
+    let targets = Targets::new(wanted.to_vec(), true).unwrap();
+    let fit = run(&design, &values(&design), WIDE, &targets, false).unwrap();
+    assert_eq!(fit.ended, Ended::Reached);
+    let [along, across] = [0, 1].map(|k| fit.answers[k].value.unwrap());
+    assert!((across / along - 1.2).abs() < 1e-5 && (fit.factor - along).abs() < 1e-5);
+    let before = fit.before[1].value.unwrap() / fit.before[0].value.unwrap();
+    assert!((before - 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn a_fit_that_cannot_begin_says_why() {
+    let design = design("1.1");
+    let start = values(&design);
+    let problem = |targets: Vec<Target>, share: [f64; 2], stopped: bool| {
+        let targets = Targets::new(targets, false).unwrap();
+        run(&design, &start, share, &targets, stopped).unwrap_err().problem
+    };
+    let usual = target(0.0, Wanted::Value(0.5));
+    assert!(problem(vec![usual], WIDE, true).contains("interrupted"));
+    assert!(problem(vec![usual], [1.1, 1.2], false).contains("is not between"));
+    assert!(problem(vec![usual], [1.0, 1.0], false).contains("is not below"));
+    let too_wide = Target { l2: 5.0, ..usual };
+    assert!(problem(vec![too_wide], WIDE, false).contains("at l2 5"));
 }

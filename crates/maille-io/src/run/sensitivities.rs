@@ -2,7 +2,7 @@
 
 use crate::{
     record::{Record, RecordError, SensitivityRow, state_at},
-    sensitivity::common_numbers,
+    sensitivity::shared_numbers,
 };
 use maille::{
     Answer, Certificate, Contact, Goal, Model, Question, Sense, Sensitivity, Status,
@@ -19,7 +19,7 @@ use nalgebra::Matrix2;
 pub fn sensitivities(record: &Record) -> Result<Vec<SensitivityRow>, RecordError> {
     let asked = record.run.question()?;
     let Method::Exact(options) = &asked.method else { return Ok(Vec::new()) };
-    let numbers = common_numbers(&record.run.design);
+    let numbers = shared_numbers(&record.run.design);
     let mut models: Vec<Model> = Vec::new();
     let mut out = Vec::new();
     for row in record.rows.iter().filter(|row| matches!(row.status, Status::Global | Status::Local)) {
@@ -35,7 +35,7 @@ pub fn sensitivities(record: &Record) -> Result<Vec<SensitivityRow>, RecordError
             SensitivityRow {
                 direction_deg: row.direction_deg,
                 l2: row.l2,
-                number: number.clone(),
+                number: number.name(),
                 derivative: slope.and_then(|slope| slope.forward.finite()),
                 derivative_back: slope.and_then(|slope| slope.backward.finite()),
             }

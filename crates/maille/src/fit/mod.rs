@@ -126,7 +126,7 @@ impl Point {
 /// Why a design was not taken.
 enum Refused {
     Design(InvalidInput),
-    Limit(usize, Status),
+    Limit(Target, Status),
     Shape,
     Interrupted,
 }
@@ -164,11 +164,11 @@ pub fn fit(
         return Err(InvalidInput::new("tolerance", problem, "give a number above 0"));
     }
     let first: Vec<f64> = family.numbers.iter().map(|n| n.value).collect();
-    let written = (family.make)(&first).map_err(|problems| head(problems))?;
+    let written = (family.make)(&first).map_err(head)?;
     let links = Sheet::in_cells(&written, options.cells.clone()).map_err(head)?.model().links.clone();
     let search = Search { family, targets, options, links, solved: Count::new(0), cancel };
     let shares = family.numbers.iter().map(|n| (n.value - n.min) / (n.max - n.min)).collect();
-    let given = search.solve(shares).map_err(|refused| refused.of_the_given(targets))?;
+    let given = search.solve(shares).map_err(Refused::of_the_given)?;
     let before = given.answers.clone();
     let (mut best, mut starts) = (given.clone(), 0);
     let mut random = ChaCha8Rng::seed_from_u64(options.seed);
@@ -214,11 +214,10 @@ fn head(problems: Vec<InvalidInput>) -> InvalidInput {
 
 impl Refused {
     /// The error where the given design itself cannot be used.
-    fn of_the_given(self, targets: &Targets) -> InvalidInput {
+    fn of_the_given(self) -> InvalidInput {
         match self {
             Refused::Design(problem) => problem,
-            Refused::Limit(k, status) => {
-                let target = targets.iter().nth(k).expect("one answer for each target");
+            Refused::Limit(target, status) => {
                 let (direction, l2) = (target.direction_deg, target.l2);
                 let problem = format!("along {direction}\u{b0} at l2 {l2} the given design is {}", status.name());
                 InvalidInput::new("targets", problem, "begin with a design that has every limit that is wanted")
@@ -258,11 +257,11 @@ impl Search<'_> {
         let answers = questions.par_iter().map(|question| sheet.answer_until(question, self.cancel));
         let answers = answers.collect::<Result<Vec<_>, _>>().map_err(Refused::Design)?;
         let mut l1 = Vec::with_capacity(answers.len());
-        for (k, answer) in answers.iter().enumerate() {
+        for (answer, target) in answers.iter().zip(self.targets.iter()) {
             match (answer.limit(), answer.status) {
                 (Some(value), _) => l1.push(value),
                 (None, Status::Interrupted) => return Err(Refused::Interrupted),
-                (None, status) => return Err(Refused::Limit(k, status)),
+                (None, status) => return Err(Refused::Limit(*target, status)),
             }
         }
         let residuals = self.targets.residuals(&l1).ok_or(Refused::Shape)?;

@@ -93,11 +93,6 @@ impl Targets {
         self.all.iter()
     }
 
-    /// How many.
-    pub fn count(&self) -> usize {
-        self.all.len()
-    }
-
     /// The common factor s of the values: 1, or for a shape the best one, s = Σ w² v l / Σ w² v².
     pub fn factor(&self, l1: &[f64]) -> f64 {
         if !self.shape {
