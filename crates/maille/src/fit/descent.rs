@@ -1,6 +1,9 @@
 //! Descent from one start: Levenberg–Marquardt steps within the bounds.
 
-use super::{Point, Refused, Search, step::within_bounds};
+use super::{
+    search::{Point, Refused, Search},
+    step::within_bounds,
+};
 use nalgebra::DMatrix;
 use std::sync::atomic::Ordering;
 

@@ -1,0 +1,143 @@
+//! One design of the family: solved for all targets, with its derivatives, or refused.
+
+use super::{
+    family::{Family, FreeNumber},
+    options::FitOptions,
+    target::{Target, Targets},
+};
+use crate::{
+    answer::Answer, design::Design, error::InvalidInput, model::Link, question::Question, record::Status, sensitivity,
+    sheet::Sheet,
+};
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+use std::{cell::Cell, sync::atomic::AtomicBool};
+
+/// A design that was solved for all targets.
+#[derive(Clone)]
+pub(super) struct Point {
+    /// Each number as a share of its range.
+    pub shares: Vec<f64>,
+    pub design: Design,
+    pub sheet: Sheet,
+    pub answers: Vec<Answer>,
+    pub l1: Vec<f64>,
+    pub misses: Vec<f64>,
+    pub residuals: DVector<f64>,
+}
+
+impl Point {
+    pub fn cost(&self) -> f64 {
+        self.residuals.norm_squared()
+    }
+
+    pub fn worst_miss(&self) -> f64 {
+        self.misses.iter().copied().map(f64::abs).fold(0.0, f64::max)
+    }
+}
+
+/// Why a design was not taken.
+pub(super) enum Refused {
+    Design(InvalidInput),
+    Limit(Target, Status),
+    Shape,
+    Interrupted,
+}
+
+/// What all starts share.
+pub(super) struct Search<'a> {
+    pub family: &'a Family<'a>,
+    pub targets: &'a Targets,
+    pub options: &'a FitOptions,
+    /// Links of the given design.
+    pub links: Vec<Link>,
+    pub solved: Cell<usize>,
+    pub cancel: &'a AtomicBool,
+}
+
+/// The first of the problems.
+pub(super) fn head(problems: Vec<InvalidInput>) -> InvalidInput {
+    let none = || InvalidInput::new("design", "cannot be used", "check it by itself");
+    problems.into_iter().next().unwrap_or_else(none)
+}
+
+impl Refused {
+    /// The error where the given design itself cannot be used.
+    pub fn of_the_given(self) -> InvalidInput {
+        match self {
+            Refused::Design(problem) => problem,
+            Refused::Limit(target, status) => {
+                let (direction, l2) = (target.direction_deg, target.l2);
+                let problem = format!("along {direction}\u{b0} at l2 {l2} the given design is {}", status.name());
+                InvalidInput::new("targets", problem, "begin with a design that has every limit that is wanted")
+            }
+            Refused::Shape => {
+                let problem = "the given design does not stretch along the directions of the shape";
+                InvalidInput::new("targets", problem, "begin with a design whose limits there are above 0")
+            }
+            Refused::Interrupted => {
+                InvalidInput::new("fit", "was interrupted before the given design was solved", "begin it again")
+            }
+        }
+    }
+}
+
+impl Search<'_> {
+    pub fn values(&self, shares: &[f64]) -> Vec<f64> {
+        let value = |(n, share): (&FreeNumber, &f64)| match *share {
+            // The ends exactly.
+            1.0 => n.max,
+            share => n.min + share * (n.max - n.min),
+        };
+        self.family.numbers.iter().zip(shares).map(value).collect()
+    }
+
+    /// The design with these shares, solved for all targets.
+    pub fn solve(&self, shares: Vec<f64>) -> Result<Point, Refused> {
+        self.solved.set(self.solved.get() + 1);
+        let first = |problems| Refused::Design(head(problems));
+        let design = (self.family.make)(&self.values(&shares)).map_err(first)?;
+        let sheet = Sheet::in_cells(&design, self.options.cells.clone()).map_err(first)?;
+        if sheet.model().links != self.links {
+            let problem = "its rings are linked in another way than those of the given design";
+            return Err(Refused::Design(InvalidInput::new("design", problem, "give narrower bounds")));
+        }
+        let questions: Vec<Question> = self.targets.iter().map(|target| self.question(target)).collect();
+        let answers = questions.par_iter().map(|question| sheet.answer_until(question, self.cancel));
+        let answers = answers.collect::<Result<Vec<_>, _>>().map_err(Refused::Design)?;
+        let mut l1 = Vec::with_capacity(answers.len());
+        for (answer, target) in answers.iter().zip(self.targets.iter()) {
+            match (answer.limit(), answer.status) {
+                (Some(value), _) => l1.push(value),
+                (None, Status::Interrupted) => return Err(Refused::Interrupted),
+                (None, status) => return Err(Refused::Limit(*target, status)),
+            }
+        }
+        let misses = self.targets.misses(&l1).ok_or(Refused::Shape)?;
+        let residuals = self.targets.residuals(&misses);
+        Ok(Point { shares, design, sheet, answers, l1, misses, residuals })
+    }
+
+    fn question(&self, target: &Target) -> Question {
+        Question { effort: self.options.effort, seed: self.options.seed, ..target.question() }
+    }
+
+    /// Derivatives of the residuals by the shares.
+    ///
+    /// # Errors
+    /// Where the design or an answer has none.
+    pub fn slopes(&self, point: &Point) -> Result<DMatrix<f64>, InvalidInput> {
+        let rates = self.family.rates(&self.values(&point.shares))?;
+        let mut slopes = DMatrix::zeros(point.answers.len(), rates.len());
+        for (k, (answer, target)) in point.answers.iter().zip(self.targets.iter()).enumerate() {
+            let model = point.sheet.model_of(answer);
+            let along = sensitivity::gradient(&model, &self.question(target), answer, &rates)?;
+            slopes.row_mut(k).copy_from_slice(&along);
+        }
+        Ok(self.targets.residual_slopes(&point.l1, &slopes))
+    }
+
+    pub fn reached(&self, point: &Point) -> bool {
+        point.worst_miss() <= self.options.tolerance
+    }
+}
