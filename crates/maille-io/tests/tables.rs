@@ -5,7 +5,7 @@ mod rows;
 
 use maille::record::{Column, LIMIT_COLUMNS, RECORD_SCHEMA, Status};
 use maille_io::NumberPath;
-use maille_io::record::{FORCE_COLUMNS, NamedRecord, PLACE_COLUMNS, read_limits, write_limits};
+use maille_io::record::{FORCE_COLUMNS, NamedRecord, PLACE_COLUMNS, SENSITIVITY_COLUMNS, read_limits, write_limits};
 use maille_io::table::{Condition, Extent, Field, SortKey, Table};
 use rows::{design, record, row};
 use serde_json::Value;
@@ -137,7 +137,8 @@ fn the_page_of_columns_says_what_the_program_says() {
     let page = document("docs/record.md");
     let (page, forces) = page.split_once("\n## The forces of a simulated sheet\n").unwrap();
     let (page, statuses) = page.split_once("\n## Statuses\n").unwrap();
-    let statuses = statuses.split("\n## ").next().unwrap();
+    let (statuses, rest) = statuses.split_once("\n## Derivatives\n").unwrap();
+    let derivatives = rest.split("\n## ").next().unwrap();
     let lines: Vec<&str> = page.lines().filter(|line| line.starts_with("| `")).collect();
     let line = |c: &Column| {
         let unit = c.unit.name(None).map(|unit| format!(" {unit}")).unwrap_or_default();
@@ -147,4 +148,5 @@ fn the_page_of_columns_says_what_the_program_says() {
     assert_eq!(names(forces), FORCE_COLUMNS.into_iter().chain(PLACE_COLUMNS).collect::<Vec<_>>());
     assert!(LIMIT_COLUMNS.iter().all(|c| (1..=RECORD_SCHEMA).contains(&c.since)));
     assert_eq!(names(statuses), Status::ALL.map(Status::name));
+    assert_eq!(names(derivatives), SENSITIVITY_COLUMNS);
 }

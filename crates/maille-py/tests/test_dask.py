@@ -57,12 +57,15 @@ def study(tmp_path_factory) -> Path:
     return folder / "study.toml"
 
 
-@pytest.fixture(scope="module")
-def by_program(program, study, tmp_path_factory) -> Path:
-    out = tmp_path_factory.mktemp("program") / "swept"
+def swept(program, study: Path, out: Path) -> Path:
     done = subprocess.run([program, "sweep", study, "--quiet", "--out", out], check=False)
     assert done.returncode in (0, 5)
     return out
+
+
+@pytest.fixture(scope="module")
+def by_program(program, study, tmp_path_factory) -> Path:
+    return swept(program, study, tmp_path_factory.mktemp("program") / "swept")
 
 
 def same_run(mine: Path, its: Path) -> None:
@@ -270,8 +273,10 @@ def test_errors_of_the_command_are_one_line_with_an_exit_code(tmp_path, capsys):
     assert left.value.code == 0 and "Examples:" in capsys.readouterr().out
 
 
-def test_ctrl_c_leaves_what_was_found_and_the_same_command_goes_on(study, by_program, tmp_path):
-    out = tmp_path / "out"
+def test_ctrl_c_leaves_what_was_found_and_the_same_command_goes_on(program, tmp_path):
+    # Eight chains that all take long, so that most are left when the first one is seen.
+    study, out = tmp_path / "long.toml", tmp_path / "out"
+    study.write_text('directions = "61:68:1"\nl2 = -0.125\nstarts = 40\ncell = "1x1"\n[[designs]]\ndesign = "2"\n')
     arguments = [sys.executable, "-m", "maille.dask", str(study), "--workers", "1", "--out", str(out)]
     child = subprocess.Popen(arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True)
     while child.poll() is None and not list(out.glob("chains/*/*.parquet")):
@@ -284,7 +289,7 @@ def test_ctrl_c_leaves_what_was_found_and_the_same_command_goes_on(study, by_pro
     assert 0 < found < 8
     done = run(*arguments[3:])
     assert done.returncode in (0, 5) and f"{8 - found} of 8 chains now" in done.stdout
-    same_run(out, by_program)
+    same_run(out, swept(program, study, tmp_path / "program"))
 
 
 def test_variants_with_parameters_are_those_of_the_program(program, tmp_path):

@@ -5,7 +5,7 @@
 //! finished only if `states.jsonl` holds its state.**
 //!
 //! - A new record: `run.json` first, so that the folder is known as ours before anything else is in it.
-//! - A replaced record: `limits.csv` is removed first, then the states and plots, then `run.json` is replaced. Until that
+//! - A replaced record: `limits.csv` is removed first, then states, derivatives and plots, then `run.json` is replaced. Until that
 //!   last step the folder is the old record with fewer rows, never a mixture.
 //! - More rows: `run.json` with the new counters and with two checksums for each file, the new one and that of the file which is
 //!   there; then `states.jsonl`, then `limits.csv`; then `run.json` with the new checksums alone. A kill in between leaves files

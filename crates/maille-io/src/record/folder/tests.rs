@@ -142,6 +142,7 @@ fn kill_while_overwriting_never_mixes_two_computations() {
         let (mut folder, ..) = RecordFolder::open(path, &design(), &old_inputs, "0.1.0", false).unwrap();
         folder.write(&old, &old_states).unwrap();
         folder.write_polar("<svg/>", b"png").unwrap();
+        folder.write_sensitivities(&[]).unwrap();
         fs::write(path.join("notes.txt"), "mine").unwrap();
         folder
     };
@@ -153,12 +154,12 @@ fn kill_while_overwriting_never_mixes_two_computations() {
     killed_anywhere(before, steps, |path, done| {
         let record = Record::read(path).unwrap();
         let old_run = record.run.parameters == old_inputs;
-        assert_eq!(old_run, done < 6);
+        assert_eq!(old_run, done < 7);
         assert_eq!(record.finished().0.len(), if done == 0 { 3 } else { 0 });
         let (.., rows, _) = RecordFolder::open(path, &design(), &new_inputs, "0.1.0", true).unwrap();
         assert!(rows.is_empty());
         assert_eq!(fs::read_to_string(path.join("notes.txt")).unwrap(), "mine");
-        assert!(!path.join(SVG).exists());
+        assert!(!path.join(SVG).exists() && !path.join(SENSITIVITIES).exists());
     });
 }
 
