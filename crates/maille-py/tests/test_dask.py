@@ -57,15 +57,12 @@ def study(tmp_path_factory) -> Path:
     return folder / "study.toml"
 
 
-def swept(program, study: Path, out: Path) -> Path:
+@pytest.fixture(scope="module")
+def by_program(program, study, tmp_path_factory) -> Path:
+    out = tmp_path_factory.mktemp("program") / "swept"
     done = subprocess.run([program, "sweep", study, "--quiet", "--out", out], check=False)
     assert done.returncode in (0, 5)
     return out
-
-
-@pytest.fixture(scope="module")
-def by_program(program, study, tmp_path_factory) -> Path:
-    return swept(program, study, tmp_path_factory.mktemp("program") / "swept")
 
 
 def same_run(mine: Path, its: Path) -> None:
@@ -273,12 +270,12 @@ def test_errors_of_the_command_are_one_line_with_an_exit_code(tmp_path, capsys):
     assert left.value.code == 0 and "Examples:" in capsys.readouterr().out
 
 
-def test_ctrl_c_leaves_what_was_found_and_the_same_command_goes_on(program, tmp_path):
-    # Eight chains that all take long, so that most are left when the first one is seen.
-    study, out = tmp_path / "long.toml", tmp_path / "out"
-    study.write_text('directions = "61:68:1"\nl2 = -0.125\nstarts = 40\ncell = "1x1"\n[[designs]]\ndesign = "2"\n')
+def test_ctrl_c_leaves_what_was_found_and_the_same_command_goes_on(study, by_program, tmp_path):
+    out = tmp_path / "out"
     arguments = [sys.executable, "-m", "maille.dask", str(study), "--workers", "1", "--out", str(out)]
-    child = subprocess.Popen(arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True)
+    # Tests that run in a shell's background inherit that SIGINT is ignored.
+    usual = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True, "start_new_session": True}
+    child = subprocess.Popen(arguments, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL), **usual)
     while child.poll() is None and not list(out.glob("chains/*/*.parquet")):
         time.sleep(0.01)
     os.killpg(child.pid, signal.SIGINT)  # as from a terminal: to the workers, too
@@ -289,7 +286,7 @@ def test_ctrl_c_leaves_what_was_found_and_the_same_command_goes_on(program, tmp_
     assert 0 < found < 8
     done = run(*arguments[3:])
     assert done.returncode in (0, 5) and f"{8 - found} of 8 chains now" in done.stdout
-    same_run(out, swept(program, study, tmp_path / "program"))
+    same_run(out, by_program)
 
 
 def test_variants_with_parameters_are_those_of_the_program(program, tmp_path):
