@@ -102,16 +102,19 @@ pub fn tightest(args: &TightestArgs) -> Result<ExitCode> {
 
 /// Runs `roomiest`.
 pub fn roomiest(args: &RoomiestArgs) -> Result<ExitCode> {
-    let millimetres = |design: &Design| {
-        design.unit.as_deref().and_then(millimetres).unwrap_or_else(|| {
-            eprintln!("note: the design has no unit of length: one unit of the file is taken as 1 mm");
-            1.0
-        })
-    };
     run(&args.common, |design| match args.min_gap {
-        Some(gap) => closest(design, gap.mm / millimetres(design)),
+        Some(gap) => closest(design, in_unit(design, gap)),
         None => Extreme::LargestClearance,
     })
+}
+
+/// A length in the unit of the design's file; without one its unit is taken as a millimetre, with a note.
+pub fn in_unit(design: &Design, length: Length) -> f64 {
+    let mm = design.unit.as_deref().and_then(millimetres).unwrap_or_else(|| {
+        eprintln!("note: the design has no unit of length: one unit of the file is taken as 1 mm");
+        1.0
+    });
+    length.mm / mm
 }
 
 /// The closest cell with this gap, in the file's unit.

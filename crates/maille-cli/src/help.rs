@@ -21,6 +21,7 @@ const GROUPS: [(&str, &[(&str, &str)]); 6] = [
             ("characterize", "compute how far a sheet stretches in each direction"),
             ("limit", "compute the largest or smallest value of one strain"),
             ("sensitivity", "compute how a limit changes with the numbers of its design"),
+            ("fit", "find a design for wanted limits"),
             ("boundary", "compute the surface of all in-plane strains"),
             ("tightest", "compute the thickest wire"),
             ("roomiest", "compute the state with the widest gaps"),

@@ -17,6 +17,8 @@ mod export;
 mod extreme;
 mod figure;
 mod findings;
+mod fit;
+mod fit_record;
 mod help;
 mod input;
 mod inspect;
@@ -109,6 +111,7 @@ enum Command {
     Sweep(sweep::Args),
     Limit(limit::Args),
     Sensitivity(sensitivity::Args),
+    Fit(Box<fit::Args>),
     Boundary(boundary::Args),
     Tightest(extreme::TightestArgs),
     Roomiest(extreme::RoomiestArgs),
@@ -140,6 +143,7 @@ fn main() -> ExitCode {
         Command::Sweep(args) => sweep::run(&args),
         Command::Limit(args) => limit::run(&args),
         Command::Sensitivity(args) => sensitivity::run(&args),
+        Command::Fit(args) => fit::run(&args),
         Command::Boundary(args) => boundary::run(&args),
         Command::Tightest(args) => extreme::tightest(&args),
         Command::Roomiest(args) => extreme::roomiest(&args),

@@ -4,6 +4,7 @@ use crate::{
     boundary::surface_svg,
     exit::{self, wrong},
     figure::FigureArgs,
+    fit_record,
     input::file_name,
     records, table,
 };
@@ -36,6 +37,7 @@ Examples:
   maille plot 1.1-free --kind poisson                  of `maille characterize 1.1 --lateral free --out maille-out/1.1-free`
   maille plot r-0.05 r-0.1 r-0.2 --kind radius --where 'direction=0|45,l2=0'    limits against the minor radius
   maille plot maille-out/1.1 --kind times --where 'direction<=90'
+  maille plot 1.1-fit                                  of `maille fit`: before, after, and what was wanted
   maille plot 1.1 3.1 --reference largest-cell --where l2=0    each from its largest cell: comparable, whatever their files start from
   maille plot 1.1-simulate --kind force                of `maille simulate 1.1 --fix left --pull right=8,0,0 --steps 40`
 
@@ -202,16 +204,15 @@ pub fn run(args: &Args) -> Result<()> {
     if let [path] = &args.records[..]
         && let Some((record, surface)) = records::surface(path)?
     {
-        if args.kind != Kind::Polar
-            || !args.conditions.is_empty()
-            || args.quantity.is_some()
-            || args.reference != MeasuredFrom::Start
-        {
-            let help = "give the folder alone, with --style and --output";
-            return Err(wrong(exit::USAGE, "the surface of all strains has one kind of plot, of all its rays", help));
-        }
+        alone(args, "the surface of all strains has one kind of plot, of all its rays")?;
         let svg = surface_svg(&record, &surface, layout);
         return args.figure.write(&svg, &format!("maille-out/boundary-{}", file_name(&record.design.name)));
+    }
+    if let [path] = &args.records[..]
+        && let Some((design, svg)) = fit_record::svg_of(&records::folder(path), layout)?
+    {
+        alone(args, "a fit has one kind of plot, of both designs and the targets")?;
+        return args.figure.write(&svg, &format!("maille-out/fit-{}", file_name(&design)));
     }
     let mut records = records::read(&args.records).map_err(|report| of_simulation(args, report))?;
     table::known(&args.conditions, &records)?;
@@ -240,6 +241,16 @@ pub fn run(args: &Args) -> Result<()> {
     let svg = svg(args, &records, &cells, layout)?;
     let designs = records.iter().map(|named| named.record.run.design.name.as_str());
     args.figure.write(&svg, &usual(args.kind, designs))
+}
+
+/// Refuses options of plots of limits where the folder has one plot alone.
+fn alone(args: &Args, problem: &str) -> Result<()> {
+    let plain = args.kind == Kind::Polar
+        && args.conditions.is_empty()
+        && args.quantity.is_none()
+        && args.reference == MeasuredFrom::Start;
+    let help = "give the folder alone, with --style and --output";
+    if plain { Ok(()) } else { Err(wrong(exit::USAGE, problem, help)) }
 }
 
 /// The simulations that are named, and their plot.

@@ -8,6 +8,7 @@ pub mod boundary;
 pub mod builtin;
 pub mod design_toml;
 pub mod files;
+pub mod fit;
 #[cfg(feature = "mesh")]
 pub mod mesh;
 mod nearest;

@@ -221,7 +221,7 @@ pub fn document(
 }
 
 /// Names of all rings, in the order of the file.
-fn ring_labels(design: &Design) -> Vec<String> {
+pub(crate) fn ring_labels(design: &Design) -> Vec<String> {
     let rings = design.elements.iter().flat_map(|element| (0..element.rings.len()).map(move |ring| (element, ring)));
     let label = |(element, ring): (&maille::design::ElementSpec, usize)| match element.rings.len() {
         1 => format!("\"{}\"", element.name),

@@ -6,6 +6,7 @@
 mod chain;
 mod design;
 mod error;
+mod fit;
 mod geometry;
 mod map;
 mod question;
@@ -23,6 +24,8 @@ mod _native {
     use crate::chain::{OpenMap, joint_csv};
     #[pymodule_export]
     use crate::design::{Design, builtin_names, nearest_builtin_name};
+    #[pymodule_export]
+    use crate::fit::{fit, fit_request};
     #[pymodule_export]
     use crate::geometry::{circle_distance_minima, linking_number, torus_gap};
     #[pymodule_export]

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 
 mod formulas;
 mod parameters;
+mod repeat;
 
 pub use parameters::{Parameter, TAKEN};
 

@@ -2,7 +2,7 @@
 
 use maille::{
     CellChoice, Design, Sheet,
-    fit::{Ended, Family, Fit, FitOptions, FreeNumber, Target, Targets, Wanted, fit},
+    fit::{Ended, Family, Fit, FitOptions, FreeNumber, Measure, NumberKind, Target, Targets, Wanted, fit},
 };
 use maille_io::{builtin, design_toml::NumberPath, read_design};
 use rand::{RngExt, SeedableRng};
@@ -48,10 +48,11 @@ fn run(
         value: *x,
         min: x * share[0],
         max: x * share[1],
+        kind: if path.to_string() == "minor_radius" { NumberKind::MinorRadius } else { NumberKind::MajorRadius },
     };
     let family = Family { numbers: paths.iter().zip(start).map(number).collect(), make: &make };
     let options = FitOptions { cells: own_cell(), ..FitOptions::default() };
-    fit(&family, targets, &options, &|_| (), &AtomicBool::new(stopped))
+    fit(&family, targets, &options, None, &|_| (), &AtomicBool::new(stopped))
 }
 
 const WIDE: [f64; 2] = [0.6, 1.5];
@@ -62,7 +63,7 @@ const DIRECTIONS_DEG: [f64; 13] = [0., 15., 30., 45., 60., 75., 90., 105., 120.,
 fn profile(design: &Design) -> Option<Targets> {
     let sheet = Sheet::in_cells(design, own_cell()).ok()?;
     let of = |direction_deg: f64| {
-        let target = Target { direction_deg, l2: 0.0, wanted: Wanted::Value(0.0), weight: 1.0 };
+        let target = target(direction_deg, Wanted::Value(0.0));
         let l1 = sheet.answer(&target.question()).ok()?.limit()?;
         Some(Target { wanted: Wanted::Value(l1), ..target })
     };
@@ -125,13 +126,13 @@ fn hidden_radii_are_found_again() {
         // An independent solve of the design that was found.
         let again = profile(&fit.design).unwrap();
         for (found, wanted) in again.iter().zip(targets.iter()) {
-            assert!((found.value() - wanted.value()).abs() < 2e-6);
+            assert!((found.wanted.value() - wanted.wanted.value()).abs() < 2e-6);
         }
     }
 }
 
 fn target(direction_deg: f64, wanted: Wanted) -> Target {
-    Target { direction_deg, l2: 0.0, wanted, weight: 1.0 }
+    Target { measure: Measure::Stretch { direction_deg, l2: 0.0 }, wanted, weight: 1.0 }
 }
 
 #[test]
@@ -151,6 +152,8 @@ fn an_impossible_target_ends_at_the_bounds() {
     // What forbids it, at this design: no state goes further.
     assert_eq!(answer.status, maille::Status::Global);
     assert!(answer.bound.unwrap() < 2.0);
+    // And at every design with such radii.
+    assert!((fit.bounds[0].unwrap() - expected).abs() < 1e-9 && fit.is_forbidden(&targets, 0));
 }
 
 #[test]
@@ -178,6 +181,6 @@ fn a_fit_that_cannot_begin_says_why() {
     assert!(problem(vec![usual], WIDE, true).contains("interrupted"));
     assert!(problem(vec![usual], [1.1, 1.2], false).contains("is not between"));
     assert!(problem(vec![usual], [1.0, 1.0], false).contains("is not below"));
-    let too_wide = Target { l2: 5.0, ..usual };
+    let too_wide = Target { measure: Measure::Stretch { direction_deg: 0.0, l2: 5.0 }, ..usual };
     assert!(problem(vec![too_wide], WIDE, false).contains("at l2 5"));
 }

@@ -42,7 +42,7 @@ const MODULES: &[&[&str]] = &[
 
 /// Stands aside from the order: it uses no other module and no ring, and only [`ASIDE_USERS`] use it.
 const ASIDE: &str = "solver";
-const ASIDE_USERS: &[&str] = &["program", "bound", "answer", "search", "relaxation", "sensitivity", "survey"];
+const ASIDE_USERS: &[&str] = &["program", "bound", "answer", "search", "relaxation", "sensitivity", "survey", "fit"];
 
 /// Where the modules of [`MODULES`] live.
 const SOURCES: &str = "crates/maille/src";

@@ -1,8 +1,9 @@
 //! A number of a design, named by its place in the file: `lattice.a1.x`, `elements.standing-*.rings.major_radius`.
 
 use maille::{
-    design::{Design, ElementSpec, RingSpec},
+    design::{Design, ElementSpec, RingSpec, SPACING},
     error::InvalidInput,
+    fit::NumberKind,
     formula::is_name,
 };
 use std::{fmt, str::FromStr};
@@ -18,6 +19,8 @@ pub struct NumberPath {
 enum Place {
     MinorRadius,
     ReferenceRadius,
+    /// The factor of all distances between elements, from those of the design.
+    Spacing,
     /// A parameter of the design.
     Parameter,
     /// Which lattice vector, and which of its components.
@@ -50,11 +53,14 @@ impl FromStr for NumberPath {
     }
 }
 
+const AXES: [&str; 3] = ["x", "y", "z"];
+
 fn place(parts: &[&str]) -> Option<Place> {
-    let axis = |name: &str| ["x", "y", "z"].iter().position(|axis| *axis == name);
+    let axis = |name: &str| AXES.iter().position(|axis| *axis == name);
     Some(match *parts {
         ["minor_radius"] => Place::MinorRadius,
         ["reference_radius"] => Place::ReferenceRadius,
+        [SPACING] => Place::Spacing,
         [name] if is_name(name) => Place::Parameter,
         ["lattice", "a1", last] => Place::Lattice(0, axis(last)?),
         ["lattice", "a2", last] => Place::Lattice(1, axis(last)?),
@@ -96,6 +102,9 @@ impl NumberPath {
             let first = |problems: Vec<InvalidInput>| problems.into_iter().next().expect("an error has a problem");
             return set_parameters(design, &[(&self.text, value)]).map_err(first);
         }
+        if self.place == Place::Spacing {
+            return Ok(design.spaced(value));
+        }
         let mut out = design.clone();
         let numbers = self.numbers(&mut out);
         if numbers.is_empty() {
@@ -112,9 +121,66 @@ impl NumberPath {
         Ok(out)
     }
 
+    /// The same place of each element and ring by itself, where it is the place of several.
+    pub fn each(&self, design: &Design) -> Vec<NumberPath> {
+        let one = |text: String, place: Place| NumberPath { text, place };
+        let elements = |pattern: &String| {
+            let pattern = pattern.clone();
+            design.elements.iter().filter(move |element| matches(&pattern, &element.name))
+        };
+        match &self.place {
+            Place::Center(name, axis) => {
+                let last = self.text.rsplit('.').next().unwrap_or_default();
+                let of = |e: &ElementSpec| {
+                    one(format!("elements.{}.center.{last}", e.name), Place::Center(e.name.clone(), *axis))
+                };
+                elements(name).map(of).collect()
+            }
+            Place::Ring(name, index, of_ring) => {
+                let rings = elements(name).flat_map(|e| (0..e.rings.len()).map(move |k| (e, k)));
+                let rings = rings.filter(|(_, k)| index.is_none_or(|index| index == *k));
+                let of = |(e, k): (&ElementSpec, usize)| {
+                    let place = Place::Ring(e.name.clone(), Some(k), *of_ring);
+                    one(format!("elements.{}.rings.{k}.{}", e.name, of_ring.name()), place)
+                };
+                rings.map(of).collect()
+            }
+            _ => vec![self.clone()],
+        }
+    }
+
+    /// The values of a design at this place, as many as it has places.
+    pub fn values(&self, design: &Design) -> Vec<f64> {
+        match (&self.place, self.parameter()) {
+            (Place::Spacing, _) => vec![1.0],
+            (_, Some(name)) => design.parameters.iter().filter(|p| p.name == name).map(|p| p.value).collect(),
+            _ => {
+                let mut design = design.clone();
+                let common = design.minor_radius;
+                let rings = design.elements.iter_mut().flat_map(|element| &mut element.rings);
+                rings.for_each(|ring| ring.minor_radius = ring.minor_radius.or(common));
+                self.numbers(&mut design).into_iter().map(|number| *number).collect()
+            }
+        }
+    }
+
+    /// Whether it is a radius.
+    pub fn kind(&self) -> NumberKind {
+        match self.place {
+            Place::MinorRadius | Place::Ring(_, _, OfRing::MinorRadius) => NumberKind::MinorRadius,
+            Place::Ring(_, _, OfRing::MajorRadius) => NumberKind::MajorRadius,
+            _ => NumberKind::Other,
+        }
+    }
+
     /// Whether it is a length: components of a normal are none, and what a parameter is, is not known.
     pub fn is_length(&self) -> bool {
-        !matches!(self.place, Place::Parameter | Place::Ring(_, _, OfRing::Normal(_)))
+        !matches!(self.place, Place::Parameter | Place::Spacing | Place::Ring(_, _, OfRing::Normal(_)))
+    }
+
+    /// Whether it is the factor of all distances, which is set after all others.
+    pub fn is_spacing(&self) -> bool {
+        self.place == Place::Spacing
     }
 
     /// The parameter of that name, if it is one.
@@ -127,7 +193,7 @@ impl NumberPath {
         match &self.place {
             Place::MinorRadius => vec![design.minor_radius.get_or_insert_default()],
             Place::ReferenceRadius => vec![&mut design.reference_radius],
-            Place::Parameter => Vec::new(),
+            Place::Parameter | Place::Spacing => Vec::new(),
             Place::Lattice(0, axis) => vec![&mut design.lattice.a1[*axis]],
             Place::Lattice(_, axis) => vec![&mut design.lattice.a2[*axis]],
             Place::Center(name, axis) => {
@@ -150,6 +216,16 @@ pub fn set_parameters(design: &Design, values: &[(&str, f64)]) -> Result<Design,
 }
 
 impl OfRing {
+    /// As paths have it.
+    fn name(self) -> String {
+        match self {
+            OfRing::MajorRadius => "major_radius".into(),
+            OfRing::MinorRadius => "minor_radius".into(),
+            OfRing::Normal(axis) => format!("normal.{}", AXES[axis]),
+            OfRing::Offset(axis) => format!("offset.{}", AXES[axis]),
+        }
+    }
+
     fn of(self, ring: &mut RingSpec) -> &mut f64 {
         match self {
             OfRing::MajorRadius => &mut ring.major_radius,

@@ -22,6 +22,7 @@ from .errors import (
     ShapeError,
     UnknownDesignError,
 )
+from .fit import Fit, fit
 from .question import Extreme, StrainLimit, limit, roomiest, tightest
 from .record import Record, State, characterize, read_record
 from .sheet import Sheet, View, show
@@ -34,6 +35,7 @@ __all__ = [
     "DesignError",
     "Element",
     "Extreme",
+    "Fit",
     "MailleError",
     "Record",
     "RecordError",
@@ -50,6 +52,7 @@ __all__ = [
     "characterize",
     "designs",
     "errors",
+    "fit",
     "geometry",
     "limit",
     "read_record",

@@ -99,6 +99,21 @@ def answer(design: Design, question: str, *, cell: str, threads: int | None) -> 
 def sensitivity(
     design: Design, question: str, *, cell: str, step: float | None, threads: int | None
 ) -> str: ...
+def fit_request(
+    design: Design,
+    name: str,
+    targets: str,
+    *,
+    shape: bool,
+    free: list[str],
+    free_each: list[str],
+    min_gap: float | None,
+    supercell: tuple[int, int],
+    options: str,
+) -> str: ...
+def fit(
+    request: str, *, begin: list[float] | None, threads: int | None, progress: _Progress | None
+) -> tuple[str, Design]: ...
 def boundary_options(
     *, tolerance: float, vertices: int, effort: str, starts: int | None, cell: str, seed: int
 ) -> str: ...

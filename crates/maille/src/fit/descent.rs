@@ -1,56 +1,86 @@
-//! Descent from one start: Levenberg–Marquardt steps within the bounds.
+//! Descent from one start: steps of the model within a box that grows and shrinks with how well it foretells.
 
 use super::{
-    search::{Point, Refused, Search},
-    step::within_bounds,
+    search::{Point, Refused, Search, Solved},
+    step::{Piece, Pieces, best_step, misses},
 };
-use nalgebra::DMatrix;
+use nalgebra::DVector;
 use std::sync::atomic::Ordering;
 
-/// Damping at first, relative to the largest diagonal entry of JᵀJ.
-const DAMPING: f64 = 1e-4;
-/// Damping at which a start is given up, relative to the same.
-const MOST_DAMPING: f64 = 1e8;
-/// Damping is multiplied by this after a step that does not help, and divided by it after one that does.
-const CHANGE: f64 = 5.0;
-/// A step helps where the cost falls by this share of what its model promises.
-const HELPS: f64 = 1e-3;
-/// Steps below this share of the ranges end the descent.
-const SMALLEST: f64 = 1e-10;
+/// Half the width of the box at first, as a share of each range.
+const REACH: f64 = 0.2;
+/// A start is given up where the box is smaller than this.
+const SMALLEST: f64 = 1e-9;
+/// A step is taken where the misses fall by this share of what the model promises; the box grows where they fall by `GOOD`.
+const TAKEN: f64 = 1e-3;
+const GOOD: f64 = 0.75;
+/// Tangents are kept of designs within so many boxes.
+const NEAR: f64 = 8.0;
+/// Tangents of so many designs, the last ones.
+const MOST: usize = 12;
 
-/// The best point of a descent from `begin`. A point without derivatives ends it.
-pub(super) fn descend(search: &Search<'_>, begin: Point, tell: &dyn Fn(&Point)) -> Point {
-    let mut at = begin;
-    let mut damping = DAMPING;
-    let Ok(mut slopes) = search.slopes(&at) else { return at };
+/// The best point of a descent from `begin`. A point without derivatives ends it. `tell` sees every point that is better than those before.
+pub(super) fn descend(search: &Search<'_>, begin: Point, tell: &mut dyn FnMut(&Point)) -> Point {
+    let Ok(mut at) = search.with_slopes(begin.clone()) else { return begin };
+    let mut known: Vec<Solved> = Vec::new();
+    let mut reach = REACH;
     for _ in 1..search.options.designs {
-        tell(&at);
-        if search.reached(&at) || search.cancel.load(Ordering::Relaxed) {
-            return at;
+        tell(&at.point);
+        if search.reached(&at.point) || search.cancel.load(Ordering::Relaxed) || reach < SMALLEST {
+            break;
         }
-        let (squares, force) = (slopes.transpose() * &slopes, slopes.transpose() * &at.residuals);
-        let largest = squares.diagonal().amax();
-        if largest == 0.0 {
-            return at;
+        let model = model(search, &at, &known, reach);
+        let shares = &at.point.shares;
+        let lower: Vec<f64> = shares.iter().map(|x| -x).collect();
+        let upper: Vec<f64> = shares.iter().map(|x| 1.0 - x).collect();
+        let step = best_step(&model, search.options.norm, &lower, &upper, reach);
+        let promised = at.point.cost - search.options.norm.of(&misses(&model, &step));
+        if step.amax() < SMALLEST || promised <= 1e-13 * at.point.cost {
+            // Nothing is left to gain in this box; a smaller one has fewer tangents of others.
+            reach *= 0.1;
+            continue;
         }
-        let lower: Vec<f64> = at.shares.iter().map(|x| -x).collect();
-        let upper: Vec<f64> = at.shares.iter().map(|x| 1.0 - x).collect();
-        let damped = &squares + DMatrix::identity(force.len(), force.len()) * (damping * largest);
-        let step = within_bounds(&damped, &force, &lower, &upper);
-        let promised = at.cost() - (&at.residuals + &slopes * &step).norm_squared();
-        if step.amax() < SMALLEST || promised <= 0.0 || damping > MOST_DAMPING {
-            return at;
-        }
-        let shares = at.shares.iter().zip(step.iter()).map(|(x, d)| (x + d).clamp(0.0, 1.0)).collect();
-        match search.solve(shares) {
-            Ok(next) if at.cost() - next.cost() > HELPS * promised => {
-                let Ok(new) = search.slopes(&next) else { return next };
-                (at, slopes) = (next, new);
-                damping = (damping / CHANGE).max(1e-12);
+        let next = shares.iter().zip(step.iter()).map(|(x, d)| (x + d).clamp(0.0, 1.0)).collect();
+        let solved = search.solve(next).and_then(|point| search.with_slopes(point).map_err(Refused::Design));
+        match solved {
+            Ok(next) => {
+                let gain = at.point.cost - next.point.cost;
+                reach = match gain > GOOD * promised {
+                    true if step.amax() > 0.9 * reach => (2.0 * reach).min(1.0),
+                    true => reach,
+                    false if gain > TAKEN * promised => reach,
+                    false => 0.5 * step.amax(),
+                };
+                let neighbour = if gain > TAKEN * promised { std::mem::replace(&mut at, next) } else { next };
+                known.push(neighbour);
+                known.drain(..known.len().saturating_sub(MOST));
             }
-            Err(Refused::Interrupted) => return at,
-            Ok(_) | Err(_) => damping *= CHANGE,
+            Err(Refused::Interrupted) => break,
+            Err(_) => reach = 0.25 * step.amax(),
         }
     }
-    at
+    at.point
+}
+
+/// The model of all targets around a point, with the tangents of the designs near it.
+fn model(search: &Search<'_>, at: &Solved, known: &[Solved], reach: f64) -> Vec<Pieces> {
+    let away = |other: &Solved| {
+        let shares = other.point.shares.iter().zip(&at.point.shares).map(|(there, here)| there - here);
+        DVector::from_iterator(at.point.shares.len(), shares)
+    };
+    let neighbours: Vec<_> = known.iter().map(|other| (away(other), other)).collect();
+    let near = |d: &DVector<f64>| d.amax() <= NEAR * reach;
+    let pieces = |(k, target): (usize, &super::Target)| {
+        let of = |solved: &Solved| {
+            (target.weight * solved.point.deviations[k], solved.slopes.row(k).transpose() * target.weight)
+        };
+        let (offset, slope) = of(at);
+        let mut pieces = Pieces::new(target.wanted, Piece { offset, slope });
+        for (d, other) in neighbours.iter().filter(|(d, _)| near(d)) {
+            let (value, slope) = of(other);
+            pieces.add_neighbour(d, value, &slope);
+        }
+        pieces
+    };
+    search.targets.iter().enumerate().map(pieces).collect()
 }

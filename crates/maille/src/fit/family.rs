@@ -1,9 +1,11 @@
 //! Designs with free numbers.
 
 use crate::{design::Design, error::InvalidInput, sensitivity::DesignVector};
+use serde::{Deserialize, Serialize};
 
 /// A number of a design that may change.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct FreeNumber {
     /// What it is called.
     pub name: String,
@@ -13,6 +15,20 @@ pub struct FreeNumber {
     pub min: f64,
     /// Largest value.
     pub max: f64,
+    /// What it is, where that is known.
+    pub kind: NumberKind,
+}
+
+/// What a free number is. Where all are radii, bounds of all designs of the family are known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum NumberKind {
+    /// Major radii of rings: the larger, the further links reach.
+    MajorRadius,
+    /// Minor radii of rings: the smaller, the further links reach.
+    MinorRadius,
+    /// Anything else.
+    Other,
 }
 
 /// The design with other values of its free numbers.
@@ -35,7 +51,7 @@ impl Family<'_> {
         if self.numbers.is_empty() {
             return Err(InvalidInput::new("free", "no number of the design is free", "name one or more"));
         }
-        for FreeNumber { name, value, min, max } in &self.numbers {
+        for FreeNumber { name, value, min, max, .. } in &self.numbers {
             let wrong = |problem: String, help: &str| Err(InvalidInput::new(name, problem, help));
             if ![value, min, max].iter().all(|x| x.is_finite()) {
                 return wrong(format!("{value} between {min} and {max}"), "give finite numbers");
@@ -68,5 +84,16 @@ impl Family<'_> {
             Ok(rate.times(number.max - number.min))
         };
         self.numbers.iter().enumerate().map(rate).collect()
+    }
+
+    /// The design whose links reach furthest, where all free numbers are radii.
+    pub(super) fn loosest(&self) -> Option<Design> {
+        let end = |number: &FreeNumber| match number.kind {
+            NumberKind::MajorRadius => Some(number.max),
+            NumberKind::MinorRadius => Some(number.min),
+            NumberKind::Other => None,
+        };
+        let ends = self.numbers.iter().map(end).collect::<Option<Vec<f64>>>()?;
+        (self.make)(&ends).ok().map(|design| Design { allow_initial_overlap: true, ..design })
     }
 }

@@ -1,35 +1,42 @@
 //! A design for wanted limits: free numbers of a design are moved until its limits are those.
 //!
-//! Least squares: the sum of squares of weight × (l1 − wanted) over all targets is made small over the free numbers, each between its
+//! The sum of squares of weight × miss over all targets, or the largest of them, is made small over the free numbers, each between its
 //! bounds. Every design on the way is solved for all targets as any design is, and its certified limits give their derivatives by every free
-//! number at no further solve (`sensitivity`), so each step is a Levenberg–Marquardt step within the bounds. A design is not taken if its
-//! rings overlap as written and it does not allow that, if they are linked in another way, or if it has no certified limit for a target. Limits have kinks and the sum
-//! has several minima: further starts are drawn within the bounds, far from the best one and near to it. What is found is a
-//! design that was solved, no estimate. That no design of the family does better is not proved.
+//! number at no further solve (`sensitivity`). A step is that of a model: the tangents of the limits at the current design and at those that were
+//! solved near it, as limits have kinks; within a box that shrinks where the model promises too much. A design is not taken if its
+//! rings overlap as written and it does not allow that, if they are linked in another way, or if it has no certified limit for a target.
+//! There are several minima: further starts are drawn within the bounds, far from the best one and near to it. What is found is a
+//! design that was solved, no estimate. That no design of the family does better is proved only where a bound of all of them forbids a target.
+//!
+//! The method, with its measurements: `docs/theory/fit.md`.
 
 mod descent;
 mod family;
+mod forbid;
 mod options;
 mod search;
 mod step;
 mod target;
 
-pub use family::{Family, FreeNumber, Make};
-pub use options::FitOptions;
-pub use target::{Target, Targets, Wanted};
+pub use family::{Family, FreeNumber, Make, NumberKind};
+pub use options::{FitOptions, Norm};
+pub use target::{Measure, Target, Targets, Wanted};
 
 use crate::{answer::Answer, design::Design, error::InvalidInput, sheet::Sheet};
 use descent::descend;
+use forbid::family_bounds;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use search::{Point, Refused, Search, head};
+use serde::{Deserialize, Serialize};
 use std::{
     cell::Cell,
     sync::atomic::{AtomicBool, Ordering},
 };
 
 /// How a fit ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Ended {
     /// Every target is reached within the tolerance.
     Reached,
@@ -52,18 +59,35 @@ pub struct Fit {
     pub answers: Vec<Answer>,
     /// Those of the given design.
     pub before: Vec<Answer>,
-    /// Factor of the wanted values: 1 but for a shape.
+    /// Factor of the wanted limits: 1 but for a shape.
     pub factor: f64,
-    /// How far each limit is from its target, in the units of the target.
+    /// How far each value is from its target: 0 where that is reached, below 0 where the value is too small.
     pub misses: Vec<f64>,
+    /// What is proved of each limit for all designs of the family: none has a larger one. Known where all free numbers are radii.
+    pub bounds: Vec<Option<f64>>,
     /// Starts that were searched.
     pub starts: usize,
     /// Designs that were solved, the refused ones too.
     pub designs: usize,
 }
 
+impl Fit {
+    /// Whether a target is proved to be out of reach of every design of the family, by the bound of its limit.
+    pub fn is_forbidden(&self, targets: &Targets, target: usize) -> bool {
+        let least = targets.iter().nth(target).filter(|_| !targets.is_shape()).and_then(|target| match target.wanted {
+            Wanted::Value(value) | Wanted::AtLeast(value) => Some(value),
+            Wanted::AtMost(_) => None,
+        });
+        let beyond = |(value, bound): (f64, f64)| value > bound + FORBIDDEN;
+        least.zip(self.bounds[target]).is_some_and(beyond)
+    }
+}
+
+/// A wanted limit is out of reach where it exceeds the bound by this, beyond the tolerance of bounds.
+const FORBIDDEN: f64 = 1e-9;
+
 /// How far a fit is.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct FitProgress {
     /// The current start, from 1.
     pub start: usize,
@@ -71,10 +95,15 @@ pub struct FitProgress {
     pub designs: usize,
     /// The largest miss of the best design yet.
     pub worst_miss: f64,
+    /// Its free numbers.
+    pub numbers: Vec<f64>,
 }
 
 /// The numbers of a family with which its design has the wanted limits, as nearly as could be found. After `cancel` the best design
 /// yet comes back.
+///
+/// `resumed` are the numbers of the best design of an earlier fit of the same family, and how many starts it had searched: the search goes
+/// on from there.
 ///
 /// # Errors
 /// For no starts, numbers without bounds or a tolerance that is not positive; what is wrong with the given design, and where it has no certified limit
@@ -83,35 +112,34 @@ pub fn fit(
     family: &Family<'_>,
     targets: &Targets,
     options: &FitOptions,
+    resumed: Option<(&[f64], usize)>,
     progress: &dyn Fn(FitProgress),
     cancel: &AtomicBool,
 ) -> Result<Fit, InvalidInput> {
     family.check()?;
-    if options.starts == 0 || options.designs == 0 {
-        return Err(InvalidInput::new("starts", "without starts or designs nothing is found", "give 1 or more"));
-    }
-    if !(options.tolerance.is_finite() && options.tolerance > 0.0) {
-        let problem = format!("{} is no tolerance", options.tolerance);
-        return Err(InvalidInput::new("tolerance", problem, "give a number above 0"));
-    }
+    options.check()?;
     let first: Vec<f64> = family.numbers.iter().map(|n| n.value).collect();
     let written = (family.make)(&first).map_err(head)?;
     let links = Sheet::in_cells(&written, options.cells.clone()).map_err(head)?.model().links.clone();
     let search = Search { family, targets, options, links, solved: Cell::new(0), cancel };
-    let shares = family.numbers.iter().map(|n| (n.value - n.min) / (n.max - n.min)).collect();
-    let given = search.solve(shares).map_err(Refused::of_the_given)?;
+    let given = search.solve(search.shares(&first)).map_err(Refused::of_the_given)?;
     let before = given.answers.clone();
-    let (mut best, mut starts) = (given.clone(), 0);
-    let mut random = ChaCha8Rng::seed_from_u64(options.seed);
+    let again = resumed.and_then(|(numbers, _)| search.solve(search.shares(numbers)).ok());
+    let (mut best, mut starts) = (again.unwrap_or_else(|| given.clone()), resumed.map_or(0, |(_, starts)| starts));
     while starts < options.starts && !search.reached(&best) && !cancel.load(Ordering::Relaxed) {
         starts += 1;
-        let begin = if starts == 1 { Some(given.clone()) } else { drawn(&search, &best, starts, &mut random) };
-        let tell = |point: &Point, best: &Point| {
-            let better = if point.cost() < best.cost() { point } else { best };
-            progress(FitProgress { start: starts, designs: search.solved.get(), worst_miss: better.worst_miss() });
+        let begin = if starts == 1 { Some(best.clone()) } else { drawn(&search, &best, starts) };
+        let mut tell = |point: &Point| {
+            let better = if point.cost < best.cost { point } else { &best };
+            progress(FitProgress {
+                start: starts,
+                designs: search.solved.get(),
+                worst_miss: better.worst_miss(),
+                numbers: search.values(&better.shares),
+            });
         };
-        if let Some(found) = begin.map(|begin| descend(&search, begin, &|point| tell(point, &best)))
-            && found.cost() < best.cost()
+        if let Some(found) = begin.map(|begin| descend(&search, begin, &mut tell))
+            && found.cost < best.cost
         {
             best = found;
         }
@@ -124,7 +152,8 @@ pub fn fit(
     Ok(Fit {
         ended,
         numbers: search.values(&best.shares),
-        factor: targets.factor(&best.l1),
+        factor: targets.factor(&best.values),
+        bounds: family_bounds(&search),
         misses: best.misses,
         design: best.design,
         answers: best.answers,
@@ -139,8 +168,11 @@ const NEAR: f64 = 0.1;
 /// How often a refused start is halved towards the best design.
 const DRAWS: i32 = 5;
 
-/// A start: every second one anywhere in the bounds, the others near the best design. What is refused is drawn towards the best.
-fn drawn(search: &Search<'_>, best: &Point, number: usize, random: &mut ChaCha8Rng) -> Option<Point> {
+/// A start: every second one anywhere in the bounds, the others near the best design. What is refused is drawn towards the best. Each start
+/// has random numbers of its own.
+fn drawn(search: &Search<'_>, best: &Point, number: usize) -> Option<Point> {
+    let mut random = ChaCha8Rng::seed_from_u64(search.options.seed);
+    random.set_stream(number as u64);
     let near = number % 2 == 1;
     let share = |x: &f64| match near {
         true => (x + NEAR * random.random_range(-1.0..1.0)).clamp(0.0, 1.0),

@@ -3,7 +3,7 @@
 use super::{
     family::{Family, FreeNumber},
     options::FitOptions,
-    target::{Target, Targets},
+    target::{Measure, Target, Targets},
 };
 use crate::{
     answer::Answer, design::Design, error::InvalidInput, model::Link, question::Question, record::Status, sensitivity,
@@ -21,19 +21,24 @@ pub(super) struct Point {
     pub design: Design,
     pub sheet: Sheet,
     pub answers: Vec<Answer>,
-    pub l1: Vec<f64>,
+    /// What was measured.
+    pub values: Vec<f64>,
+    pub deviations: Vec<f64>,
     pub misses: Vec<f64>,
-    pub residuals: DVector<f64>,
+    /// Of the misses times their weights.
+    pub cost: f64,
 }
 
 impl Point {
-    pub fn cost(&self) -> f64 {
-        self.residuals.norm_squared()
-    }
-
     pub fn worst_miss(&self) -> f64 {
         self.misses.iter().copied().map(f64::abs).fold(0.0, f64::max)
     }
+}
+
+/// The same with the derivatives of its deviations by the shares.
+pub(super) struct Solved {
+    pub point: Point,
+    pub slopes: DMatrix<f64>,
 }
 
 /// Why a design was not taken.
@@ -67,8 +72,7 @@ impl Refused {
         match self {
             Refused::Design(problem) => problem,
             Refused::Limit(target, status) => {
-                let (direction, l2) = (target.direction_deg, target.l2);
-                let problem = format!("along {direction}\u{b0} at l2 {l2} the given design is {}", status.name());
+                let problem = format!("{} of the given design is {}", target.words(), status.name());
                 InvalidInput::new("targets", problem, "begin with a design that has every limit that is wanted")
             }
             Refused::Shape => {
@@ -83,6 +87,11 @@ impl Refused {
 }
 
 impl Search<'_> {
+    /// Numbers as shares of their ranges.
+    pub fn shares(&self, values: &[f64]) -> Vec<f64> {
+        self.family.numbers.iter().zip(values).map(|(n, x)| ((x - n.min) / (n.max - n.min)).clamp(0.0, 1.0)).collect()
+    }
+
     pub fn values(&self, shares: &[f64]) -> Vec<f64> {
         let value = |(n, share): (&FreeNumber, &f64)| match *share {
             // The ends exactly.
@@ -105,36 +114,44 @@ impl Search<'_> {
         let questions: Vec<Question> = self.targets.iter().map(|target| self.question(target)).collect();
         let answers = questions.par_iter().map(|question| sheet.answer_until(question, self.cancel));
         let answers = answers.collect::<Result<Vec<_>, _>>().map_err(Refused::Design)?;
-        let mut l1 = Vec::with_capacity(answers.len());
+        let mut values = Vec::with_capacity(answers.len());
         for (answer, target) in answers.iter().zip(self.targets.iter()) {
             match (answer.limit(), answer.status) {
-                (Some(value), _) => l1.push(value),
+                (Some(value), _) => values.push(value),
                 (None, Status::Interrupted) => return Err(Refused::Interrupted),
                 (None, status) => return Err(Refused::Limit(*target, status)),
             }
         }
-        let misses = self.targets.misses(&l1).ok_or(Refused::Shape)?;
-        let residuals = self.targets.residuals(&misses);
-        Ok(Point { shares, design, sheet, answers, l1, misses, residuals })
+        let deviations = self.targets.deviations(&values).ok_or(Refused::Shape)?;
+        let misses: Vec<f64> =
+            self.targets.iter().zip(&deviations).map(|(target, deviation)| target.wanted.miss(*deviation)).collect();
+        let weighted = self.targets.iter().zip(&misses).map(|(target, miss)| target.weight * miss);
+        let cost = self.options.norm.of(&DVector::from_iterator(misses.len(), weighted));
+        Ok(Point { shares, design, sheet, answers, values, deviations, misses, cost })
     }
 
     fn question(&self, target: &Target) -> Question {
         Question { effort: self.options.effort, seed: self.options.seed, ..target.question() }
     }
 
-    /// Derivatives of the residuals by the shares.
+    /// The point with the derivatives of its deviations by the shares.
     ///
     /// # Errors
     /// Where the design or an answer has none.
-    pub fn slopes(&self, point: &Point) -> Result<DMatrix<f64>, InvalidInput> {
+    pub fn with_slopes(&self, point: Point) -> Result<Solved, InvalidInput> {
         let rates = self.family.rates(&self.values(&point.shares))?;
         let mut slopes = DMatrix::zeros(point.answers.len(), rates.len());
         for (k, (answer, target)) in point.answers.iter().zip(self.targets.iter()).enumerate() {
             let model = point.sheet.model_of(answer);
-            let along = sensitivity::gradient(&model, &self.question(target), answer, &rates)?;
+            let mut along = sensitivity::gradient(&model, &self.question(target), answer, &rates)?;
+            // The derivative of a clearance is one of a length in the design's unit.
+            if target.measure == Measure::Clearance {
+                along.iter_mut().for_each(|x| *x /= model.unit);
+            }
             slopes.row_mut(k).copy_from_slice(&along);
         }
-        Ok(self.targets.residual_slopes(&point.l1, &slopes))
+        let slopes = self.targets.deviation_slopes(&point.values, &slopes);
+        Ok(Solved { point, slopes })
     }
 
     pub fn reached(&self, point: &Point) -> bool {

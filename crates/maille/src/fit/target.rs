@@ -1,23 +1,43 @@
-//! What a fit is to reach: limits along directions.
+//! What a fit is to reach: limits along directions, and the widest gap.
 
-use crate::{error::InvalidInput, question::Question};
+use crate::{
+    error::InvalidInput,
+    question::{Goal, Question, Sense},
+};
 use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
 
-/// One limit that is wanted.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// One value that is wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Target {
-    /// Direction of the pull, degrees counter-clockwise from x.
-    pub direction_deg: f64,
-    /// Stretch − 1 that is held across it.
-    pub l2: f64,
-    /// What l1 is to be.
+    /// What is measured.
+    pub measure: Measure,
+    /// What it is to be.
     pub wanted: Wanted,
     /// How much it counts beside the others; positive.
     pub weight: f64,
 }
 
-/// What l1 is to be.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// What is measured of a design.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub enum Measure {
+    /// l1: the limit of the stretch along a direction, minus 1.
+    Stretch {
+        /// Direction of the pull, degrees counter-clockwise from x.
+        direction_deg: f64,
+        /// Stretch − 1 that is held across it.
+        l2: f64,
+    },
+    /// The smallest gap between the rings of different elements, in reference radii, where it is as wide as the lattice of the design
+    /// allows: the roomiest state.
+    Clearance,
+}
+
+/// What a value is to be.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Wanted {
     /// This value.
     Value(f64),
@@ -27,25 +47,61 @@ pub enum Wanted {
     AtMost(f64),
 }
 
-impl Target {
-    /// The limit that it speaks of, with the usual search.
-    pub fn question(&self) -> Question {
-        Question::stretch_along(self.direction_deg).with_lateral(self.l2)
+impl Wanted {
+    /// Whether values below, and values above, are misses.
+    pub(super) fn misses_sides(self) -> [bool; 2] {
+        [!matches!(self, Wanted::AtMost(_)), !matches!(self, Wanted::AtLeast(_))]
     }
 
-    /// How far l1 is from what is wanted: 0 where it is reached, above 0 where l1 is too large.
-    pub fn miss(&self, l1: f64) -> f64 {
-        match self.wanted {
-            Wanted::Value(value) => l1 - value,
-            Wanted::AtLeast(value) => (l1 - value).min(0.0),
-            Wanted::AtMost(value) => (l1 - value).max(0.0),
-        }
+    /// The part of a deviation that is a miss: 0 where what is wanted is reached.
+    pub(super) fn miss(self, deviation: f64) -> f64 {
+        let [below, above] = self.misses_sides();
+        if (deviation < 0.0 && below) || (deviation > 0.0 && above) { deviation } else { 0.0 }
     }
 
     /// The number of what is wanted.
-    pub fn value(&self) -> f64 {
-        let (Wanted::Value(value) | Wanted::AtLeast(value) | Wanted::AtMost(value)) = self.wanted;
+    pub fn value(self) -> f64 {
+        let (Wanted::Value(value) | Wanted::AtLeast(value) | Wanted::AtMost(value)) = self;
         value
+    }
+}
+
+impl Target {
+    /// The question whose answer is measured, with the usual search.
+    pub fn question(&self) -> Question {
+        match self.measure {
+            Measure::Stretch { direction_deg, l2 } => Question::stretch_along(direction_deg).with_lateral(l2),
+            Measure::Clearance => Question::new(Goal::Clearance { lattice_free: false }, Sense::Largest),
+        }
+    }
+
+    /// What is measured, in words for errors.
+    pub(super) fn words(&self) -> String {
+        match self.measure {
+            Measure::Stretch { direction_deg, l2 } => format!("the limit along {direction_deg}\u{b0} at l2 {l2}"),
+            Measure::Clearance => "the widest gap".into(),
+        }
+    }
+
+    /// Of a shape only limits have proportions.
+    fn is_of_shape(&self) -> bool {
+        matches!(self.measure, Measure::Stretch { .. })
+    }
+
+    fn check(&self, shape: bool) -> Result<(), InvalidInput> {
+        self.question().check()?;
+        let wrong = |field: &str, problem: String, help: &str| Err(InvalidInput::new(field, problem, help));
+        if !self.wanted.value().is_finite() {
+            return wrong("targets", format!("{} is not a number", self.wanted.value()), "give a finite number");
+        }
+        if !(self.weight.is_finite() && self.weight > 0.0) {
+            return wrong("weight", format!("{} is not a weight", self.weight), "give a number above 0");
+        }
+        if shape && self.is_of_shape() && !matches!(self.wanted, Wanted::Value(value) if value >= 0.0) {
+            let problem = "a shape has no least or largest limits, and none below 0".into();
+            return wrong("targets", problem, "give values of 0 or more, or leave the shape out");
+        }
+        Ok(())
     }
 }
 
@@ -57,35 +113,22 @@ pub struct Targets {
 }
 
 impl Targets {
-    /// Targets for the limits themselves. With `shape`, only their proportions count: the values may be multiplied by a common
-    /// factor s > 0, which is fitted, too.
+    /// Targets for the values themselves. With `shape`, only the proportions of the limits count: the wanted limits may be multiplied
+    /// by a common factor s > 0, which is fitted, too.
     ///
     /// # Errors
-    /// Where there is none, a number is not finite or out of range, a weight is not positive, or a shape is wanted of least or largest values,
-    /// of values below 0, or of zeros alone.
+    /// Where there is none, a number is not finite or out of range, a weight is not positive, or a shape is wanted of least or largest
+    /// limits, of limits below 0, or of zeros alone.
     pub fn new(all: Vec<Target>, shape: bool) -> Result<Self, InvalidInput> {
         if all.is_empty() {
             return Err(InvalidInput::new("targets", "there is none", "give one or more limits"));
         }
-        for target in &all {
-            target.question().check()?;
-            if !target.value().is_finite() {
-                let problem = format!("{} is not a number", target.value());
-                return Err(InvalidInput::new("targets", problem, "give a finite number"));
-            }
-            if !(target.weight.is_finite() && target.weight > 0.0) {
-                let problem = format!("{} is not a weight", target.weight);
-                return Err(InvalidInput::new("weight", problem, "give a number above 0"));
-            }
-            if shape && !matches!(target.wanted, Wanted::Value(value) if value >= 0.0) {
-                let problem = "a shape has no least or largest limits, and none below 0";
-                return Err(InvalidInput::new("targets", problem, "give values of 0 or more, or leave the shape out"));
-            }
+        all.iter().try_for_each(|target| target.check(shape))?;
+        let out = Targets { all, shape };
+        if shape && out.squares() == 0.0 {
+            return Err(InvalidInput::new("targets", "a shape of zeros alone", "give limits above 0"));
         }
-        if shape && all.iter().all(|target| target.value() == 0.0) {
-            return Err(InvalidInput::new("targets", "a shape of zeros alone", "give values above 0"));
-        }
-        Ok(Targets { all, shape })
+        Ok(out)
     }
 
     /// Each of them.
@@ -93,46 +136,57 @@ impl Targets {
         self.all.iter()
     }
 
-    /// The common factor s of the values: 1, or for a shape the best one, s = Σ w² v l / Σ w² v².
-    pub fn factor(&self, l1: &[f64]) -> f64 {
+    /// Whether only the proportions of the limits count.
+    pub fn is_shape(&self) -> bool {
+        self.shape
+    }
+
+    /// The common factor s of the wanted limits: 1, or for a shape the best one, s = Σ w² v l / Σ w² v².
+    pub fn factor(&self, values: &[f64]) -> f64 {
         if !self.shape {
             return 1.0;
         }
-        let products = self.all.iter().zip(l1).map(|(t, l)| t.weight.powi(2) * t.value() * l).sum::<f64>();
-        products / self.squares()
+        let of_shape = self.all.iter().zip(values).filter(|(target, _)| target.is_of_shape());
+        of_shape.map(|(t, l)| t.weight.powi(2) * t.wanted.value() * l).sum::<f64>() / self.squares()
     }
 
-    /// Σ w² v².
+    /// Σ w² v² of the limits.
     fn squares(&self) -> f64 {
-        self.all.iter().map(|t| (t.weight * t.value()).powi(2)).sum()
+        let of_shape = self.all.iter().filter(|target| target.is_of_shape());
+        of_shape.map(|t| (t.weight * t.wanted.value()).powi(2)).sum()
     }
 
-    /// How far each limit is from what is wanted, in units of l1; of a shape, l1/s − v. `None` where a shape has no factor above 0.
-    pub fn misses(&self, l1: &[f64]) -> Option<Vec<f64>> {
-        let s = self.factor(l1);
-        (s > 0.0).then(|| self.all.iter().zip(l1).map(|(target, l)| target.miss(l / s)).collect())
+    /// How far each value is from what is wanted, below 0 where it is smaller, also on the side that is allowed; of a shape l/s − v.
+    /// `None` where a shape has no factor above 0.
+    pub(super) fn deviations(&self, values: &[f64]) -> Option<Vec<f64>> {
+        let s = self.factor(values);
+        let by = |target: &Target| if target.is_of_shape() { s } else { 1.0 };
+        (s > 0.0).then(|| self.all.iter().zip(values).map(|(t, l)| l / by(t) - t.wanted.value()).collect())
     }
 
-    /// The misses times their weights: the residuals of the least squares.
-    pub(super) fn residuals(&self, misses: &[f64]) -> DVector<f64> {
-        DVector::from_iterator(misses.len(), self.all.iter().zip(misses).map(|(target, miss)| target.weight * miss))
+    /// How far each value is from what is wanted: 0 where that is reached.
+    pub fn misses(&self, values: &[f64]) -> Option<Vec<f64>> {
+        let deviations = self.deviations(values)?;
+        Some(self.all.iter().zip(deviations).map(|(target, deviation)| target.wanted.miss(deviation)).collect())
     }
 
-    /// Derivatives of the residuals from those of the limits, which are `slopes` (a row for each limit).
-    pub(super) fn residual_slopes(&self, l1: &[f64], slopes: &DMatrix<f64>) -> DMatrix<f64> {
-        let s = self.factor(l1);
-        let mut out = slopes / s;
-        if self.shape {
-            let weights = self.all.iter().map(|t| t.weight.powi(2) * t.value() / self.squares());
-            let of_factor = DVector::from_iterator(l1.len(), weights).transpose() * slopes;
-            for (mut row, l) in out.row_iter_mut().zip(l1) {
+    /// Derivatives of the deviations from those of the values, which are `slopes` (a row for each value).
+    pub(super) fn deviation_slopes(&self, values: &[f64], slopes: &DMatrix<f64>) -> DMatrix<f64> {
+        if !self.shape {
+            return slopes.clone();
+        }
+        let s = self.factor(values);
+        let weights = self.all.iter().map(|t| match t.is_of_shape() {
+            true => t.weight.powi(2) * t.wanted.value() / self.squares(),
+            false => 0.0,
+        });
+        let of_factor = DVector::from_iterator(values.len(), weights).transpose() * slopes;
+        let mut out = slopes.clone();
+        for ((mut row, l), target) in out.row_iter_mut().zip(values).zip(&self.all) {
+            if target.is_of_shape() {
+                row /= s;
                 row -= &of_factor * (l / (s * s));
             }
-        }
-        for ((mut row, target), l) in out.row_iter_mut().zip(&self.all).zip(l1) {
-            // A wanted least or largest limit that is kept pulls nothing.
-            let counts = matches!(target.wanted, Wanted::Value(_)) || target.miss(*l) != 0.0;
-            row *= if counts { target.weight } else { 0.0 };
         }
         out
     }
@@ -142,23 +196,28 @@ impl Targets {
 mod tests {
     use super::*;
 
+    fn along(direction_deg: f64, wanted: Wanted, weight: f64) -> Target {
+        Target { measure: Measure::Stretch { direction_deg, l2: 0.0 }, wanted, weight }
+    }
+
     fn targets(shape: bool) -> Targets {
-        let of =
-            |(direction_deg, value, weight)| Target { direction_deg, l2: 0.0, wanted: Wanted::Value(value), weight };
-        Targets::new([(0.0, 1.0, 1.0), (90.0, 3.0, 2.0), (45.0, 0.5, 0.5)].map(of).to_vec(), shape).unwrap()
+        let of = |(direction, value, weight)| along(direction, Wanted::Value(value), weight);
+        let mut all = [(0.0, 1.0, 1.0), (90.0, 3.0, 2.0), (45.0, 0.5, 0.5)].map(of).to_vec();
+        all.push(Target { measure: Measure::Clearance, wanted: Wanted::AtLeast(0.1), weight: 2.0 });
+        Targets::new(all, shape).unwrap()
     }
 
     #[test]
-    fn slopes_of_residuals_are_their_derivatives() {
-        let slopes = DMatrix::from_row_slice(3, 2, &[0.3, -0.2, 0.7, 0.1, -0.4, 0.9]);
-        let l1 = [0.4, 0.9, 0.3];
+    fn slopes_of_deviations_are_their_derivatives() {
+        let slopes = DMatrix::from_row_slice(4, 2, &[0.3, -0.2, 0.7, 0.1, -0.4, 0.9, 0.2, 0.5]);
+        let values = [0.4, 0.9, 0.3, 0.05];
         for shape in [false, true] {
             let targets = targets(shape);
             let at = |x: [f64; 2]| {
-                let moved = DVector::from_row_slice(&l1) + &slopes * DVector::from_row_slice(&x);
-                targets.residuals(&targets.misses(moved.as_slice()).unwrap())
+                let moved = DVector::from_row_slice(&values) + &slopes * DVector::from_row_slice(&x);
+                DVector::from_vec(targets.deviations(moved.as_slice()).unwrap())
             };
-            let exact = targets.residual_slopes(&l1, &slopes);
+            let exact = targets.deviation_slopes(&values, &slopes);
             for k in 0..2 {
                 let step = |h: f64| std::array::from_fn(|j| if j == k { h } else { 0.0 });
                 let numeric = (at(step(1e-6)) - at(step(-1e-6))) / 2e-6;
@@ -170,32 +229,32 @@ mod tests {
     #[test]
     fn a_shape_fits_every_multiple_of_itself() {
         let targets = targets(true);
-        let worst = |l1: [f64; 3]| targets.misses(&l1).map(|all| all.into_iter().map(f64::abs).fold(0.0, f64::max));
-        assert!(worst([0.2, 0.6, 0.1]).unwrap() < 1e-15);
-        assert!(worst([0.2, 0.6, 0.2]).unwrap() > 0.1);
-        assert!(worst([0.0, -0.1, 0.0]).is_none());
+        let worst = |l: [f64; 4]| targets.misses(&l).map(|all| all.into_iter().map(f64::abs).fold(0.0, f64::max));
+        assert!(worst([0.2, 0.6, 0.1, 0.1]).unwrap() < 1e-15);
+        assert!(worst([0.2, 0.6, 0.2, 0.1]).unwrap() > 0.1);
+        // The gap is wanted itself, at any size of the shape.
+        assert!((worst([0.2, 0.6, 0.1, 0.04]).unwrap() - 0.06).abs() < 1e-15);
+        assert!(worst([0.0, -0.1, 0.0, 0.1]).is_none());
     }
 
     #[test]
-    fn kept_sides_pull_nothing() {
-        let target = |wanted| Target { direction_deg: 0.0, l2: 0.0, wanted, weight: 1.0 };
-        assert_eq!(target(Wanted::AtLeast(0.2)).miss(0.3), 0.0);
-        assert!((target(Wanted::AtLeast(0.2)).miss(0.1) + 0.1).abs() < 1e-15);
-        assert_eq!(target(Wanted::AtMost(0.2)).miss(0.1), 0.0);
-        let slopes = DMatrix::from_element(1, 1, 2.0);
-        let kept = Targets::new(vec![target(Wanted::AtMost(0.2))], false).unwrap();
-        assert_eq!(kept.residual_slopes(&[0.1], &slopes)[(0, 0)], 0.0);
-        assert_eq!(kept.residual_slopes(&[0.3], &slopes)[(0, 0)], 2.0);
+    fn allowed_sides_are_no_misses() {
+        assert_eq!(Wanted::AtLeast(0.2).miss(0.1), 0.0);
+        assert_eq!(Wanted::AtLeast(0.2).miss(-0.1), -0.1);
+        assert_eq!(Wanted::AtMost(0.2).miss(-0.1), 0.0);
+        assert_eq!(Wanted::AtMost(0.2).miss(0.1), 0.1);
+        assert_eq!([Wanted::Value(0.2).miss(-0.1), Wanted::Value(0.2).miss(0.1)], [-0.1, 0.1]);
     }
 
     #[test]
     fn wrong_targets_are_refused() {
-        let target = Target { direction_deg: 0.0, l2: 0.0, wanted: Wanted::Value(0.1), weight: 1.0 };
+        let target = along(0.0, Wanted::Value(0.1), 1.0);
+        let stretch = |direction_deg, l2| Measure::Stretch { direction_deg, l2 };
         assert!(Targets::new(Vec::new(), false).is_err());
         for wrong in [
             Target { weight: 0.0, ..target },
-            Target { l2: -1.0, ..target },
-            Target { direction_deg: f64::NAN, ..target },
+            Target { measure: stretch(0.0, -1.0), ..target },
+            Target { measure: stretch(f64::NAN, 0.0), ..target },
             Target { wanted: Wanted::Value(f64::INFINITY), ..target },
         ] {
             assert!(Targets::new(vec![wrong], false).is_err(), "{wrong:?}");

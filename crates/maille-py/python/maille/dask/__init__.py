@@ -1,4 +1,4 @@
-"""Maps, studies and surfaces on a cluster of `dask.distributed`.
+"""Maps, studies, surfaces and fits on a cluster of `dask.distributed`.
 
     from dask.distributed import Client
     import maille.dask
@@ -18,6 +18,7 @@ try:
 except ImportError as error:
     raise ImportError(f"maille.dask needs {error.name}: pip install 'maille[dask]'") from None
 
+from ._fit import fit
 from ._maps import characterize
 from ._results import Failure, Results
 from ._study import sweep
@@ -25,4 +26,4 @@ from ._surface import Surfaces, boundary
 
 del _distributed, _pyarrow
 
-__all__ = ["Failure", "Results", "Surfaces", "boundary", "characterize", "sweep"]
+__all__ = ["Failure", "Results", "Surfaces", "boundary", "characterize", "fit", "sweep"]
