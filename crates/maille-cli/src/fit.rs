@@ -3,8 +3,9 @@
 use crate::{
     exit::{self, refused, wrong},
     extreme::in_unit,
+    fit_over,
     fit_record::{self, Files},
-    input::{DesignArgs, file_name},
+    input::{Input, Setting, file_name},
     interrupt,
     map::pool,
     numbers::{positive, read},
@@ -24,7 +25,7 @@ use maille_io::{
     fit::{self, FitRecord, FitRequest, FreeSpec, fitted_design, read_targets},
     record::{FolderLock, RecordError},
 };
-use miette::{IntoDiagnostic, Result, WrapErr};
+use miette::{IntoDiagnostic, Report, Result, WrapErr};
 use std::{
     path::{Path, PathBuf},
     process::ExitCode,
@@ -60,10 +61,22 @@ Examples:
   maille fit 3.1 --supercell 2x2 --target profile.csv --shape --free-each 'elements.*.rings.major_radius=30%'
   maille fit shirt.toml --target maille-out/other/limits.csv --free spacing=0.8:1.2 --min-gap 0.3mm
 
-Exit codes: 0 every target is reached, 5 some are not, 130 interrupted.")]
+  maille fit --over designs --target profile.csv --shape     which weave comes nearest?
+
+Exit codes: 0 every target is reached (with --over: by one of the designs), 5 some are not, 6 with --over: some designs could not be used, 130 interrupted.")]
 pub struct Args {
-    #[command(flatten)]
-    design: DesignArgs,
+    /// A built-in design (see `maille designs`), a TOML file, or - for standard input
+    #[arg(required_unless_present = "over")]
+    design: Option<String>,
+    /// Fit each of these designs, and rank them: names, files, or folders of files. Without --free the wire and the spacing are free
+    #[arg(long, value_name = "DESIGN", num_args = 1.., conflicts_with_all = ["design", "json"])]
+    over: Vec<String>,
+    /// Minor radius of every ring that gives none, in the file's unit
+    #[arg(long, value_parser = positive)]
+    minor_radius: Option<f64>,
+    /// A value for a parameter of the design's file, as radius=5.0; several with commas
+    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',')]
+    set: Vec<Setting>,
     /// The wanted limits, a CSV file
     #[arg(long, value_name = "FILE")]
     target: PathBuf,
@@ -148,22 +161,15 @@ impl From<NormArg> for Norm {
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    let request = request(args)?;
-    let out =
-        args.out.clone().unwrap_or_else(|| Path::new("maille-out").join(file_name(&request.design.name) + "-fit"));
-    output::folder(&out, "a fit is a folder")?;
-    let _lock = FolderLock::take(&out)?;
-    let earlier = fit_record::earlier(&out, &request, args.overwrite)?;
-    let begun = Instant::now();
+    let targets = targets(&args.target)?;
     let cancel = interrupt::flag(args.quiet)?;
-    let record = match earlier {
-        Some(record) if record.is_final(&request) => record,
-        earlier => {
-            let record = search(args, &request, earlier.as_ref(), &out, &cancel)?;
-            record.save(&out)?;
-            record
-        }
+    let Some(name) = &args.design else {
+        return over(args, &targets, &cancel);
     };
+    let begun = Instant::now();
+    let input = Input::read_with(name, &args.set, args.minor_radius)?;
+    let out = args.out.clone().unwrap_or_else(|| usual_folder(&input.design.name));
+    let record = one(args, &input, &args.free, &targets, &out, &cancel)?;
     if args.json {
         let mut document = fit::document(&record);
         document["out"] = out.display().to_string().into();
@@ -175,13 +181,36 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     Ok(exit::ended(record.outcome.ended == Ended::Interrupted, code, args.quiet))
 }
 
+fn usual_folder(name: &str) -> PathBuf {
+    Path::new("maille-out").join(file_name(name) + "-fit")
+}
+
+/// The fit of one design, in the folder `out`.
+fn one(
+    args: &Args,
+    input: &Input,
+    free: &[FreeSpec],
+    targets: &[Target],
+    out: &Path,
+    cancel: &AtomicBool,
+) -> Result<FitRecord> {
+    let request = request(args, input, free, targets)?;
+    output::folder(out, "a fit is a folder")?;
+    let _lock = FolderLock::take(out)?;
+    let earlier = fit_record::earlier(out, &request, args.overwrite)?;
+    if let Some(record) = earlier.as_ref().filter(|record| record.is_final(&request)) {
+        return Ok(record.clone());
+    }
+    let record = search(args, &request, earlier.as_ref(), out, cancel)?;
+    record.save(out)?;
+    Ok(record)
+}
+
 /// What is asked.
-fn request(args: &Args) -> Result<FitRequest> {
-    let input = args.design.read()?;
+fn request(args: &Args, input: &Input, free: &[FreeSpec], targets: &[Target]) -> Result<FitRequest> {
     // What is wrong with the design itself is told before anything else.
     input.compile(&Design { allow_initial_overlap: true, ..input.design.clone() }, maille::Cell::PRIMITIVE)?;
     let Tile([n, m]) = args.supercell.unwrap_or(Tile([1, 1]));
-    let targets = targets(&args.target)?;
     let min_gap = args.min_gap.map(|gap| in_unit(&input.design, gap));
     let options = FitOptions {
         norm: args.norm.into(),
@@ -192,9 +221,54 @@ fn request(args: &Args) -> Result<FitRequest> {
         cells: args.cell.clone(),
         effort: args.effort,
     };
-    let free = (&args.free[..], &args.free_each[..]);
+    let (free, targets) = ((free, &args.free_each[..]), (targets.to_vec(), args.shape));
     let supercell = [n as usize, m as usize];
-    FitRequest::new(&input.design, supercell, free, (targets, args.shape), min_gap, options).map_err(|e| refused(&e))
+    FitRequest::new(&input.design, supercell, free, targets, min_gap, options).map_err(|e| refused(&e))
+}
+
+/// What is free of each design where nothing is named.
+const USUAL: [&str; 2] = ["minor_radius=50%", "spacing=0.7:1.3"];
+
+/// Fits each design, and ranks them.
+fn over(args: &Args, targets: &[Target], cancel: &AtomicBool) -> Result<ExitCode> {
+    let named = args.free.is_empty() && args.free_each.is_empty();
+    let usual = || USUAL.iter().filter_map(|text| text.parse().ok()).collect();
+    let free: Vec<FreeSpec> = if named { usual() } else { args.free.clone() };
+    let out = args.out.clone().unwrap_or_else(|| Path::new("maille-out").join("fits"));
+    let (mut ranked, mut unused): (Vec<(String, FitRecord)>, Vec<(String, Report)>) = Default::default();
+    for name in fit_over::designs(&args.over)? {
+        if cancel.load(Ordering::Relaxed) {
+            break;
+        }
+        if !args.quiet {
+            eprintln!("{name}");
+        }
+        let input = Input::read_with(&name, &args.set, args.minor_radius);
+        let found = input.and_then(|input| {
+            let folder = out.join(file_name(&input.design.name));
+            let record = one(args, &input, &free, targets, &folder, cancel)?;
+            Ok((input.design.name, record))
+        });
+        match found {
+            Ok(one) => ranked.push(one),
+            Err(report) => unused.push((name, report)),
+        }
+    }
+    fit_over::rank(&mut ranked);
+    if !ranked.is_empty() {
+        output::write(&out.join("ranking.csv"), fit_over::csv(&ranked).as_bytes())?;
+    }
+    if !args.quiet {
+        fit_over::print(&ranked, &out);
+    }
+    let reached = ranked.iter().any(|(_, record)| record.outcome.ended == Ended::Reached);
+    let code = match (unused.is_empty(), reached) {
+        (false, _) => exit::LEFT_OUT,
+        (true, true) => exit::DONE,
+        (true, false) => exit::INCOMPLETE,
+    };
+    crate::sweep::tell(unused);
+    Ok(exit::ended(cancel.load(Ordering::Relaxed), code, args.quiet))
 }
 
 fn targets(file: &Path) -> Result<Vec<Target>> {
@@ -256,7 +330,7 @@ fn search(
     Ok(record)
 }
 
-fn cannot_begin(problem: &InvalidInput) -> miette::Report {
+fn cannot_begin(problem: &InvalidInput) -> Report {
     if problem.problem.contains("interrupted") {
         return wrong(exit::INTERRUPTED, problem.problem.clone(), problem.help.clone());
     }

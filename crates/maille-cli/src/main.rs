@@ -18,6 +18,7 @@ mod extreme;
 mod figure;
 mod findings;
 mod fit;
+mod fit_over;
 mod fit_record;
 mod help;
 mod input;

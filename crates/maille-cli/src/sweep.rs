@@ -155,7 +155,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 }
 
 /// Designs that could not be used are errors: told even if nothing else is, and last.
-fn tell(unused: Vec<(String, Report)>) {
+pub fn tell(unused: Vec<(String, Report)>) {
     for (name, report) in unused {
         eprintln!("{name} could not be used:\n{:?}", remedy::added(report));
     }

@@ -187,7 +187,7 @@ mod tests {
         assert!(refused(&["minor_radius=0.2:0.3"], &[]).contains("not between"));
         assert!(refused(&["elements.flat.center.x=10%"], &[]).contains("is 0"));
         assert!(refused(&["reference_radius=10%"], &[]).contains("changes no limit"));
-        for wrong in ["minor_radius=", "minor_radius=3", "minor_radius=2:1", "minor_radius=-5%", "lattice=1:2"] {
+        for wrong in ["minor_radius=", "minor_radius=3", "minor_radius=2:1", "minor_radius=-5%", "lattice.a1=1:2"] {
             assert!(wrong.parse::<FreeSpec>().is_err(), "{wrong}");
         }
     }
