@@ -65,6 +65,9 @@ fn prepare(folder: &Path) {
         .unwrap();
     let apart = fs::read_to_string(folder.join("mine.toml")).unwrap().replace("2.5", "25.0").replace("1.25", "12.5");
     fs::write(folder.join("apart.toml"), apart).unwrap();
+    fs::write(folder.join("wanted.csv"), "direction_deg,l1\n0,0.4\n").unwrap();
+    fs::write(folder.join("wrong-wanted.csv"), "# a profile\ndirection_deg,l1\n0,0.4\n45,0,6\n").unwrap();
+    fs::write(folder.join("column-wanted.csv"), "direction,l1\n0,0.4\n").unwrap();
     fs::write(folder.join("cut.proof"), "{\"maille_proof\":1}\n/ 3\n").unwrap();
     fs::create_dir(folder.join("a-folder")).unwrap();
     fs::write(folder.join("a-folder/letter.txt"), "dear reader\n").unwrap();

@@ -8,28 +8,27 @@ use nalgebra::DVector;
 use std::sync::atomic::Ordering;
 
 /// Half the width of the box at first, as a share of each range.
-const REACH: f64 = 0.2;
+const REACH: f64 = 0.3;
 /// A start is given up where the box is smaller than this.
 const SMALLEST: f64 = 1e-9;
 /// A step is taken where the misses fall by this share of what the model promises; the box grows where they fall by `GOOD`.
 const TAKEN: f64 = 1e-3;
 const GOOD: f64 = 0.75;
-/// Tangents are kept of designs within so many boxes.
+/// Tangents count of designs within so many boxes.
 const NEAR: f64 = 8.0;
-/// Tangents of so many designs, the last ones.
-const MOST: usize = 12;
 
 /// The best point of a descent from `begin`. A point without derivatives ends it. `tell` sees every point that is better than those before.
 pub(super) fn descend(search: &Search<'_>, begin: Point, tell: &mut dyn FnMut(&Point)) -> Point {
     let Ok(mut at) = search.with_slopes(begin.clone()) else { return begin };
-    let mut known: Vec<Solved> = Vec::new();
+    // Designs that the model led to from the current one in vain.
+    let mut rejected: Vec<Solved> = Vec::new();
     let mut reach = REACH;
     for _ in 1..search.options.designs {
         tell(&at.point);
         if search.reached(&at.point) || search.cancel.load(Ordering::Relaxed) || reach < SMALLEST {
             break;
         }
-        let model = model(search, &at, &known, reach);
+        let model = model(search, &at, &rejected, reach);
         let shares = &at.point.shares;
         let lower: Vec<f64> = shares.iter().map(|x| -x).collect();
         let upper: Vec<f64> = shares.iter().map(|x| 1.0 - x).collect();
@@ -51,9 +50,12 @@ pub(super) fn descend(search: &Search<'_>, begin: Point, tell: &mut dyn FnMut(&P
                     false if gain > TAKEN * promised => reach,
                     false => 0.5 * step.amax(),
                 };
-                let neighbour = if gain > TAKEN * promised { std::mem::replace(&mut at, next) } else { next };
-                known.push(neighbour);
-                known.drain(..known.len().saturating_sub(MOST));
+                if gain > TAKEN * promised {
+                    rejected.clear();
+                    at = next;
+                } else {
+                    rejected.push(next);
+                }
             }
             Err(Refused::Interrupted) => break,
             Err(_) => reach = 0.25 * step.amax(),
@@ -62,13 +64,13 @@ pub(super) fn descend(search: &Search<'_>, begin: Point, tell: &mut dyn FnMut(&P
     at.point
 }
 
-/// The model of all targets around a point, with the tangents of the designs near it.
-fn model(search: &Search<'_>, at: &Solved, known: &[Solved], reach: f64) -> Vec<Pieces> {
+/// The model of all targets around a point, with the tangents of the rejected designs near it.
+fn model(search: &Search<'_>, at: &Solved, rejected: &[Solved], reach: f64) -> Vec<Pieces> {
     let away = |other: &Solved| {
         let shares = other.point.shares.iter().zip(&at.point.shares).map(|(there, here)| there - here);
         DVector::from_iterator(at.point.shares.len(), shares)
     };
-    let neighbours: Vec<_> = known.iter().map(|other| (away(other), other)).collect();
+    let neighbours: Vec<_> = rejected.iter().map(|other| (away(other), other)).collect();
     let near = |d: &DVector<f64>| d.amax() <= NEAR * reach;
     let pieces = |(k, target): (usize, &super::Target)| {
         let of = |solved: &Solved| {
