@@ -165,22 +165,35 @@ pub fn fit(
 
 /// How far from the best a start near it is drawn, as a share of each range.
 const NEAR: f64 = 0.1;
-/// How often a refused start is halved towards the best design.
-const DRAWS: i32 = 5;
+/// How many starts are drawn until one has all limits.
+const DRAWS: usize = 20;
+/// How often the last of them is halved towards the best design.
+const HALVINGS: i32 = 5;
 
-/// A start: every second one anywhere in the bounds, the others near the best design. What is refused is drawn towards the best. Each start
-/// has random numbers of its own.
+/// A start: every second one anywhere in the bounds, the others near the best design. Each start has random numbers of its own. If none that was
+/// drawn has all limits, the last one is drawn towards the best design.
 fn drawn(search: &Search<'_>, best: &Point, number: usize) -> Option<Point> {
     let mut random = ChaCha8Rng::seed_from_u64(search.options.seed);
     random.set_stream(number as u64);
     let near = number % 2 == 1;
-    let share = |x: &f64| match near {
-        true => (x + NEAR * random.random_range(-1.0..1.0)).clamp(0.0, 1.0),
-        false => random.random_range(0.0..1.0),
+    let mut draw = || -> Vec<f64> {
+        let share = |x: &f64| match near {
+            true => (x + NEAR * random.random_range(-1.0..1.0)).clamp(0.0, 1.0),
+            false => random.random_range(0.0..1.0),
+        };
+        best.shares.iter().map(share).collect()
     };
-    let drawn: Vec<f64> = best.shares.iter().map(share).collect();
-    (0..DRAWS).find_map(|k| {
+    let mut last = Vec::new();
+    for _ in 0..DRAWS {
+        last = draw();
+        match search.solve(last.clone()) {
+            Ok(point) => return Some(point),
+            Err(Refused::Interrupted) => return None,
+            Err(_) => {}
+        }
+    }
+    (1..=HALVINGS).find_map(|k| {
         let towards = |(b, x): (&f64, &f64)| b + (x - b) * 0.5f64.powi(k);
-        search.solve(best.shares.iter().zip(&drawn).map(towards).collect()).ok()
+        search.solve(best.shares.iter().zip(&last).map(towards).collect()).ok()
     })
 }
