@@ -64,8 +64,11 @@ fn a_record_has_derivatives_and_its_plot_a_band() {
     assert!(close(slope("30.0", "-0.125", "minor_radius"), slope("60.0", "-0.125", "minor_radius")), "{text}");
 
     let verified = done(folder, "verify a --json");
-    assert!(verified.contains("16 derivatives by minor_radius and spacing")
-            && verified.contains("sensitivities.csv has the checksum"), "{verified}");
+    assert!(
+        verified.contains("16 derivatives by minor_radius and spacing")
+            && verified.contains("sensitivities.csv has the checksum"),
+        "{verified}"
+    );
     fs::write(&table, text.replace("0.0,0.0,minor_radius,-1.6", "0.0,0.0,minor_radius,-1.5")).unwrap();
     assert_ne!(fs::read_to_string(&table).unwrap(), text);
     let (code, found, _) = maille(folder, "verify a --json");
@@ -94,7 +97,9 @@ fn a_record_has_derivatives_and_its_plot_a_band() {
         assert!(cells.iter().zip([*direction, 0.44, -1.6, -1.6, -1.44]).all(|(a, b)| (a - b).abs() < 1e-8), "{row}");
     }
     let all = done(folder, "table a --format csv");
-    assert!(all.lines().next().unwrap().ends_with("dl1/minor_radius,dl1_back/minor_radius,dl1/spacing,dl1_back/spacing"));
+    assert!(
+        all.lines().next().unwrap().ends_with("dl1/minor_radius,dl1_back/minor_radius,dl1/spacing,dl1_back/spacing")
+    );
     let (code, _, err) = maille(folder, "table a --columns dl1/wire");
     assert!(code == Some(2) && err.contains("there are dl1/minor_radius"), "{err}");
 

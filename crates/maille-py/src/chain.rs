@@ -114,7 +114,8 @@ impl OpenMap {
 #[pyfunction]
 pub fn joint_csv(names: Vec<String>, records: Vec<PyRef<'_, Record>>) -> String {
     let named = names.into_iter().zip(&records);
-    let named: Vec<NamedRecord> =
-        named.map(|(name, record)| NamedRecord { name, record: record.record.clone(), sensitivities: Vec::new() }).collect();
+    let named: Vec<NamedRecord> = named
+        .map(|(name, record)| NamedRecord { name, record: record.record.clone(), sensitivities: Vec::new() })
+        .collect();
     Table::new(&named, Field::all(&named, true)).csv()
 }

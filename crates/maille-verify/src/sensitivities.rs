@@ -77,7 +77,10 @@ pub(crate) fn check(text: &str, design: &Design, rows: &[Row], states: &[State])
         out.push(say(Verdict::False, format!("{} more of this kind in {FILE}", count - out.len())));
     }
     if count == 0 && proved > 0 {
-        out.push(say(Verdict::Proved, format!("{proved} derivatives by {WIRE} and {SPACING} in {FILE} are those of the forces")));
+        out.push(say(
+            Verdict::Proved,
+            format!("{proved} derivatives by {WIRE} and {SPACING} in {FILE} are those of the forces"),
+        ));
     }
     if others + empty > 0 {
         let words = format!("{} other derivatives in {FILE} are not derived anew", others + empty);

@@ -36,8 +36,11 @@ impl Subject {
     pub fn read(&self) -> Result<Read, Refusal> {
         let source = DesignSource::new(&*self.name, &*self.text);
         let written = source.read().map_err(|e| Refusal::design(&e))?;
-        let values: Vec<_> = self.parameters.iter().map(|(name, value)| (name.as_str(), *value)).collect();
-        let mut design = set_parameters(&written, &values).map_err(|problems| Refusal::design(&source.explain(&problems)))?;
+        let mut design = written.clone();
+        if !self.parameters.is_empty() {
+            let values: Vec<_> = self.parameters.iter().map(|(name, value)| (name.as_str(), *value)).collect();
+            design = set_parameters(&design, &values).map_err(|e| Refusal::design(&source.explain(&e)))?;
+        }
         if let Some(r) = self.minor_radius {
             if !(r.is_finite() && r > 0.0) {
                 return Err(Refusal::wrong(

@@ -25,7 +25,13 @@ use tower::ServiceExt;
 const PORT: u16 = 4711;
 
 fn opened() -> Opened {
-    Opened { name: "1.1".into(), file: None, text: builtin("1.1").unwrap().into(), parameters: BTreeMap::new(), record: None }
+    Opened {
+        name: "1.1".into(),
+        file: None,
+        text: builtin("1.1").unwrap().into(),
+        parameters: BTreeMap::new(),
+        record: None,
+    }
 }
 
 fn app(folder: PathBuf) -> Arc<App> {
@@ -37,7 +43,13 @@ fn runtime() -> tokio::runtime::Runtime {
 }
 
 fn subject(text: &str) -> Subject {
-    Subject { name: "mine.toml".into(), text: text.into(), minor_radius: None, spacing: None, parameters: BTreeMap::new() }
+    Subject {
+        name: "mine.toml".into(),
+        text: text.into(),
+        minor_radius: None,
+        spacing: None,
+        parameters: BTreeMap::new(),
+    }
 }
 
 fn solve(slot: &str, directions_deg: Vec<f64>) -> Solve {
@@ -160,12 +172,15 @@ fn parameters_are_set_for_the_sheet_or_in_the_text() {
     runtime().block_on(async {
         let router = router(app(PathBuf::from(".")), PORT);
         let text = include_str!("../../../examples/parameters/square.toml");
-        let with = |name: &str, value: f64| Subject { parameters: BTreeMap::from([(name.into(), value)]), ..subject(text) };
+        let with =
+            |name: &str, value: f64| Subject { parameters: BTreeMap::from([(name.into(), value)]), ..subject(text) };
         let (_, judged): (_, Judged) = post(&router, "/api/judge", &with("wire", 1.6)).await;
         let (sheet, design) = (judged.sheet.unwrap(), judged.design.unwrap());
         assert!(judged.problems.is_empty() && sheet.rings.iter().all(|ring| ring.minor_radius == 0.8));
         assert_eq!(design.minor_radius, Some(0.6));
-        for (name, value, problem) in [("wire", 3.0, "above max = 2"), ("wier", 1.0, "is no parameter"), ("pitch", 1.0, "")] {
+        for (name, value, problem) in
+            [("wire", 3.0, "above max = 2"), ("wier", 1.0, "is no parameter"), ("pitch", 1.0, "")]
+        {
             let (_, judged): (_, Judged) = post(&router, "/api/judge", &with(name, value)).await;
             assert!(judged.sheet.is_none() && judged.problems[0].problem.contains(problem), "{:?}", judged.problems);
         }

@@ -225,7 +225,12 @@ pub fn save_record(
 }
 
 /// The plot of a record; its derivatives, where they are asked for or there already.
-fn write_beside(record: &Record, folder: &mut RecordFolder, quantity: Quantity, derivatives: bool) -> Result<(), MapError> {
+fn write_beside(
+    record: &Record,
+    folder: &mut RecordFolder,
+    quantity: Quantity,
+    derivatives: bool,
+) -> Result<(), MapError> {
     write_polar(record, folder, quantity)?;
     if derivatives || folder.has_sensitivities() {
         folder.write_sensitivities(&sensitivities(record)?)?;

@@ -1,6 +1,10 @@
 //! Columns and rows of a table.
 
-use crate::{design_toml::NumberPath, nearest::nearest, record::{NamedRecord, SensitivityRow}};
+use crate::{
+    design_toml::NumberPath,
+    nearest::nearest,
+    record::{NamedRecord, SensitivityRow},
+};
 use maille::design::{Design, SPACING};
 use maille::record::{Column, Entry, Kind, LIMIT_COLUMNS, LimitRow, Unit};
 use std::collections::{BTreeSet, HashMap};
@@ -91,10 +95,12 @@ impl Field {
     /// and [`parse`](Field::parse) knows no records.
     pub fn check(&self, records: &[NamedRecord]) -> Result<(), TableError> {
         if let Field::Derivative(name) = self {
-            let known: Vec<String> = Self::derivatives_in(records).iter().map(|field| field.name().to_owned()).collect();
+            let known: Vec<String> =
+                Self::derivatives_in(records).iter().map(|field| field.name().to_owned()).collect();
             let help = match known.is_empty() {
                 _ if known.contains(name) => return Ok(()),
-                true => "`maille characterize … --sensitivities` writes derivatives, and solves nothing that is there".into(),
+                true => "`maille characterize … --sensitivities` writes derivatives, and solves nothing that is there"
+                    .into(),
                 false => format!("there are {}", known.join(", ")),
             };
             return Err(TableError { problem: format!("there is no column \"{name}\""), help });
@@ -173,7 +179,9 @@ impl Field {
             Field::Varied(name, _) if name == SPACING => "factor of all distances between elements, set by a study",
             Field::Varied(_, Unit::None) => "parameter of the design",
             Field::Varied(..) => "number of the design, set by a study, before the spacing",
-            Field::Derivative(name) if name.starts_with(SIDES[1]) => "derivative of l1 by a number of the design, for a step back",
+            Field::Derivative(name) if name.starts_with(SIDES[1]) => {
+                "derivative of l1 by a number of the design, for a step back"
+            }
             Field::Derivative(_) => "derivative of l1 by a number of the design, for a step forward",
         }
     }
