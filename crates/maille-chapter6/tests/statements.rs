@@ -42,7 +42,7 @@ fn limits_along(design: &Design, directions: &[f64], l2: &[f64], words: &str) ->
         files: Default::default(),
     };
     let name = design.name.clone() + words;
-    Map::of(&NamedRecord { name, record: Record { run, rows, states: Vec::new() } }).unwrap()
+    Map::of(&NamedRecord { name, record: Record { run, rows, states: Vec::new() }, sensitivities: Vec::new() }).unwrap()
 }
 
 /// The start of chapter 6, under the name of the thesis.

@@ -70,8 +70,9 @@ impl Files<'_> {
         }
         let solved = map::solve(open, self.out, threads, quiet)?;
         let records = RECORDS.into_iter().zip(solved.records);
-        let named: Vec<NamedRecord> =
-            records.map(|(name, record)| NamedRecord { name: name.to_owned(), record }).collect();
+        let named: Vec<NamedRecord> = records
+            .map(|(name, record)| NamedRecord { name: name.to_owned(), record, sensitivities: Vec::new() })
+            .collect();
         let svg = svg(self.record, &named, Layout::Beside);
         output::write(&self.out.join("fit.svg"), svg.as_bytes())?;
         let png = svg_to_png(&svg, 2.0).into_diagnostic().wrap_err("cannot draw the plot")?;
@@ -111,7 +112,7 @@ pub fn svg_of(folder: &Path, layout: Layout) -> Result<Option<(String, String)>>
         let path = folder.join(name);
         let record =
             Record::read(&path).wrap_err_with(|| format!("the fit in {} is not finished", folder.display()))?;
-        Ok(NamedRecord { name: (*name).to_owned(), record })
+        Ok(NamedRecord { name: (*name).to_owned(), record, sensitivities: Vec::new() })
     };
     let named = RECORDS.iter().map(read).collect::<Result<Vec<_>>>()?;
     let svg = svg(&record, &named, layout);

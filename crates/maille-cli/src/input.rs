@@ -23,6 +23,14 @@ pub struct Setting {
     value: f64,
 }
 
+#[cfg(feature = "view")]
+impl Setting {
+    /// Name and value.
+    pub fn pair(&self) -> (String, f64) {
+        (self.name.clone(), self.value)
+    }
+}
+
 impl std::fmt::Display for Setting {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{}={}", self.name, self.value)

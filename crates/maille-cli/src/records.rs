@@ -66,7 +66,8 @@ pub fn read(named: &[PathBuf]) -> Result<Vec<NamedRecord>> {
         if out.iter().any(|known| known.name == name) {
             return Err(wrong(exit::USAGE, format!("the record {name} is given twice"), "name each record once"));
         }
-        out.push(NamedRecord { record: read_record(&folder)?, name });
+        let sensitivities = Record::read_sensitivities(&folder)?.unwrap_or_default();
+        out.push(NamedRecord { record: read_record(&folder)?, name, sensitivities });
     }
     Ok(out)
 }

@@ -131,7 +131,11 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let begun = Instant::now();
     let Solved { records, tally, total, interrupted } = map::solve(open, &out, args.run.threads, args.quiet)?;
     if !used.is_empty() {
-        let name = |(folder, record): (&PathBuf, _)| NamedRecord { name: records::name(folder), record };
+        let name = |(folder, record): (&PathBuf, _)| NamedRecord {
+            name: records::name(folder),
+            record,
+            sensitivities: Vec::new(),
+        };
         let named: Vec<NamedRecord> = used.iter().zip(records).map(name).collect();
         let table = Table::new(&named, Field::all(&named, true));
         output::write(&out.join("limits.csv"), table.csv().as_bytes())?;

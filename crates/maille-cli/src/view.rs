@@ -1,12 +1,16 @@
 //! `maille view`: the viewer in the browser.
 
-use crate::numbers::{Numbers, parse, parse_l2};
+use crate::{
+    input::Setting,
+    numbers::{Numbers, parse, parse_l2},
+};
 use std::path::PathBuf;
 
 /// See it lock: the sheet, its limits and its locked states in the browser
 ///
 /// Starts a server that only this machine can reach, and opens its page: the sheet in 3D beside its limit map. Wire,
-/// spacing and width are dragged and solved anew as `characterize` does; designs are drawn, edited, checked and exported.
+/// spacing, width and the parameters of the file are dragged and solved anew as `characterize` does; designs are drawn,
+/// edited, checked and exported.
 /// Records, simulations and sweeps are opened without solving; the page lists those in maille-out, and compares any two.
 /// Ctrl-C ends it.
 #[derive(clap::Args)]
@@ -14,6 +18,7 @@ use std::path::PathBuf;
 Examples:
   maille view                              the built-in design 1.1, and a list of the others
   maille view my-weave.toml                a design of your own; the page can save it
+  maille view my-weave.toml --set play=1.1 the same with another value for one of its parameters
   maille view maille-out/1.1               a record: its limits, with nothing solved
   maille view maille-out/1.1-simulate      a simulation: its states and its forces
   maille view maille-out/radius            a sweep: its first record, and a list of the others
@@ -27,6 +32,9 @@ pub struct Args {
     /// simulation or a sweep
     #[arg(default_value = "1.1")]
     design: String,
+    /// A value for a parameter of the design's file, that its slider begins with, as radius=5.0; several with commas
+    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',')]
+    set: Vec<Setting>,
     /// Port to listen on [default: a free one]
     #[arg(long, default_value_t = 0, hide_default_value = true, conflicts_with = "bundle")]
     port: u16,
@@ -65,7 +73,7 @@ mod with_viewer {
     use super::Args;
     use crate::{
         exit::{self, wrong},
-        input::Input,
+        input::{Input, Setting},
         interrupt,
         map::pool,
         output::{self, say},
@@ -81,7 +89,7 @@ mod with_viewer {
 
     /// Runs the command.
     pub fn run(args: &Args) -> Result<()> {
-        let opened = open(&args.design)?;
+        let opened = open(&args.design, &args.set)?;
         if let Some(out) = &args.bundle {
             args.replace.check(out)?;
             return bundle(args, opened, out);
@@ -100,23 +108,34 @@ mod with_viewer {
         serve(app, args.port, &stop, ready).map_err(report)
     }
 
-    fn open(what: &str) -> Result<Opened> {
+    fn open(what: &str, set: &[Setting]) -> Result<Opened> {
         let path = Path::new(what);
         if path.is_dir() {
+            if !set.is_empty() {
+                let help = "leave --set out, or name the design: its page solves what --set changes";
+                return Err(wrong(exit::USAGE, format!("--set is for designs, and {what} is a folder"), help));
+            }
             let none = || {
                 let help = "give a folder that `maille characterize`, `maille simulate` or `maille sweep` wrote";
                 wrong(exit::RECORD, format!("{what} holds no record, no simulation and no sweep"), help)
             };
             return Opened::folder(what, path)?.ok_or_else(none);
         }
-        let input = Input::read(what)?;
+        // Wrong names and values are refused as by other commands.
+        let input = Input::read_with(what, set, None)?;
         let file = path.is_file().then(|| path.to_owned());
-        Ok(Opened { name: what.to_owned(), file, text: input.text().to_owned(), record: None })
+        Ok(Opened {
+            name: what.to_owned(),
+            file,
+            text: input.text().to_owned(),
+            parameters: set.iter().map(Setting::pair).collect(),
+            record: None,
+        })
     }
 
     fn bundle(args: &Args, mut opened: Opened, out: &Path) -> Result<()> {
         if opened.record.is_none() {
-            let input = Input::read(&args.design)?;
+            let input = Input::read_with(&args.design, &args.set, None)?;
             input.compile(&input.design, maille::lattice::Cell::PRIMITIVE)?;
             let map = map_of_bundle(args.directions.0.clone(), args.l2.0.clone()).map_err(report)?;
             let cancel = interrupt::flag(false)?;

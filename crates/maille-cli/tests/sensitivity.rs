@@ -64,18 +64,44 @@ fn a_record_has_derivatives_and_its_plot_a_band() {
     assert!(close(slope("30.0", "-0.125", "minor_radius"), slope("60.0", "-0.125", "minor_radius")), "{text}");
 
     let verified = done(folder, "verify a --json");
-    assert!(verified.contains("8 derivatives by minor_radius"), "{verified}");
+    assert!(
+        verified.contains("16 derivatives by minor_radius and spacing")
+            && verified.contains("sensitivities.csv has the checksum"),
+        "{verified}"
+    );
     fs::write(&table, text.replace("0.0,0.0,minor_radius,-1.6", "0.0,0.0,minor_radius,-1.5")).unwrap();
     assert_ne!(fs::read_to_string(&table).unwrap(), text);
     let (code, found, _) = maille(folder, "verify a --json");
     assert!(code == Some(4) && found.contains("the forces at 0°, l2 = 0 sum up to -1.6"), "{found}");
+    let spaced = text.lines().find(|line| line.starts_with("30.0,-0.125,spacing,")).unwrap();
+    fs::write(&table, text.replace(spaced, "30.0,-0.125,spacing,-1.5,-1.5")).unwrap();
+    let (code, found, _) = maille(folder, "verify a --json");
+    assert!(code == Some(4) && found.contains("-1.5 back by spacing, where the forces at 30°, l2 = -0.125"), "{found}");
+    let (code, _, err) = maille(folder, "table a");
+    assert!(code == Some(4) && err.contains("sensitivities.csv was edited or cut off"), "{err}");
     let short: String = text.lines().take(9).map(|line| format!("{line}\n")).collect();
     fs::write(&table, short).unwrap();
     let (code, found, _) = maille(folder, "verify a --json");
-    assert!(code == Some(5) && found.contains("4 certified limits have no derivatives"), "{found}");
+    assert!(code == Some(4) && found.contains("4 certified limits have no derivatives"), "{found}");
     // The next run of the same inputs writes all of them again.
     done(folder, map);
     assert_eq!(fs::read_to_string(&table).unwrap(), text);
+
+    // As columns beside the limits.
+    let columns = "direction,l1,dl1/minor_radius,dl1_back/minor_radius,dl1/spacing";
+    let rows = done(folder, &format!("table a --format csv --where l2=0,dl1/spacing<-1.43 --columns {columns}"));
+    let mut rows = rows.lines();
+    assert_eq!(rows.next().unwrap().split_once(",l1").unwrap().1, columns.split_once(",l1").unwrap().1);
+    for (direction, row) in [0.0, 90.0].iter().zip(&mut rows) {
+        let cells: Vec<f64> = row.split(',').map(|x| x.parse().unwrap()).collect();
+        assert!(cells.iter().zip([*direction, 0.44, -1.6, -1.6, -1.44]).all(|(a, b)| (a - b).abs() < 1e-8), "{row}");
+    }
+    let all = done(folder, "table a --format csv");
+    assert!(
+        all.lines().next().unwrap().ends_with("dl1/minor_radius,dl1_back/minor_radius,dl1/spacing,dl1_back/spacing")
+    );
+    let (code, _, err) = maille(folder, "table a --columns dl1/wire");
+    assert!(code == Some(2) && err.contains("there are dl1/minor_radius"), "{err}");
 
     done(folder, "plot a --tolerance minor_radius=0.05 --where l2=0 -o band.svg -o band.png");
     let band = fs::read_to_string(folder.join("band.svg")).unwrap();
@@ -103,6 +129,6 @@ fn derivatives_of_other_records_are_those_of_their_forces() {
     ] {
         done(folder.path(), &format!("characterize {rest} --out {name} --quiet --sensitivities"));
         let found = done(folder.path(), &format!("verify {name} --json"));
-        assert!(found.contains("1 derivatives by minor_radius"), "{name}: {found}");
+        assert!(found.contains("2 derivatives by minor_radius and spacing"), "{name}: {found}");
     }
 }

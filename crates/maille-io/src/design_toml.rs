@@ -71,8 +71,8 @@ impl DesignSource {
     }
 
     /// The text with the value of `field` replaced by `value`, which is TOML; all else, comments too, stays as it is. The
-    /// optional fields of a ring, `offset` and `minor_radius`, are added where they are absent. None where the file does not
-    /// contain another field.
+    /// optional fields of a ring, `offset` and `minor_radius`, are added where they are absent, and a parameter keeps its bounds. None
+    /// where the file does not contain another field.
     ///
     /// ```
     /// let source = maille_io::DesignSource::new("a", "name = \"a\" # mine\nminor_radius = 0.1");
@@ -81,7 +81,8 @@ impl DesignSource {
     pub fn with_value(&self, field: &str, value: &str) -> Option<String> {
         let table = DeTable::parse(&self.text).ok()?;
         let index = Index::new(table.get_ref(), &self.text);
-        if let Some(span) = index.exact(field) {
+        let of_parameter = field.starts_with("parameters.").then(|| index.exact(&format!("{field}.value"))).flatten();
+        if let Some(span) = of_parameter.or_else(|| index.exact(field)) {
             return Some([&self.text[..span.start], value, &self.text[span.end..]].concat());
         }
         let (ring, key) = field.rsplit_once('.').filter(|(_, key)| ["offset", "minor_radius"].contains(key))?;

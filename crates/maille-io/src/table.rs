@@ -35,11 +35,7 @@ pub struct Table<'a> {
 impl<'a> Table<'a> {
     /// All rows of the records, one after the other, with these columns.
     pub fn new(records: &'a [NamedRecord], fields: Vec<Field>) -> Self {
-        let rows = |named: &'a NamedRecord| {
-            let (record, design) = (named.name.as_str(), &named.record.run.design);
-            named.record.rows.iter().map(move |limit| Row { record, design, limit })
-        };
-        let rows: Vec<Row<'a>> = records.iter().flat_map(rows).collect();
+        let rows: Vec<Row<'a>> = records.iter().flat_map(NamedRecord::table_rows).collect();
         Self { records, total: rows.len(), rows, fields }
     }
 

@@ -45,8 +45,9 @@ impl OpenMap {
         quantity_name: &str,
         out: Option<PathBuf>,
         overwrite: bool,
+        sensitivities: bool,
     ) -> PyResult<Self> {
-        let open = map::open(design, question, quantity_name, out, overwrite)?;
+        let open = map::open(design, question, quantity_name, out, overwrite, sensitivities)?;
         Ok(Self { name: design.design.name.clone(), open: Mutex::new(Some(open)), finished: Mutex::new(None) })
     }
 
@@ -113,7 +114,8 @@ impl OpenMap {
 #[pyfunction]
 pub fn joint_csv(names: Vec<String>, records: Vec<PyRef<'_, Record>>) -> String {
     let named = names.into_iter().zip(&records);
-    let named: Vec<NamedRecord> =
-        named.map(|(name, record)| NamedRecord { name, record: record.record.clone() }).collect();
+    let named: Vec<NamedRecord> = named
+        .map(|(name, record)| NamedRecord { name, record: record.record.clone(), sensitivities: Vec::new() })
+        .collect();
     Table::new(&named, Field::all(&named, true)).csv()
 }

@@ -17,8 +17,8 @@ use maille::{
 use maille_io::{
     Quantity,
     numbers::{distinct, parse},
-    record::NamedRecord,
-    run::{Map, save_record},
+    record::{NamedRecord, SensitivityRow},
+    run::{Map, save_record, sensitivities},
     table::{Field, Table},
 };
 use pyo3::{
@@ -125,9 +125,10 @@ pub fn open(
     quantity_name: &str,
     out: Option<PathBuf>,
     overwrite: bool,
+    sensitivities: bool,
 ) -> PyResult<maille_io::run::OpenMap> {
     let question = serde_json::from_str(question).map_err(|e| error::other(&format!("no question: {e}")))?;
-    let map = Map { question, quantity: quantity(quantity_name)?, out, overwrite, sensitivities: false };
+    let map = Map { question, quantity: quantity(quantity_name)?, out, overwrite, sensitivities };
     let models = map.cells(&design.design).into_iter().map(|cell| design.compile(cell)).collect::<PyResult<_>>()?;
     map.open(&design.design, models).map_err(|e| error::record(&e))
 }
@@ -139,7 +140,7 @@ pub fn write(value: &impl serde::Serialize) -> String {
 
 /// Finds the limits of a map, as `maille characterize` does.
 #[pyfunction]
-#[pyo3(signature = (design, question, quantity_name, *, out, overwrite, progress, threads))]
+#[pyo3(signature = (design, question, quantity_name, *, out, overwrite, sensitivities, progress, threads))]
 pub fn characterize(
     py: Python<'_>,
     design: &Design,
@@ -147,10 +148,11 @@ pub fn characterize(
     quantity_name: &str,
     out: Option<PathBuf>,
     overwrite: bool,
+    sensitivities: bool,
     progress: Option<Bound<'_, PyAny>>,
     threads: Option<usize>,
 ) -> PyResult<Record> {
-    let open = open(design, question, quantity_name, out, overwrite)?;
+    let open = open(design, question, quantity_name, out, overwrite, sensitivities)?;
     let run = wait(py, threads, progress.as_ref(), |cancel, tell| {
         tell(Step::More(open.left()));
         open.run(cancel, &|_, _| (), &|_, _| tell(Step::Done))
@@ -158,6 +160,9 @@ pub fn characterize(
     let record = run.map_err(|e| error::map(&e))?;
     Ok(Record { name: design.design.name.clone(), record })
 }
+
+/// A line of `sensitivities.csv`.
+type Slopes = (f64, f64, String, Option<f64>, Option<f64>);
 
 /// The record of a map.
 #[pyclass(frozen, module = "maille._native")]
@@ -192,7 +197,7 @@ impl Record {
 
     /// The table as Parquet, as `maille table` writes it; with `states`, each row with the line of its state.
     fn parquet<'py>(&self, py: Python<'py>, states: bool) -> PyResult<Bound<'py, PyBytes>> {
-        let named = [NamedRecord { name: self.name.clone(), record: self.record.clone() }];
+        let named = [NamedRecord { name: self.name.clone(), record: self.record.clone(), sensitivities: Vec::new() }];
         // With states it is a file of a dataset, all of whose files have the same columns.
         let fields = Field::all(if states { &[] } else { &named }, false);
         let (table, mut out) = (Table::new(&named, fields), Vec::new());
@@ -224,9 +229,16 @@ impl Record {
         Design::of(self.record.run.design.clone())
     }
 
-    fn save(&self, folder: PathBuf, quantity_name: &str, overwrite: bool) -> PyResult<()> {
+    /// The derivatives of the limits, from their states and forces: direction, l2, number, derivative forward and back.
+    fn sensitivities(&self, py: Python<'_>) -> PyResult<Vec<Slopes>> {
+        let found = py.detach(|| sensitivities(&self.record)).map_err(|e| error::record(&e))?;
+        let row = |row: SensitivityRow| (row.direction_deg, row.l2, row.number, row.derivative, row.derivative_back);
+        Ok(found.into_iter().map(row).collect())
+    }
+
+    fn save(&self, folder: PathBuf, quantity_name: &str, overwrite: bool, sensitivities: bool) -> PyResult<()> {
         let quantity = quantity(quantity_name)?;
-        save_record(&self.record, &folder, quantity, overwrite).map_err(|e| error::map(&e))
+        save_record(&self.record, &folder, quantity, overwrite, sensitivities).map_err(|e| error::map(&e))
     }
 
     fn __len__(&self) -> usize {

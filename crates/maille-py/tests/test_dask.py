@@ -155,6 +155,20 @@ def test_a_worker_is_killed_at_work(client, tmp_path):
     client.wait_for_workers(2)
 
 
+def test_maps_have_derivatives(client, tmp_path):
+    arguments = dict(directions=[0, 45], l2=[0.0], client=client)
+    without = maille.dask.characterize(["1.1"], **arguments, out=tmp_path / "out")
+    file = tmp_path / "out" / "records" / "1.1" / "sensitivities.csv"
+    assert without.solved == 2 and not file.exists()
+    # What is there is not solved again.
+    done = maille.dask.characterize(["1.1"], **arguments, out=tmp_path / "out", sensitivities=True)
+    assert done.solved == 0
+    alone = maille.characterize("1.1", [0, 45], [0.0], out=tmp_path / "alone", sensitivities=True)
+    assert file.read_text() == (tmp_path / "alone" / "sensitivities.csv").read_text()
+    mine, its = done.records["1.1"].sensitivities().to_numpy(), alone.sensitivities().to_numpy()
+    assert all(np.array_equal(mine[name], its[name]) for name in its)
+
+
 def test_what_cannot_be_used_stops_nothing_else(client, tmp_path):
     base = maille.Design.builtin("3.1")
     designs = ["1.1", base.with_minor_radius(0.6), "nowhere.toml", base.with_minor_radius(0.05)]

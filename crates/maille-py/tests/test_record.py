@@ -69,6 +69,31 @@ def test_the_program_reads_records_of_the_package(program, tmp_path):
     assert calls == [(0, 0)] and np.array_equal(same.to_numpy()["l1"], record.to_numpy()["l1"])
 
 
+def test_derivatives_are_those_of_the_program(program, tmp_path):
+    arguments = ["--directions", "0,30,60", "--l2=0,-0.125", "--sensitivities", "--quiet"]
+    subprocess.run([program, "characterize", "1.1", *arguments, "--out", tmp_path / "program"], check=True)
+    its = (tmp_path / "program" / "sensitivities.csv").read_text()
+    record = maille.characterize("1.1", [0, 30, 60], [0, -0.125], out=tmp_path / "python", sensitivities=True)
+    record.save(tmp_path / "saved", sensitivities=True)
+    for folder in ("python", "saved"):
+        assert (tmp_path / folder / "sensitivities.csv").read_text() == its
+        assert content(tmp_path / folder / "run.json") == content(tmp_path / "program" / "run.json")
+    # Without a folder, and of a record that has none: from the forces.
+    alone = maille.characterize("1.1", [0, 30, 60], [0, -0.125])
+    alone.save(tmp_path / "alone")
+    assert not (tmp_path / "alone" / "sensitivities.csv").exists()
+    slopes = maille.read_record(tmp_path / "alone").sensitivities()
+    assert len(slopes) == 12 and "12 derivatives" in repr(slopes)
+    rows = table(tmp_path / "program" / "sensitivities.csv")
+    columns = slopes.to_numpy()
+    assert columns["number"].tolist() == [row["number"] for row in rows]
+    for name in ("direction_deg", "l2", "derivative", "derivative_back"):
+        assert columns[name].tolist() == [float(row[name]) for row in rows], name
+        assert slopes.to_pandas()[name].tolist() == slopes.to_arrow()[name].to_pylist() == columns[name].tolist()
+    # Along 0 degrees l1 = (4 - 4 r)/2.5 - 1 at R = 1.
+    assert np.allclose(columns["derivative"][:2], [-1.6, -1.44])
+
+
 def test_arrow_pandas_and_numpy_hold_the_same(by_program):
     record = maille.read_record(by_program)
     arrow, frame, columns = record.to_arrow(), record.to_pandas(), record.to_numpy()

@@ -3,6 +3,7 @@
 use crate::{
     record::{Counters, LIMITS, RUN, Row, Run, STATES, State, Texts},
     report::{Check, Finding, Verdict},
+    sensitivities::FILE as SENSITIVITIES,
 };
 use serde_json::Value;
 use sha2::{Digest, Sha256};
@@ -118,7 +119,10 @@ fn sums(texts: &Texts<'_>, run: &Run) -> Vec<Finding> {
             }
         }
     };
-    [(LIMITS, texts.limits), (STATES, texts.states)].map(judge).into()
+    // Derivatives are there where they were asked for.
+    let asked = texts.sensitivities.is_some() || run.files.contains_key(SENSITIVITIES);
+    let derivatives = asked.then_some((SENSITIVITIES, texts.sensitivities));
+    [(LIMITS, texts.limits), (STATES, texts.states)].into_iter().chain(derivatives).map(judge).collect()
 }
 
 fn rows_and_states(run: &Run, rows: &[Row], states: &[State]) -> Vec<Finding> {

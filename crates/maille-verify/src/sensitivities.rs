@@ -1,20 +1,26 @@
-//! `sensitivities.csv`: the derivative of each certified limit by the wire is the sum of its forces.
+//! `sensitivities.csv`: the derivatives of each certified limit by the wire and by the spacing are sums over its forces.
 //!
 //! A wire of radius r + dr closes the gap of a contact by dr for each of its two rings that has no r of its own. So with the forces
 //! μ of a state dl1/dr = −Σ μ n / R, n such rings at the contact and R the reference radius; a least l1 has the opposite sign. Where
-//! other forces balance, too, the forward derivative is at most this and the backward one at least (of a least l1 the other way round). Derivatives by other numbers are not derived anew.
+//! other forces balance, too, the forward derivative is at most this and the backward one at least (of a least l1 the other way round).
+//!
+//! The spacing s multiplies the lattice vectors a of the design, and the elements' centres follow. Ring B of a contact stands
+//! w = w1 a1 + w2 a2 of the design further than ring A, so that its gap widens by n·F w ds, n the unit vector from A to B and F the
+//! deformation gradient, and dl1/ds = Σ μ n·F w / R. Derivatives by other numbers are not derived anew.
 
 use crate::{
     files::key,
     record::{Design, Row, State},
     report::{Check, Finding, Verdict},
+    sheet,
 };
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Name of the file.
-const FILE: &str = "sensitivities.csv";
+pub(crate) const FILE: &str = "sensitivities.csv";
 const HEADER: &str = "direction_deg,l2,number,derivative,derivative_back";
 const WIRE: &str = "minor_radius";
+const SPACING: &str = "spacing";
 /// How far a derivative may be from the sum of the forces, relative to it or to 1e-3: forces below 1e-9 are not recorded.
 const SAME: f64 = 1e-6;
 
@@ -45,16 +51,23 @@ pub(crate) fn check(text: &str, design: &Design, rows: &[Row], states: &[State])
             wrong.push(format!("{at}: {direction_deg}°, l2 = {l2} is no certified limit of the record"));
             continue;
         };
-        match (number.as_str(), sides) {
-            (WIRE, [Some(forward), Some(back)]) => match by_forces(design, row, state) {
+        let sum = match number.as_str() {
+            WIRE => by_wire(design, row, state),
+            SPACING => by_spacing(design, row, state),
+            _ => {
+                others += 1;
+                continue;
+            }
+        };
+        match sides {
+            [Some(forward), Some(back)] => match sum {
                 Some(sum) if between(sum, [forward, back], least(row)) => proved += 1,
                 Some(sum) => wrong.push(format!(
-                    "{at}: {forward} forward and {back} back by {WIRE}, where the forces at {direction_deg}°, l2 = {l2} sum up to {sum}"
+                    "{at}: {forward} forward and {back} back by {number}, where the forces at {direction_deg}°, l2 = {l2} sum up to {sum}"
                 )),
                 None => wrong.push(format!("{at}: a contact of {direction_deg}°, l2 = {l2} is between rings that are not there")),
             },
-            (WIRE, _) => empty += 1,
-            _ => others += 1,
+            _ => empty += 1,
         }
     }
     let count = wrong.len();
@@ -64,7 +77,10 @@ pub(crate) fn check(text: &str, design: &Design, rows: &[Row], states: &[State])
         out.push(say(Verdict::False, format!("{} more of this kind in {FILE}", count - out.len())));
     }
     if count == 0 && proved > 0 {
-        out.push(say(Verdict::Proved, format!("{proved} derivatives by {WIRE} in {FILE} are those of the forces")));
+        out.push(say(
+            Verdict::Proved,
+            format!("{proved} derivatives by {WIRE} and {SPACING} in {FILE} are those of the forces"),
+        ));
     }
     if others + empty > 0 {
         let words = format!("{} other derivatives in {FILE} are not derived anew", others + empty);
@@ -100,7 +116,7 @@ fn between(sum: f64, [forward, back]: [f64; 2], least: bool) -> bool {
 }
 
 /// −Σ μ n / R, or Σ μ n / R of a least l1; `None` where a contact names a ring that is not there.
-fn by_forces(design: &Design, row: &Row, state: &State) -> Option<f64> {
+fn by_wire(design: &Design, row: &Row, state: &State) -> Option<f64> {
     // A copy in a larger cell has the name of its element, then @ and its cell.
     let rings = |name: &str| {
         let own = |full: &&crate::record::Element| full.name == name;
@@ -117,6 +133,26 @@ fn by_forces(design: &Design, row: &Row, state: &State) -> Option<f64> {
         sum += contact.force * shared.iter().filter(|common| **common).count() as f64;
     }
     let sign = if least(row) { 1.0 } else { -1.0 };
+    Some(sign * sum / design.reference_radius)
+}
+
+/// Σ μ n·F w / R, or −Σ μ n·F w / R of a least l1; `None` where a contact names a ring that is not there, or the cell is none.
+fn by_spacing(design: &Design, row: &Row, state: &State) -> Option<f64> {
+    let cell = sheet::cell(&row.cell)?;
+    let mut copies = Vec::new();
+    for pose in &state.poses {
+        let (element, copy) = sheet::named(design, &cell, &pose.element).ok()?;
+        copies.extend(design.elements[element].rings.iter().map(|_| copy));
+    }
+    let here = sheet::of_design(&cell, [state.a1, state.a2].map(sheet::Vec3::from));
+    let mut sum = 0.0;
+    for contact in &state.contacts {
+        let [from, to] = [*copies.get(contact.ring_a)?, *copies.get(contact.ring_b)?];
+        let apart = |j: usize| to[j] - from[j] + (0..2).map(|k| contact.shift[k] * cell[k][j]).sum::<i32>();
+        let between = here[0] * f64::from(apart(0)) + here[1] * f64::from(apart(1));
+        sum += contact.force * sheet::Vec3::from(contact.normal).dot(&between);
+    }
+    let sign = if least(row) { -1.0 } else { 1.0 };
     Some(sign * sum / design.reference_radius)
 }
 

@@ -73,6 +73,13 @@ pub(crate) fn vectors(cell: &Cell, [a1, a2]: [Vec3; 2]) -> [Vec3; 2] {
     cell.map(|[m, n]| a1 * f64::from(m) + a2 * f64::from(n))
 }
 
+/// The vectors of the design's cell for those of `cell`: what [`vectors`] undoes.
+pub(crate) fn of_design(cell: &Cell, [a1, a2]: [Vec3; 2]) -> [Vec3; 2] {
+    let [[p, q], [r, s]] = cell.map(|row| row.map(f64::from));
+    let determinant = p * s - q * r;
+    [(a1 * s - a2 * q) / determinant, (a2 * p - a1 * r) / determinant]
+}
+
 /// The design's lattice vectors in units of R.
 pub(crate) fn primitive(design: &Design) -> [Vec3; 2] {
     [design.lattice.a1, design.lattice.a2].map(|a| Vec3::from(a) / design.reference_radius)
@@ -84,7 +91,7 @@ pub(crate) fn columns([a1, a2]: [Vec3; 2]) -> Matrix2<f64> {
 }
 
 /// Which element of the design a pose is of, and which copy: `flat@1,0` in a cell of several copies.
-fn named(design: &Design, cell: &Cell, name: &str) -> Result<(usize, [i32; 2]), String> {
+pub(crate) fn named(design: &Design, cell: &Cell, name: &str) -> Result<(usize, [i32; 2]), String> {
     let unknown = || format!("pose of \"{name}\", which the design does not have");
     let (base, copy) = match name.rsplit_once('@') {
         Some((base, copy)) if determinant(cell).abs() > 1 => {

@@ -8,6 +8,7 @@ use maille::{
 };
 use maille_io::ListedProblem;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// What the page starts with; a bundle has it inside.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -59,6 +60,8 @@ pub struct Shown {
     pub file: Option<String>,
     /// The design file.
     pub text: String,
+    /// Values that its parameters begin with, in place of the file's.
+    pub parameters: BTreeMap<String, f64>,
     /// The limits of a record.
     pub map: Option<ShownMap>,
     /// The states of a simulation.
@@ -150,6 +153,9 @@ pub struct Subject {
     /// Elements so many times as far apart.
     #[serde(default)]
     pub spacing: Option<f64>,
+    /// Values of parameters, in place of the file's.
+    #[serde(default)]
+    pub parameters: BTreeMap<String, f64>,
 }
 
 /// What is wrong with a design, and what it looks like all the same, if that is known.

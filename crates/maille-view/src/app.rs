@@ -98,6 +98,7 @@ fn shown(opened: &Opened) -> Result<Shown, Refusal> {
         name: opened.name.clone(),
         file: opened.file.as_ref().map(|file| file.display().to_string()),
         text: opened.text.clone(),
+        parameters: opened.parameters.clone(),
         map,
         simulation,
     })

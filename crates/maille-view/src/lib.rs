@@ -82,7 +82,8 @@ pub fn solve_map(
     cancel: &AtomicBool,
     found: &(dyn Fn(&LimitRow) + Sync),
 ) -> Result<Record, ViewError> {
-    let subject = Subject { name: opened.name.clone(), text: opened.text.clone(), minor_radius: None, spacing: None };
+    let Opened { name, text, parameters, .. } = opened.clone();
+    let subject = Subject { name, text, minor_radius: None, spacing: None, parameters };
     let (.., open) = solve::open(map, &subject)?;
     Ok(open.run(cancel, &|_, _| (), &|row, _| found(row)).map_err(Refusal::fault)?)
 }

@@ -5,7 +5,10 @@ use maille_io::{
     record::{Record, RecordError, SIMULATION, SimulationFiles, open_simulation},
     write_design,
 };
-use std::path::{Path, PathBuf};
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
 
 /// Where records are written unless a folder is named.
 pub const USUAL: &str = "maille-out";
@@ -23,6 +26,8 @@ pub struct Opened {
     pub file: Option<PathBuf>,
     /// Its text.
     pub text: String,
+    /// Values that its parameters begin with, in place of the file's.
+    pub parameters: BTreeMap<String, f64>,
     /// A record of it, with its name.
     pub record: Option<(String, Recorded)>,
 }
@@ -49,7 +54,13 @@ impl Opened {
             Recorded::Limits(record) => write_design(&record.run.design),
             Recorded::Simulation(files) => write_design(&files.record.design),
         };
-        Ok(Some(Opened { name: name.clone(), file: None, text, record: Some((name, recorded)) }))
+        Ok(Some(Opened {
+            name: name.clone(),
+            file: None,
+            text,
+            parameters: BTreeMap::new(),
+            record: Some((name, recorded)),
+        }))
     }
 }
 

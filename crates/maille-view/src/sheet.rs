@@ -10,7 +10,7 @@ use maille::{
     state::State,
     topology,
 };
-use maille_io::{DesignSource, mesh, record::Record, render};
+use maille_io::{DesignSource, mesh, record::Record, render, set_parameters};
 
 /// Pairs of rings are listed if their gap is below this many of the largest major radius.
 const NEAR: f64 = 0.5;
@@ -37,6 +37,10 @@ impl Subject {
         let source = DesignSource::new(&*self.name, &*self.text);
         let written = source.read().map_err(|e| Refusal::design(&e))?;
         let mut design = written.clone();
+        if !self.parameters.is_empty() {
+            let values: Vec<_> = self.parameters.iter().map(|(name, value)| (name.as_str(), *value)).collect();
+            design = set_parameters(&design, &values).map_err(|e| Refusal::design(&source.explain(&e)))?;
+        }
         if let Some(r) = self.minor_radius {
             if !(r.is_finite() && r > 0.0) {
                 return Err(Refusal::wrong(

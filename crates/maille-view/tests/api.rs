@@ -13,6 +13,7 @@ use rand_chacha::ChaCha8Rng;
 use serde::{Serialize, de::DeserializeOwned};
 use serde_json::{Value, json};
 use std::{
+    collections::BTreeMap,
     io::{Read, Write},
     net::TcpStream,
     path::PathBuf,
@@ -24,7 +25,13 @@ use tower::ServiceExt;
 const PORT: u16 = 4711;
 
 fn opened() -> Opened {
-    Opened { name: "1.1".into(), file: None, text: builtin("1.1").unwrap().into(), record: None }
+    Opened {
+        name: "1.1".into(),
+        file: None,
+        text: builtin("1.1").unwrap().into(),
+        parameters: BTreeMap::new(),
+        record: None,
+    }
 }
 
 fn app(folder: PathBuf) -> Arc<App> {
@@ -36,7 +43,13 @@ fn runtime() -> tokio::runtime::Runtime {
 }
 
 fn subject(text: &str) -> Subject {
-    Subject { name: "mine.toml".into(), text: text.into(), minor_radius: None, spacing: None }
+    Subject {
+        name: "mine.toml".into(),
+        text: text.into(),
+        minor_radius: None,
+        spacing: None,
+        parameters: BTreeMap::new(),
+    }
 }
 
 fn solve(slot: &str, directions_deg: Vec<f64>) -> Solve {
@@ -149,6 +162,33 @@ fn a_design_is_judged_as_the_program_does() {
         assert!(changed.text.contains("[1.25, 0.0, 0.2]") && changed.text.starts_with("# Flat rings"));
         let (status, _): (_, Refused) = post(&router, "/api/edit", &edit("elements[9].center")).await;
         assert_eq!(status, StatusCode::UNPROCESSABLE_ENTITY);
+    });
+}
+
+/// Values of parameters change the sheet and not the design of the file; wrong ones are named at their place in it. A changed value in
+/// the text keeps the bounds beside it.
+#[test]
+fn parameters_are_set_for_the_sheet_or_in_the_text() {
+    runtime().block_on(async {
+        let router = router(app(PathBuf::from(".")), PORT);
+        let text = include_str!("../../../examples/parameters/square.toml");
+        let with =
+            |name: &str, value: f64| Subject { parameters: BTreeMap::from([(name.into(), value)]), ..subject(text) };
+        let (_, judged): (_, Judged) = post(&router, "/api/judge", &with("wire", 1.6)).await;
+        let (sheet, design) = (judged.sheet.unwrap(), judged.design.unwrap());
+        assert!(judged.problems.is_empty() && sheet.rings.iter().all(|ring| ring.minor_radius == 0.8));
+        assert_eq!(design.minor_radius, Some(0.6));
+        for (name, value, problem) in
+            [("wire", 3.0, "above max = 2"), ("wier", 1.0, "is no parameter"), ("pitch", 1.0, "")]
+        {
+            let (_, judged): (_, Judged) = post(&router, "/api/judge", &with(name, value)).await;
+            assert!(judged.sheet.is_none() && judged.problems[0].problem.contains(problem), "{:?}", judged.problems);
+        }
+        let change = |field: &str| Change { field: field.into(), value: "1.5".into() };
+        let changes = vec![change("parameters.wire"), change("parameters.tilt")];
+        let (_, changed): (_, Text) = post(&router, "/api/edit", &Edit { text: text.into(), changes }).await;
+        assert!(changed.text.contains("wire = { value = 1.5, min = 0.4, max = 2.0 } # its diameter"));
+        assert!(changed.text.contains("tilt = 1.5 # of the upright rings"), "{}", changed.text);
     });
 }
 

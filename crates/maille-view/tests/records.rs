@@ -19,6 +19,7 @@ use maille_io::{
 use maille_view::{App, Opened, api::*, router, solve_map};
 use serde::{Serialize, de::DeserializeOwned};
 use std::{
+    collections::BTreeMap,
     path::Path,
     sync::{Arc, atomic::AtomicBool},
 };
@@ -37,7 +38,13 @@ async fn ask<T: DeserializeOwned>(router: &Router, path: &str, body: Option<&imp
 }
 
 fn opened() -> Opened {
-    Opened { name: "1.1".into(), file: None, text: builtin("1.1").unwrap().into(), record: None }
+    Opened {
+        name: "1.1".into(),
+        file: None,
+        text: builtin("1.1").unwrap().into(),
+        parameters: BTreeMap::new(),
+        record: None,
+    }
 }
 
 /// A record of one limit in `folder`.
@@ -139,7 +146,13 @@ fn a_simulation_has_its_states_and_their_gaps() {
 
         // The sheet as a whole has risen: the gaps are those of the start, and a free edge has no images.
         let measure = Measure {
-            subject: Subject { name: "pulled".into(), text: text.clone(), minor_radius: None, spacing: None },
+            subject: Subject {
+                name: "pulled".into(),
+                text: text.clone(),
+                minor_radius: None,
+                spacing: None,
+                parameters: BTreeMap::new(),
+            },
             cell: sheet.cell.clone(),
             finite: true,
             a1: sheet.a1,

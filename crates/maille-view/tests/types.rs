@@ -1,6 +1,6 @@
 //! `web/src/types.ts` is written from the Rust types, as serde reads them. `MAILLE_BLESS=1` writes it anew.
 
-use maille::record::StateRecord;
+use maille::{design::Parameter, record::StateRecord};
 use maille_io::{builtin, read_design};
 use maille_view::api::{
     Activity, Edit, Export, Judged, Measure, New, OpenRecord, Refused, Save, Solve, SolveEvent, Start, Subject, Text,
@@ -64,10 +64,12 @@ fn fields(of: &str, fields: &[Named<Format>], absent: &BTreeMap<String, Vec<Stri
 fn absent(registry: &Registry) -> BTreeMap<String, Vec<String>> {
     let mut design = read_design("1.1", builtin("1.1").unwrap()).unwrap();
     (design.minor_radius, design.unit) = (None, None);
+    let parameter = Parameter { name: "wire".into(), value: 1.0, formula: None, min: None, max: None };
     let bare = [
         ("StateRecord", serde_json::to_value(StateRecord::default()).unwrap()),
         ("RingSpec", serde_json::to_value(&design.elements[0].rings[0]).unwrap()),
         ("Design", serde_json::to_value(&design).unwrap()),
+        ("Parameter", serde_json::to_value(&parameter).unwrap()),
     ];
     let of = |(name, value): (&str, serde_json::Value)| {
         let Some(ContainerFormat::Struct(fields)) = registry.get(name) else { panic!("{name} is no struct") };

@@ -62,35 +62,16 @@ pub struct Record {
 impl Record {
     /// Reads a folder. A record that has no table or no states yet has no rows or states.
     pub fn read(folder: &Path) -> Result<Self, RecordError> {
-        let path = folder.join(RUN);
-        let Some(mut text) = read_if_there(&path)? else {
-            return Err(RecordError::NotARecord { folder: folder.into(), found: some_names(&names(folder)?) });
-        };
-        loop {
-            let found = Self::read_as(folder, &path, &text);
-            if !matches!(found, Err(RecordError::Edited { .. })) {
-                return found;
-            }
-            // A run may have written between the files: then run.json is another one now.
-            match read_if_there(&path)? {
-                Some(now) if now != text => text = now,
-                _ => return found,
-            }
-        }
-    }
-
-    fn read_as(folder: &Path, path: &Path, text: &str) -> Result<Self, RecordError> {
-        let run = read_run(&path.display().to_string(), text)?;
-        let rows = read_checked(folder, LIMITS, &run, read_limits)?;
-        let states = read_checked(folder, STATES, &run, read_states)?;
-        Ok(Self { run, rows, states })
+        read_whole(folder, |run| {
+            let rows = read_checked(folder, LIMITS, &run, read_limits)?.unwrap_or_default();
+            let states = read_checked(folder, STATES, &run, read_states)?.unwrap_or_default();
+            Ok(Self { run, rows, states })
+        })
     }
 
     /// The derivatives of a folder's limits, where it has some.
     pub fn read_sensitivities(folder: &Path) -> Result<Option<Vec<SensitivityRow>>, RecordError> {
-        let path = folder.join(SENSITIVITIES);
-        let read = |text: String| read_sensitivities(&path.display().to_string(), &text);
-        read_if_there(&path)?.map(read).transpose()
+        read_whole(folder, |run| read_checked(folder, SENSITIVITIES, &run, read_sensitivities))
     }
 
     /// The rows that need no computing again, each with its state: those with a state and not `interrupted`.
@@ -111,6 +92,8 @@ pub struct NamedRecord {
     pub name: String,
     /// The record.
     pub record: Record,
+    /// The derivatives of its limits, where it has some.
+    pub sensitivities: Vec<SensitivityRow>,
 }
 
 /// A folder that a run writes its record to.
@@ -160,7 +143,7 @@ impl RecordFolder {
             } else {
                 let record = Record::read(path)?;
                 folder.same_inputs(&record.run)?;
-                for name in [LIMITS, STATES] {
+                for name in [LIMITS, STATES, SENSITIVITIES] {
                     if let Some(text) = read_if_there(&path.join(name))? {
                         folder.run.files.insert(name.to_owned(), vec![sha256(text.as_bytes())]);
                     }
@@ -230,8 +213,13 @@ impl RecordFolder {
     }
 
     /// Writes the derivatives of the limits.
-    pub fn write_sensitivities(&self, rows: &[SensitivityRow]) -> Result<(), RecordError> {
-        self.apply(Step::Write(SENSITIVITIES, write_sensitivities(rows).into()))
+    pub fn write_sensitivities(&mut self, rows: &[SensitivityRow]) -> Result<(), RecordError> {
+        let (steps, files) = self.steps_to_change(vec![(SENSITIVITIES, write_sensitivities(rows))]);
+        for step in steps {
+            self.apply(step)?;
+        }
+        self.run.files = files;
+        Ok(())
     }
 
     fn steps_to_replace(&self) -> Vec<Step> {
@@ -242,20 +230,25 @@ impl RecordFolder {
 
     /// The steps, and the checksums of the files after them.
     fn steps_to_write(&self, rows: &[LimitRow], states: &[StateRecord]) -> Result<(Vec<Step>, Sums), RecordError> {
-        let (limits, states) = (write_limits(rows)?, write_states(states)?);
-        let sum = |(name, text): (&str, &String)| (name.to_owned(), vec![sha256(text.as_bytes())]);
-        let files: Sums = [(LIMITS, &limits), (STATES, &states)].map(sum).into();
-        let mut both = files.clone();
-        for (name, sums) in &mut both {
-            let before = self.run.files.get(name).into_iter().flatten();
-            let before: Vec<String> = before.filter(|before| **before != sums[0]).cloned().collect();
-            sums.extend(before);
+        Ok(self.steps_to_change(vec![(STATES, write_states(states)?), (LIMITS, write_limits(rows)?)]))
+    }
+
+    /// The same for these files alone: meanwhile `run.json` has the checksums from before, too.
+    fn steps_to_change(&self, texts: Vec<(&'static str, String)>) -> (Vec<Step>, Sums) {
+        let (mut both, mut files) = (self.run.files.clone(), self.run.files.clone());
+        for (name, text) in &texts {
+            let now = sha256(text.as_bytes());
+            let sums = both.entry((*name).to_owned()).or_default();
+            sums.retain(|before| *before != now);
+            sums.insert(0, now.clone());
+            files.insert((*name).to_owned(), vec![now]);
         }
         let run =
             |files: &Sums| Step::Write(RUN, write_run(&RunRecord { files: files.clone(), ..self.run.clone() }).into());
         let after = run(&files);
-        let steps = vec![run(&both), Step::Write(STATES, states.into()), Step::Write(LIMITS, limits.into()), after];
-        Ok((steps, files))
+        let writes = texts.into_iter().map(|(name, text)| Step::Write(name, text.into()));
+        let steps = std::iter::once(run(&both)).chain(writes).chain([after]).collect();
+        (steps, files)
     }
 
     fn apply(&self, step: Step) -> Result<(), RecordError> {
@@ -335,23 +328,42 @@ fn short(value: &Value) -> String {
     }
 }
 
-/// The content of a file of the record, if it is the one that was written. What cannot be read at all is told with its line.
+/// What `read` gives with `run.json`, with which the files that it reads fit together.
+fn read_whole<T>(folder: &Path, read: impl Fn(RunRecord) -> Result<T, RecordError>) -> Result<T, RecordError> {
+    let path = folder.join(RUN);
+    let Some(mut text) = read_if_there(&path)? else {
+        return Err(RecordError::NotARecord { folder: folder.into(), found: some_names(&names(folder)?) });
+    };
+    loop {
+        let found = read_run(&path.display().to_string(), &text).and_then(&read);
+        if !matches!(found, Err(RecordError::Edited { .. })) {
+            return found;
+        }
+        // A run may have written between the files: then run.json is another one now.
+        match read_if_there(&path)? {
+            Some(now) if now != text => text = now,
+            _ => return found,
+        }
+    }
+}
+
+/// The content of a file of the record, if there is one and it is the one that was written. What cannot be read at all is told with its line.
 fn read_checked<T>(
     folder: &Path,
     name: &'static str,
     run: &RunRecord,
     read: impl Fn(&str, &str) -> Result<Vec<T>, RecordError>,
-) -> Result<Vec<T>, RecordError> {
+) -> Result<Option<Vec<T>>, RecordError> {
     let path = folder.join(name);
     let file = path.display().to_string();
-    let Some(text) = read_if_there(&path)? else { return Ok(Vec::new()) };
+    let Some(text) = read_if_there(&path)? else { return Ok(None) };
     let content = read(&file, &text)?;
     let found = sha256(text.as_bytes());
     match run.files.get(name).map(Vec::as_slice) {
         Some(sums @ [expected, ..]) if !sums.contains(&found) => {
             Err(RecordError::Edited { file, found, expected: expected.clone(), by: RUN })
         }
-        _ => Ok(content),
+        _ => Ok(Some(content)),
     }
 }
 

@@ -188,19 +188,11 @@ impl OpenMap {
         }
         collected.write()?;
         let (rows, states) = collected.finished();
-        let run = match &collected.folder {
-            Some(folder) => folder.run().clone(),
-            None => {
-                let counters = Counters::of(&rows);
-                RunRecord { counters, ..RunRecord::new(&design, &parameters, VERSION) }
-            }
-        };
-        let record = Record { run, rows, states };
-        if let Some(folder) = &collected.folder {
-            write_polar(&record, folder, map.quantity)?;
-            if map.sensitivities || folder.has_sensitivities() {
-                folder.write_sensitivities(&sensitivities(&record)?)?;
-            }
+        let run = RunRecord { counters: Counters::of(&rows), ..RunRecord::new(&design, &parameters, VERSION) };
+        let mut record = Record { run, rows, states };
+        if let Some(folder) = &mut collected.folder {
+            write_beside(&record, folder, map.quantity, map.sensitivities)?;
+            record.run = folder.run().clone();
         }
         Ok(record)
     }
@@ -217,12 +209,33 @@ pub struct Chain {
     pub hash: String,
 }
 
-/// Writes a record to a folder of its own, with its plot: as a run that had found it there.
-pub fn save_record(record: &Record, folder: &Path, quantity: Quantity, overwrite: bool) -> Result<(), MapError> {
+/// Writes a record to a folder of its own, with its plot and, where they are asked for, the derivatives of its limits: as a run that
+/// had found it there.
+pub fn save_record(
+    record: &Record,
+    folder: &Path,
+    quantity: Quantity,
+    overwrite: bool,
+    sensitivities: bool,
+) -> Result<(), MapError> {
     let RunRecord { design, parameters, program_version, .. } = &record.run;
     let (mut folder, ..) = RecordFolder::open(folder, design, parameters, program_version, overwrite)?;
     folder.write(&record.rows, &record.states)?;
-    write_polar(record, &folder, quantity)
+    write_beside(record, &mut folder, quantity, sensitivities)
+}
+
+/// The plot of a record; its derivatives, where they are asked for or there already.
+fn write_beside(
+    record: &Record,
+    folder: &mut RecordFolder,
+    quantity: Quantity,
+    derivatives: bool,
+) -> Result<(), MapError> {
+    write_polar(record, folder, quantity)?;
+    if derivatives || folder.has_sensitivities() {
+        folder.write_sensitivities(&sensitivities(record)?)?;
+    }
+    Ok(())
 }
 
 /// The plot of a record, where plots are built in.

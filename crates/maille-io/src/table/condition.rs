@@ -3,7 +3,7 @@
 use super::{Field, Row, TableError};
 use crate::nearest::nearest;
 use crate::record::NamedRecord;
-use maille::record::{Entry, Kind, LimitRow, Status};
+use maille::record::{Entry, Kind, Status};
 use std::cmp::Ordering;
 
 /// One condition on the rows of a table.
@@ -104,9 +104,10 @@ impl Condition {
 impl NamedRecord {
     /// Keeps the rows that meet every condition; the states stay.
     pub fn keep(&mut self, conditions: &[Condition]) {
-        let (record, design) = (&self.name, &self.record.run.design);
-        let all = |limit: &LimitRow| conditions.iter().all(|condition| condition.holds(&Row { record, design, limit }));
-        self.record.rows.retain(all);
+        let rows = self.table_rows();
+        let kept: Vec<bool> = rows.iter().map(|row| conditions.iter().all(|condition| condition.holds(row))).collect();
+        let mut kept = kept.into_iter();
+        self.record.rows.retain(|_| kept.next().unwrap_or_default());
     }
 }
 

@@ -51,5 +51,5 @@ pub fn record(name: &str, design: Design, rows: Vec<LimitRow>) -> NamedRecord {
         counters: Counters::of(&rows),
         files: Default::default(),
     };
-    NamedRecord { name: name.into(), record: Record { run, rows, states: Vec::new() } }
+    NamedRecord { name: name.into(), record: Record { run, rows, states: Vec::new() }, sensitivities: Vec::new() }
 }

@@ -24,7 +24,7 @@ from .errors import (
 )
 from .fit import Fit, fit
 from .question import Extreme, StrainLimit, limit, roomiest, tightest
-from .record import Record, State, characterize, read_record
+from .record import Record, Sensitivities, State, characterize, read_record
 from .sheet import Sheet, View, show
 from .simulate import Simulation, read_simulation, simulate
 
@@ -40,6 +40,7 @@ __all__ = [
     "Record",
     "RecordError",
     "Ring",
+    "Sensitivities",
     "ShapeError",
     "Sheet",
     "Simulation",

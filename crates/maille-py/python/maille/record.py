@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     import pyarrow
     from matplotlib.projections.polar import PolarAxes
 
-__all__ = ["Progress", "Record", "State", "characterize", "read_record"]
+__all__ = ["Progress", "Record", "Sensitivities", "State", "characterize", "read_record"]
 
 #: Called with what is done and what there is to do; or True for a bar of tqdm.
 Progress = Union[None, bool, Callable[[int, int], object]]
@@ -143,9 +143,48 @@ class Record(Columns):
         ax.legend(loc="upper left", bbox_to_anchor=(1.1, 1.0), frameon=False)
         return ax
 
-    def save(self, folder: str | os.PathLike[str], *, quantity: Quantity = "stretch", overwrite: bool = False) -> None:
-        """Writes the folder that `maille characterize` writes, with its plot of `quantity`."""
-        self._inner.save(os.fspath(folder), quantity, overwrite)
+    def sensitivities(self) -> Sensitivities:
+        """How each certified limit changes with the wire, the spacing and the parameters of the file: from the states and their
+        forces, with no further solve. What `maille characterize --sensitivities` writes as `sensitivities.csv`.
+
+        >>> slopes = characterize("1.1", [0], [0]).sensitivities().to_numpy()
+        >>> slopes["number"].tolist(), slopes["derivative"].round(6).tolist()
+        (['minor_radius', 'spacing'], [-1.6, -1.44])
+        """
+        return Sensitivities(self._inner.sensitivities())
+
+    def save(
+        self,
+        folder: str | os.PathLike[str],
+        *,
+        quantity: Quantity = "stretch",
+        overwrite: bool = False,
+        sensitivities: bool = False,
+    ) -> None:
+        """Writes the folder that `maille characterize` writes, with its plot of `quantity`, and with `sensitivities.csv` where that
+        is asked for or there already."""
+        self._inner.save(os.fspath(folder), quantity, overwrite, sensitivities)
+
+
+class Sensitivities(Columns):
+    """Derivatives of limits: one row a limit and number. `docs/record.md` says what the columns are."""
+
+    _COLUMNS = ("direction_deg", "l2", "number", "derivative", "derivative_back")
+
+    def __init__(self, rows: list[tuple[float, float, str, float | None, float | None]]) -> None:
+        self._rows = rows
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    def __repr__(self) -> str:
+        return f"<maille.Sensitivities, {len(self)} derivatives>"
+
+    def to_numpy(self) -> dict[str, NDArray[Any]]:
+        """The columns, each an array of one value a row; NaN where a derivative was not found."""
+        columns = {name: [row[k] for row in self._rows] for k, name in enumerate(self._COLUMNS)}
+        # A missing number becomes NaN.
+        return {name: np.array(c, dtype=np.str_ if name == "number" else np.float64) for name, c in columns.items()}
 
 
 def read_record(folder: str | os.PathLike[str]) -> Record:
@@ -171,6 +210,7 @@ def characterize(
     quantity: Quantity = "stretch",
     out: str | os.PathLike[str] | None = None,
     overwrite: bool = False,
+    sensitivities: bool = False,
     progress: Progress = None,
     threads: int | None = None,
 ) -> Record:
@@ -180,7 +220,8 @@ def characterize(
     `"0:180:5"`. `lateral="free"` and `shear="free"` leave width and shear to the sheet. `compression` asks how far
     the sheet is compressed instead, in all cells up to 3x3. `energy` has options of the energy
     method, as `{"tau": 0.01}`. With `out` the record is kept in that folder while limits come in, and the same call goes on
-    where an earlier one stopped; without, it stays in memory. `progress` is True for a bar of tqdm, or is called with
+    where an earlier one stopped; without, it stays in memory. With `sensitivities` the folder gets the derivatives of the limits,
+    too: those of `Record.sensitivities`. `progress` is True for a bar of tqdm, or is called with
     (done, total). Results do not depend on `threads`. Ctrl-C stops it; what was found is in `out`.
 
     >>> record = characterize("1.1", directions=[0], l2=[0])
@@ -207,6 +248,7 @@ def characterize(
             quantity,
             out=None if out is None else os.fspath(out),
             overwrite=overwrite,
+            sensitivities=sensitivities,
             progress=told,
             threads=None if threads is None else _whole("threads", threads, 1),
         )

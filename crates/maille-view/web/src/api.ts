@@ -58,9 +58,12 @@ export async function start(): Promise<Start> {
   return inside ? (JSON.parse(inside) as Start) : ((await (await ask("/api/start", undefined)).json()) as Start);
 }
 
+/** What a design has that is nothing but its text. */
+export const PLAIN = { file: null, parameters: {}, map: null, simulation: null };
+
 export async function builtin(name: string): Promise<Shown> {
   const text = (await (await ask(`/api/builtin/${encodeURIComponent(name)}`, undefined)).json()) as Text;
-  return { ...text, file: null, map: null, simulation: null };
+  return { ...PLAIN, ...text };
 }
 export async function record(name: string): Promise<Shown> {
   return (await ask("/api/open", { name })).json();
@@ -78,7 +81,7 @@ export async function edit(text: string, changes: Change[]): Promise<string> {
 /** A design that has no file yet. */
 export async function newDesign(request: New): Promise<Shown> {
   const { name, text } = (await (await ask("/api/new", request)).json()) as Text;
-  return { name: `${name}.toml`, text, file: null, map: null, simulation: null };
+  return { ...PLAIN, name: `${name}.toml`, text };
 }
 export async function save(request: Save): Promise<Text> {
   return (await ask("/api/save", request)).json();

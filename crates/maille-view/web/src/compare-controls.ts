@@ -1,8 +1,9 @@
 // The second sheet: which design or record, with which wire, and which of the two is shown.
 
-import { Slider, unitOf } from "./controls";
+import { unitOf } from "./controls";
 import { DesignSelect } from "./design-select";
 import { h } from "./dom";
+import { Slider } from "./slider";
 import type { Both, ViewState } from "./state";
 
 const SHOWN: [Both, string][] = [

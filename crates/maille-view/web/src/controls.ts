@@ -2,44 +2,13 @@
 
 import { h, short } from "./dom";
 import { widths } from "./limits";
+import { ParameterSliders } from "./parameter-sliders";
 import type { Side } from "./side";
+import { Slider } from "./slider";
 import type { ColorBy } from "./drawing";
 import type { ViewState } from "./state";
 
 const TILES = ["4", "6", "8", "12", "16", "24", "41"];
-
-export class Slider {
-  readonly node: HTMLElement;
-  private input: HTMLInputElement;
-  private output = h("output", {});
-
-  constructor(label: string, [min, max, step]: [number, number, number], onInput: (x: number) => void) {
-    const oninput = () => onInput(Number(this.input.value));
-    this.input = h("input", { type: "range", "aria-label": label, min, max, step, oninput });
-    this.node = h("label", { class: "slider" }, h("span", {}, label), this.input, this.output);
-  }
-
-  set(value: number, words: string): void {
-    const { input } = this;
-    // Not under the hand that drags it.
-    if (document.activeElement !== input || Number(input.value) !== value) input.value = String(value);
-    this.output.textContent = words;
-  }
-
-  /** The wire radius of `side`: up to where its rings no longer fit. */
-  setWire(side: Side, unit: string): void {
-    const R = side.own?.reference_radius ?? 1;
-    const r = side.minorRadius ?? side.design?.minor_radius ?? null;
-    const step = 10 ** Math.floor(Math.log10(R / 100));
-    this.input.disabled = r === null;
-    Object.assign(this.input, {
-      min: step,
-      max: Math.max(0.35 * R, 1.3 * (side.design?.minor_radius ?? 0)),
-      step: step / 2,
-    });
-    this.set(r ?? 0, r === null ? "by ring" : `${short(r, 4)}${unit}`);
-  }
-}
 
 function select<T extends string>(label: string, options: [T, string][], chosen: T, set: (value: T) => void) {
   const node = h(
@@ -66,6 +35,7 @@ export class Controls {
   private l2: Slider;
   private wire: Slider;
   private spacing: Slider;
+  private parameters: ParameterSliders;
   private free: HTMLInputElement;
   private widths = h("div", { class: "chips", role: "group", "aria-label": "Width of the record" });
   private elements: HTMLSelectElement;
@@ -81,6 +51,7 @@ export class Controls {
     this.l2 = new Slider("Width held, l₂", [-0.25, 0.25, 0.025], (l2) => all({ l2, free: false }));
     this.wire = new Slider("Wire radius", [0, 1, 0.001], (minorRadius) => void a.change({ minorRadius }));
     this.spacing = new Slider("Spacing", [0.8, 1.25, 0.005], (x) => void a.change({ spacing: x === 1 ? null : x }));
+    this.parameters = new ParameterSliders(a, (name, x) => void a.setParameter(name, x));
     this.free = h("input", { type: "checkbox", onchange: () => all({ free: this.free.checked }) });
     this.elements = h("select", {
       "aria-label": "Element",
@@ -93,6 +64,7 @@ export class Controls {
       h("label", { class: "check" }, this.free, "width free, as in a pull test"),
       this.wire.node,
       this.spacing.node,
+      this.parameters.node,
     );
     const tiles = TILES.map((n): [string, string] => [n, `${n} × ${n}`]);
     this.tiles = select("Cells", tiles, "8", (n) => state.set({ tile: [Number(n), Number(n)] }));
@@ -146,6 +118,7 @@ export class Controls {
     this.free.checked = a.free;
     this.wire.setWire(a, unitOf(a));
     this.spacing.set(a.spacing ?? 1, `× ${short(a.spacing ?? 1, 3)}`);
+    this.parameters.draw();
     this.drawWidths();
     this.drawElements();
     this.command.textContent = a.command;

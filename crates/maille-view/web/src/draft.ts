@@ -78,7 +78,7 @@ export class Draft {
     this.working = true;
     for (let step = this.waiting.shift(); step; step = this.waiting.shift()) {
       try {
-        await this.side.change({ text: await step.run(), minorRadius: null, spacing: null });
+        await this.side.change({ text: await step.run(), minorRadius: null, spacing: null, parameters: {} });
       } catch (error) {
         this.refuse(error);
       }

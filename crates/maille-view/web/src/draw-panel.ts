@@ -242,7 +242,7 @@ export class DrawPanel {
     const name = `${plainName(design.name)}-copy`;
     try {
       const copied = await api.edit(text, [{ field: "name", value: JSON.stringify(name) }]);
-      await this.open({ name: `${name}.toml`, text: copied, file: null, map: null, simulation: null });
+      await this.open({ ...api.PLAIN, name: `${name}.toml`, text: copied });
     } catch (error) {
       this.saving.refuse(error);
     }

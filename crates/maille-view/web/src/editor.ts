@@ -5,6 +5,7 @@ import { plainName, withoutElement, withRing } from "./design-text";
 import { h } from "./dom";
 import { Draft } from "./draft";
 import { ElementTable } from "./element-table";
+import { ParameterSliders, written } from "./parameter-sliders";
 import { problemList } from "./problems";
 import { SaveRow } from "./save-row";
 import type { Side } from "./side";
@@ -18,6 +19,7 @@ export class Editor {
   private gutter = h("div", { class: "gutter", "aria-hidden": "true" });
   private problems = h("div", { class: "problems", role: "status", "aria-live": "polite" });
   private draft: Draft;
+  private parameters: ParameterSliders;
   private table: ElementTable;
   private saving: SaveRow;
 
@@ -38,6 +40,10 @@ export class Editor {
       (error) => this.saving.refuse(error),
       () => this.draw(),
     );
+    // What the sliders of the map have changed is written with it.
+    const write = (name: string, x: number) =>
+      this.draft.set(() => written({ ...side.parameters, [name]: x }), `parameters.${name}`);
+    this.parameters = new ParameterSliders(side, write, false);
     this.table = new ElementTable(this.draft, (index) => this.remove(index));
     const add = h("button", { type: "button", onclick: () => this.add() }, "Add element");
     this.saving = new SaveRow(side, add);
@@ -46,6 +52,7 @@ export class Editor {
       { class: "editor", "aria-label": "Design editor" },
       h("div", { class: "text-box" }, this.gutter, this.area),
       this.problems,
+      this.parameters.node,
       this.table.node,
       this.saving.node,
       this.weaves(weaves),
@@ -113,6 +120,7 @@ export class Editor {
     const number = (_: unknown, k: number) => h("span", { class: wrong.has(k + 1) ? "wrong" : "" }, String(k + 1));
     this.gutter.replaceChildren(...Array.from({ length: count }, number));
     this.problems.replaceChildren(...problemList(side, ({ line, column }) => this.go(line, column)));
+    this.parameters.draw();
     this.table.draw(side.design);
   }
 

@@ -22,11 +22,11 @@ export function problemList(side: Side, go: (problem: ListedProblem) => void): H
   );
   const count = side.own?.pairs.filter((p) => p.number).length ?? 0;
   const fine = h("p", { class: "fine" }, `no problems; ${count} links in a cell`);
-  return [...(problems.length ? problems : [fine]), ...changed(side)];
+  return [...(problems.length ? problems : [fine]), ...changedList(side)];
 }
 
 /** The links that are broken and those that are new, in the colours of the picture. */
-function changed(side: Side): HTMLElement[] {
+export function changedList(side: Side): HTMLElement[] {
   const all = side.changedLinks;
   return (["broken", "new"] as const).flatMap((kind) => {
     const links = all.filter((link) => link.kind === kind);

@@ -9,6 +9,9 @@ import { changedLinks, type ChangedLink } from "./links";
 import type { Design, Limit, ListedProblem, Refused, Sheet, Shown, Subject } from "./types";
 
 const SESSION = Math.random().toString(36).slice(2);
+/** What changes the start. */
+const GEOMETRY = ["minorRadius", "spacing", "parameters", "text"] as const;
+type Geometry = (typeof GEOMETRY)[number];
 const COARSE = 15;
 const FINE = 5;
 
@@ -26,6 +29,8 @@ export class Side {
   /** What the sliders change. */
   minorRadius: number | null = null;
   spacing: number | null = null;
+  /** Values of parameters in place of the file's. */
+  parameters: Record<string, number> = {};
   l2 = 0;
   free = false;
   /** The design as the file says, and its start as the sliders say. */
@@ -69,6 +74,7 @@ export class Side {
     this.cancel();
     const { choice } = this;
     Object.assign(this, { name: shown.name, file: shown.file, text: shown.text, minorRadius: null, spacing: null });
+    this.parameters = { ...shown.parameters };
     Object.assign(this, {
       base: null,
       own: null,
@@ -125,7 +131,8 @@ export class Side {
   }
 
   get subject(): Subject {
-    return { name: this.name, text: this.text, minor_radius: this.minorRadius, spacing: this.spacing };
+    const { name, text, minorRadius: minor_radius, spacing, parameters } = this;
+    return { name, text, minor_radius, spacing, parameters };
   }
 
   /** Asks what is wrong with the design, and what it looks like. False if it cannot be solved, or this is old. */
@@ -151,12 +158,12 @@ export class Side {
   }
 
   /** Something was dragged: the start is shown at once, the limits follow. Whatever was under way is dropped. */
-  async change(what: Partial<Pick<Side, "minorRadius" | "spacing" | "l2" | "free" | "text">>): Promise<void> {
+  async change(what: Partial<Pick<Side, Geometry | "l2" | "free">>): Promise<void> {
     if (this.frames) return; // nothing of a simulation is solved anew
     Object.assign(this, what);
     this.cancel();
     this.source = null;
-    const geometry = "minorRadius" in what || "spacing" in what || "text" in what;
+    const geometry = GEOMETRY.some((field) => field in what);
     if (this.limits.length) this.old = this.limits;
     this.limits = [];
     if (geometry) this.sheets.clear();
@@ -164,6 +171,13 @@ export class Side {
     if (this.choice) this.choice = { ...this.choice, l2: this.free ? 0 : this.l2 };
     this.changed();
     if (geometry ? await this.judge() : !this.problems.length) this.solveLater();
+  }
+
+  /** A parameter was dragged; one that has the file's value again is left to the file. */
+  setParameter(name: string, value: number): Promise<void> {
+    const { [name]: _, ...others } = this.parameters;
+    const usual = this.design?.parameters?.find((p) => p.name === name)?.value;
+    return this.change({ parameters: value === usual ? others : { ...others, [name]: value } });
   }
 
   fail(error: unknown): void {
@@ -271,6 +285,14 @@ export class Side {
     this.frames.measure(t).then(this.changed, (error: unknown) => this.fail(error));
   }
 
+  /** The wire of the rings that give none of their own, as it is drawn. */
+  get wire(): number | null {
+    const common = this.design?.minor_radius ?? null;
+    if (this.minorRadius !== null || common === null) return this.minorRadius;
+    const ring = this.design?.elements.flatMap((e) => e.rings).findIndex((r) => r.minor_radius == null) ?? -1;
+    return this.own?.rings[ring]?.minor_radius ?? common;
+  }
+
   /** The links that the design has now are those to keep. */
   keepLinks(): void {
     this.base = this.own;
@@ -292,8 +314,9 @@ export class Side {
     }
     const direction = this.choice ? this.choice.direction : "0:180:5";
     const l2 = this.choice?.l2 ?? this.l2;
+    const set = Object.entries(this.parameters).map(([name, value]) => ` --set ${name}=${value}`);
     const radius = this.minorRadius === null ? "" : ` --minor-radius ${this.minorRadius}`;
     const width = this.free ? "--lateral free" : `--l2 ${l2}`;
-    return `maille characterize ${quoted(this.name)}${radius} --directions ${direction} ${width}`;
+    return `maille characterize ${quoted(this.name)}${set.join("")}${radius} --directions ${direction} ${width}`;
   }
 }

@@ -104,7 +104,7 @@ export class ViewState {
   private async openDesign(): Promise<void> {
     const { frames, own, text } = this.a;
     if (!frames) return;
-    await this.a.open({ name: `${own?.name ?? "sheet"}.toml`, file: null, text, map: null, simulation: null });
+    await this.a.open({ ...api.PLAIN, name: `${own?.name ?? "sheet"}.toml`, text });
   }
 
   /** Opens a built-in design, a record, or again what was opened first. */
@@ -138,7 +138,7 @@ export class ViewState {
   /** Compares with the first design itself, to change its wire; a simulation with itself. */
   async compareSame(): Promise<void> {
     const { name, file, text, frames } = this.a;
-    await this.b.open({ name, file, text, map: null, simulation: frames?.simulation ?? null });
+    await this.b.open({ ...api.PLAIN, name, file, text, simulation: frames?.simulation ?? null });
     await this.chooseSecond();
   }
 

@@ -203,9 +203,9 @@ export interface Palette {
 export interface Parameter {
   name: string;
   value: number;
-  formula: string | null;
-  min: number | null;
-  max: number | null;
+  formula?: string | null;
+  min?: number | null;
+  max?: number | null;
 }
 
 export interface PoseRecord {
@@ -260,6 +260,7 @@ export interface Shown {
   name: string;
   file: string | null;
   text: string;
+  parameters: Record<string, number>;
   map: ShownMap | null;
   simulation: ShownSimulation | null;
 }
@@ -352,6 +353,7 @@ export interface Subject {
   text: string;
   minor_radius: number | null;
   spacing: number | null;
+  parameters: Record<string, number>;
 }
 
 export interface Text {

@@ -11,6 +11,7 @@ import json
 import os
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import pyarrow
 from pyarrow import parquet
@@ -21,6 +22,8 @@ from ..errors import ChainError, MailleError
 
 #: Column of the state beside those of `limits.csv`: the line of `states.jsonl`.
 STATE = "state"
+#: A worker keeps nothing.
+ALONE: dict[str, Any] = {"out": None, "overwrite": False, "sensitivities": False, "progress": None, "threads": 1}
 #: Rows and states, both as JSON.
 Limits = list[tuple[str, str]]
 
@@ -39,7 +42,7 @@ def solve(design: Design, question: str, directions_deg: list[float], version: s
         return ChainError(f"the worker has maille {_native.__VERSION__}, not {version}")
     chain = json.dumps({**json.loads(question), "directions_deg": directions_deg})
     try:
-        found = _native.characterize(design._inner, chain, "stretch", out=None, overwrite=False, progress=None, threads=1)
+        found = _native.characterize(design._inner, chain, "stretch", **ALONE)
     except MailleError as error:
         return error
     return Solved(found.limits(), found.parquet(True))

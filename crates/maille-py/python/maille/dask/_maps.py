@@ -25,6 +25,18 @@ if TYPE_CHECKING:
     import distributed
 
 
+@dataclass(frozen=True)
+class Keep:
+    """What is kept of each map beside its limits."""
+
+    #: What the plot shows.
+    quantity: Quantity
+    #: Whether records of other inputs are replaced.
+    overwrite: bool
+    #: Whether the derivatives of the limits are written.
+    sensitivities: bool
+
+
 def characterize(
     designs: Designs,
     directions: str | ArrayLike | None = None,
@@ -42,6 +54,7 @@ def characterize(
     energy: dict[str, Any] | None = None,
     quantity: Quantity = "stretch",
     overwrite: bool = False,
+    sensitivities: bool = False,
     retries: int = 2,
     progress: Progress = None,
 ) -> Results:
@@ -52,7 +65,7 @@ def characterize(
     kept in the folder `out` as they come in, and the same call goes on where an earlier one stopped. A chain whose worker is
     lost is solved again by another one; one that raises is tried `retries` times more. What cannot be used is in `.failures`,
     and stops nothing else. `client` is by default the current one of `dask.distributed`. `overwrite` replaces
-    records of other inputs; chains that are part of both stay. The other arguments are those of `maille.characterize`.
+    records of other inputs; chains that are part of both stay. With `sensitivities` each record has the derivatives of its limits. The other arguments are those of `maille.characterize`.
     """
     question = _question(
         directions,
@@ -67,16 +80,16 @@ def characterize(
         energy=energy,
     )
     asked = {name: (design, question) for name, design in named(designs).items()}
-    return run(asked, out, client, quantity=quantity, overwrite=overwrite, retries=retries, progress=progress)
+    keep = Keep(quantity, overwrite, sensitivities)
+    return run(asked, out, client, keep, retries=retries, progress=progress)
 
 
 def run(
     asked: Mapping[str, tuple[Design | MailleError, str]],
     out: str | os.PathLike[str],
     client: distributed.Client | None,
+    keep: Keep,
     *,
-    quantity: Quantity,
-    overwrite: bool,
     retries: int,
     progress: Progress,
 ) -> Results:
@@ -90,7 +103,7 @@ def run(
         try:
             if isinstance(design, MailleError):
                 raise design
-            maps[name] = _Map.open(folder, name, design, question, quantity, overwrite)
+            maps[name] = _Map.open(folder, name, design, question, keep)
         except RecordError:
             # No other run gets a folder as long as a map has it open, and the traceback keeps the maps.
             for map in maps.values():
@@ -155,10 +168,11 @@ class _Map:
     record: Record | None = None
 
     @classmethod
-    def open(cls, out: Path, name: str, design: Design, question: str, quantity: Quantity, overwrite: bool) -> _Map:
+    def open(cls, out: Path, name: str, design: Design, question: str, keep: Keep) -> _Map:
         """Brings the record and the chains' files to the same state: what one of them has, the other gets."""
         folder = out / CHAINS / f"record={name}"
-        native = _native.OpenMap(design._inner, question, quantity, os.fspath(out / RECORDS / name), overwrite)
+        record = os.fspath(out / RECORDS / name)
+        native = _native.OpenMap(design._inner, question, keep.quantity, record, keep.overwrite, keep.sensitivities)
         chains = [
             _Chain(directions, left, hash, folder / f"{directions[0]:g}-{hash[:32]}.parquet")
             for directions, left, hash in native.chains()
@@ -166,7 +180,7 @@ class _Map:
         map = cls(name, design, native, len(chains))
         try:
             folder.mkdir(parents=True, exist_ok=True)
-            _clear(folder, {chain.file.name for chain in chains}, overwrite)
+            _clear(folder, {chain.file.name for chain in chains}, keep.overwrite)
             for chain in chains:
                 if chain.left > 0:
                     found = read_limits(chain.file)

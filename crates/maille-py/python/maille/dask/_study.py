@@ -11,7 +11,7 @@ from .. import _native
 from ..design import Design, designs
 from ..errors import ArgumentError, MailleError
 from ..record import Progress
-from ._maps import run
+from ._maps import Keep, run
 from ._results import Results
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ def sweep(
     plan = _plan(json.loads(_native.study(str(file), text)), file.parent)
     if out is None:
         out = Path("maille-out") / _native.folder_name(file.stem)
-    return run(plan, out, client, quantity="stretch", overwrite=overwrite, retries=retries, progress=progress)
+    return run(plan, out, client, Keep("stretch", overwrite, sensitivities=False), retries=retries, progress=progress)
 
 
 def _plan(of_study: list[dict[str, Any]], folder: Path) -> dict[str, tuple[Design | MailleError, str]]:

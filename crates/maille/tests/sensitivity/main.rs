@@ -1,12 +1,16 @@
 //! Derivatives of limits against differences of limits that are solved anew.
 
+mod builtin;
+mod compare;
+
+use compare::{Case, Tally, compare, limit, loaded, raw_numbers};
 use maille::{
-    Across, Answer, Cell, Design, Goal, Question, Sense, Sheet, Status, Strain,
+    Across, Answer, Cell, Design, Goal, Question, Sense, Sheet, Strain,
     sensitivity::{DesignVector, Sensitivity, Slope, gradient},
 };
 use maille_geometry::Vec3;
 use nalgebra::UnitQuaternion;
-use std::{collections::BTreeSet, time::Instant};
+use std::time::Instant;
 
 fn builtin(name: &str) -> Design {
     maille_io::read_design(name, maille_io::builtin(name).unwrap()).unwrap()
@@ -26,217 +30,6 @@ fn rings(design: &Design) -> usize {
     design.elements.iter().map(|element| element.rings.len()).sum()
 }
 
-/// One unit change for each raw number of the design, by its name.
-fn raw_numbers(design: &Design) -> Vec<(String, DesignVector)> {
-    let zeros = || DesignVector::zeros(rings(design));
-    let mut out = Vec::new();
-    for k in 0..4 {
-        let mut change = zeros();
-        change.lattice[k / 2][k % 2] = 1.0;
-        out.push((format!("a{}.{}", k / 2 + 1, ["x", "y"][k % 2]), change));
-    }
-    for ring in 0..rings(design) {
-        let mut add = |what: &str, set: &dyn Fn(&mut maille::sensitivity::RingVector)| {
-            let mut change = zeros();
-            set(&mut change.rings[ring]);
-            out.push((format!("ring {ring} {what}"), change));
-        };
-        add("R", &|r| r.major_radius = 1.0);
-        add("r", &|r| r.minor_radius = 1.0);
-        for k in 0..3 {
-            add(&format!("offset {k}"), &|r| r.offset[k] = 1.0);
-            add(&format!("tilt {k}"), &|r| r.tilt[k] = 1.0);
-        }
-    }
-    out
-}
-
-/// Pairs that carry.
-fn loaded(answer: &Answer) -> BTreeSet<(usize, usize, [i32; 2])> {
-    let carrying = answer.contacts.iter().filter(|contact| contact.force > 1e-6);
-    carrying.map(|contact| (contact.pair.ring_a, contact.pair.ring_b, contact.pair.shift)).collect()
-}
-
-/// The limit. One that attains its bound can stay 1e-10 below it, which differences would multiply.
-fn limit(answer: &Answer) -> Option<f64> {
-    if answer.status == Status::Global { answer.bound } else { answer.limit() }
-}
-
-/// Limits at these multiples of h along `change`, if all are found and `kept` is true of their answers.
-fn limits<const N: usize>(
-    (design, question, change): (&Design, &Question, &DesignVector),
-    h: f64,
-    steps: [f64; N],
-    kept: impl Fn(&[Answer]) -> bool,
-) -> Option<[f64; N]> {
-    let answers = steps.map(|step| solved(&change.applied(design, step * h), question).1);
-    if !kept(&answers) {
-        return None;
-    }
-    let values: Option<Vec<f64>> = answers.iter().map(limit).collect();
-    values?.try_into().ok()
-}
-
-/// Derivatives agree with differences to this.
-const AGREE: f64 = 1e-5;
-
-/// Counts and largest errors of compared derivatives. An error is relative to the derivative, or to 0.01 where that is larger, with
-/// lengths in reference radii.
-#[derive(Debug, Default)]
-struct Tally {
-    limits: usize,
-    /// With one choice of forces.
-    unique: usize,
-    /// Derivatives compared with central differences.
-    compared: usize,
-    /// Where the loaded contacts change within the differences.
-    changed: usize,
-    worst: f64,
-    where_worst: String,
-    /// Numbers with different derivatives to both sides.
-    kinks: usize,
-    /// One-sided derivatives compared with one-sided differences.
-    sides: usize,
-    sides_changed: usize,
-    /// Derivatives and sides of an error above [`AGREE`].
-    wrong: usize,
-}
-
-/// A limit with its derivatives.
-struct Case<'a> {
-    design: &'a Design,
-    question: &'a Question,
-    answer: &'a Answer,
-    found: &'a Sensitivity,
-    label: String,
-}
-
-impl Case<'_> {
-    /// Steps of differences, in the design's unit or radians: the solves' rounding spoils short ones, curvature long ones.
-    fn steps(&self, number: &str) -> [f64; 5] {
-        [1e-4, 1e-5, 1e-3, 1e-6, 1e-7]
-            .map(|h| h * if number.contains("tilt") { 1.0 } else { self.design.reference_radius })
-    }
-
-    fn error(&self, number: &str, derivative: f64, difference: f64) -> f64 {
-        let unit = if number.contains("tilt") { 1.0 } else { self.design.reference_radius };
-        (derivative - difference).abs() * unit / (difference.abs() * unit).max(0.01)
-    }
-
-    /// The difference that is nearest to the derivative, with its error: of the first step that agrees, if one does. `None` where
-    /// other contacts carry within the first step.
-    fn nearest(&self, number: &str, derivative: f64, of: impl Fn(f64) -> Option<f64>) -> Option<(f64, f64)> {
-        let mut best = None;
-        for (k, h) in self.steps(number).into_iter().enumerate() {
-            let Some(difference) = of(h) else { if k == 0 { return None } else { continue } };
-            let error = self.error(number, derivative, difference);
-            if best.is_none_or(|(_, least)| error < least) {
-                best = Some((difference, error));
-            }
-            if error <= AGREE {
-                break;
-            }
-        }
-        best
-    }
-
-    /// By central differences of fourth order, where the loaded contacts stay.
-    fn central(&self, number: &str, change: &DesignVector, tally: &mut Tally) {
-        let derivative = self.found.along(change);
-        let kept = |answers: &[Answer]| answers.iter().all(|a| loaded(a) == loaded(self.answer));
-        let difference = |h: f64| {
-            let asked = (self.design, self.question, change);
-            let [f0, f1, f2, f3] = limits(asked, h, [-2.0, -1.0, 1.0, 2.0], kept)?;
-            Some((f0 - 8.0 * f1 + 8.0 * f2 - f3) / (12.0 * h))
-        };
-        let Some((difference, error)) = self.nearest(number, derivative, difference) else {
-            tally.changed += 1;
-            return;
-        };
-        tally.compared += 1;
-        tally.judge(error, format!("{} {number}: {derivative} {difference}", self.label));
-    }
-
-    /// By differences of third order to each side, where the loaded contacts stay the same on that side.
-    fn sides(&self, number: &str, change: &DesignVector, tally: &mut Tally) {
-        let both = self.found.one_sided(change);
-        tally.kinks += usize::from(both.is_kink());
-        let f0 = limit(self.answer).unwrap();
-        for (slope, sign) in [(both.backward, -1.0), (both.forward, 1.0)] {
-            let derivative = slope.finite().unwrap_or(f64::NAN);
-            let kept = |answers: &[Answer]| answers.iter().all(|a| loaded(a) == loaded(&answers[0]));
-            let difference = |h: f64| {
-                let (asked, h) = ((self.design, self.question, change), sign * h);
-                let [f1, f2, f3] = limits(asked, h, [1.0, 2.0, 3.0], kept)?;
-                Some((-11.0 * f0 + 18.0 * f1 - 9.0 * f2 + 2.0 * f3) / (6.0 * h))
-            };
-            let Some((difference, error)) = self.nearest(number, derivative, difference) else {
-                tally.sides_changed += 1;
-                continue;
-            };
-            tally.sides += 1;
-            tally.judge(error, format!("{} {number} {sign}: {both:?} {difference}", self.label));
-        }
-    }
-}
-
-impl Tally {
-    fn judge(&mut self, error: f64, words: String) {
-        if error.is_nan() || error > AGREE {
-            self.wrong += 1;
-            println!("  {words}");
-        }
-        if error.is_nan() || error > self.worst {
-            (self.worst, self.where_worst) = (error, words);
-        }
-    }
-}
-
-fn compare(name: &str, directions: &[f64], l2: &[f64], tally: &mut Tally) {
-    let design = &builtin(name);
-    for (&direction, &l2) in directions.iter().flat_map(|d| l2.iter().map(move |l2| (d, l2))) {
-        let question = &stretch(direction, l2);
-        let (sheet, answer) = &solved(design, question);
-        if !answer.is_limit() {
-            continue;
-        }
-        tally.limits += 1;
-        let found = &Sensitivity::of(&sheet.model_of(answer), question, answer).unwrap();
-        let case = Case { design, question, answer, found, label: format!("{name} {direction}° l2 {l2}") };
-        tally.unique += usize::from(found.forces_are_unique());
-        for (number, change) in raw_numbers(design) {
-            match found.forces_are_unique() && !found.images_tie(&change) {
-                true => case.central(&number, &change, tally),
-                false => case.sides(&number, &change, tally),
-            }
-        }
-    }
-}
-
-#[test]
-fn derivatives_are_those_of_limits_solved_anew() {
-    let mut tally = Tally::default();
-    for name in ["1.1", "2", "4.1"] {
-        compare(name, &[0.0, 10.0, 33.0], &[0.0, -0.05], &mut tally);
-    }
-    println!("{tally:#?}");
-    assert!(tally.compared > 300, "{tally:#?}");
-    assert!(tally.sides > 100 && tally.wrong == 0, "{tally:#?}");
-}
-
-#[test]
-#[ignore = "an hour; fails by 1.2e-5 at one number of king's mail, see docs/theory/sensitivity.md"]
-fn derivatives_of_all_builtin_designs() {
-    let mut wrong = 0;
-    for builtin in maille_io::builtin_designs() {
-        let mut tally = Tally::default();
-        compare(builtin.name, &[0.0, 10.0, 33.0], &[0.0, -0.05], &mut tally);
-        println!("{}: {tally:?}", builtin.name);
-        wrong += tally.wrong;
-    }
-    assert_eq!(wrong, 0);
-}
-
 /// Along 45° the chains of 1.1 along 0° and 90° are taut at once: longer rings in one of them alone do nothing, shorter ones cost.
 /// Both chains have the length P = 2 (R + R') − 2 (r + r') = 3.6, 1.44 times the spacing s, so (1 + l1)² = 2 (P/s)² − 1.
 #[test]
@@ -244,7 +37,7 @@ fn both_sides_of_a_kink() {
     let mut tally = Tally::default();
     compare("1.1", &[45.0, 135.0], &[0.0], &mut tally);
     println!("{tally:#?}");
-    assert!(tally.kinks >= 16 && tally.sides > 100 && tally.wrong == 0, "{tally:#?}");
+    assert!(tally.kinks >= 16 && tally.sides > 100 && tally.wrong + tally.changed + tally.no_limit == 0, "{tally:#?}");
 
     let (design, question) = (builtin("1.1"), stretch(45.0, 0.0));
     let (sheet, answer) = solved(&design, &question);
@@ -320,6 +113,21 @@ fn times_of_derivatives_and_of_their_limit() {
         let elements = model.elements.len();
         println!("{name}, {elements} elements: limit {solve:.2e} s, {} derivatives {each:.2e} s", changes.len());
     }
+}
+
+/// Limits at these multiples of h along `change`, if all are found and `kept` is true of their answers.
+fn limits<const N: usize>(
+    (design, question, change): (&Design, &Question, &DesignVector),
+    h: f64,
+    steps: [f64; N],
+    kept: impl Fn(&[Answer]) -> bool,
+) -> Option<[f64; N]> {
+    let answers = steps.map(|step| solved(&change.applied(design, step * h), question).1);
+    if !kept(&answers) {
+        return None;
+    }
+    let values: Option<Vec<f64>> = answers.iter().map(limit).collect();
+    values?.try_into().ok()
 }
 
 /// The other goals, by central differences along the wire, the spacing and one ring's size.
