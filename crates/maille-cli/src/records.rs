@@ -7,7 +7,7 @@ use crate::{
 use maille::survey::surface::Boundary;
 use maille_io::{
     boundary::{SURFACE, SurfaceRecord, open_surface},
-    record::NamedRecord,
+    record::{NamedRecord, Record},
 };
 use miette::Result;
 use std::path::{Path, PathBuf};

@@ -180,7 +180,9 @@ mod tests {
     fn holds(text: &str, limit: &LimitRow) -> bool {
         let conditions = Condition::parse_list(text).unwrap_or_else(|e| panic!("{text}: {e}"));
         let design = crate::read_design("1.1", crate::builtin("1.1").unwrap()).unwrap();
-        conditions.iter().all(|condition| condition.holds(&Row { record: "a/b", design: &design, limit }))
+        conditions
+            .iter()
+            .all(|condition| condition.holds(&Row { record: "a/b", design: &design, limit, sensitivities: &[] }))
     }
 
     #[test]

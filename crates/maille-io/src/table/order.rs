@@ -68,7 +68,7 @@ mod tests {
             let mut order = [0, 1, 2, 3];
             let design = crate::read_design("1.1", crate::builtin("1.1").unwrap()).unwrap();
             order.sort_by(|&a, &b| {
-                let row = |i: usize| Row { record: "", design: &design, limit: &rows[i] };
+                let row = |i: usize| Row { record: "", design: &design, limit: &rows[i], sensitivities: &[] };
                 compare(&keys, &row(a), &row(b))
             });
             order
