@@ -3,8 +3,7 @@
 
 use super::{
     options::{
-        FEASIBLE, HOPELESS_GAIN, HOPELESS_ROUNDS, RESTART_SIZE, ROUNDS, SAME_UNCERTIFIED, SLOW_GAIN, SLOW_ITERATIONS,
-        STALLED_GAIN,
+        FEASIBLE, HOPELESS_GAIN, HOPELESS_ROUNDS, RESTART_SIZE, ROUNDS, SLOW_GAIN, SLOW_ITERATIONS, STALLED_GAIN,
     },
     starts::perturbed,
 };
@@ -76,9 +75,7 @@ pub(super) fn local_maximize(
     rng: &mut ChaCha8Rng,
     cancel: &AtomicBool,
 ) -> (Option<LocalSolution>, u64) {
-    let Course { restarts, first_radius, known } = course;
-    let floor = known.filter(|known| known.1).map_or(f64::NEG_INFINITY, |known| known.0);
-    let stuck = known.filter(|known| !known.1).map_or(f64::NAN, |known| known.0);
+    let Course { restarts, first_radius, floor } = course;
     let mut rounds = Rounds { model, cancel, floor, iterations: 0, hopeless: false, last_resort: None };
     let (mut x, mut best): (Posed, Option<Solve>) = (start, None);
     for restart in 0..=restarts {
@@ -93,12 +90,11 @@ pub(super) fn local_maximize(
             break;
         }
         x = end;
-        let again = (program.value(&solve.x) - stuck).abs() < SAME_UNCERTIFIED;
         let better = best.as_ref().is_none_or(|b| program.value(&solve.x) > program.value(&b.x));
         if better && feasible(program, &solve.x) {
             best = Some(solve);
         }
-        if again || rounds.hopeless || cancel.load(Ordering::Relaxed) {
+        if rounds.hopeless || cancel.load(Ordering::Relaxed) {
             break;
         }
     }
@@ -114,9 +110,8 @@ pub(super) struct Course {
     pub restarts: usize,
     /// First half width of the trust box.
     pub first_radius: f64,
-    /// The best value of earlier starts in its cell, and whether it is certified. In a larger cell a start that will stay below a
-    /// certified one is given up; one that ends at the same value without a certificate is not begun again.
-    pub known: Option<(f64, bool)>,
+    /// The best certified value of earlier starts in its cell. In a larger cell a start that will stay below it is given up.
+    pub floor: f64,
 }
 
 struct Rounds<'a> {

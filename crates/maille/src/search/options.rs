@@ -124,8 +124,6 @@ pub(super) const HOPELESS_GAIN: f64 = 1e-4;
 pub(super) const RESTARTS: usize = 6;
 /// The same in larger cells, where it is costly.
 pub(super) const LARGER_CELL_RESTARTS: usize = 1;
-/// It does not where an earlier start of its cell ended within this of its value without a certificate, too: that one has begun again.
-pub(super) const SAME_UNCERTIFIED: f64 = 1e-6;
 /// Size of the first of these perturbations; the next ones are multiples.
 pub(super) const RESTART_SIZE: f64 = 0.003;
 
@@ -208,7 +206,6 @@ pub struct ExactParameters {
     restarts: usize,
     larger_cell_restarts: usize,
     restart_size: f64,
-    same_uncertified_within: f64,
     bound_retry_gap: f64,
     bound_retries: u64,
     bound_retry_size: f64,
@@ -261,7 +258,6 @@ impl ExactOptions {
             restarts: RESTARTS,
             larger_cell_restarts: LARGER_CELL_RESTARTS,
             restart_size: RESTART_SIZE,
-            same_uncertified_within: SAME_UNCERTIFIED,
             bound_retry_gap: BOUND_RETRY_GAP,
             bound_retries: BOUND_RETRIES,
             bound_retry_size: BOUND_RETRY_SIZE,
