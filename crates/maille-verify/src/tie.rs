@@ -5,7 +5,7 @@
 //! - **link** of a, b: w = (1, −1), L = R_a + R_b − r_a − r_b. Circle a passes the disc of b at a point p, r_a + r_b or more from circle b.
 //! - **strand pair**: a, a′ of different bodies, both linked with b, w = (½, ½, −1). Their points p, p′ in the disc of b are at most ϱ = R_b −
 //!   r_b − r_a and ϱ′ alike from c_b, and at least r_a + r_a′ apart. By the parallelogram law L = √(ϱ²/2 + ϱ′²/2 − (r_a + r_a′)²/4) + (R_a + R_a′)/2.
-//! - **crossing pairs**: a, a′ and b, b′ of one size with r/R ≤ 1/8, each of the first two linked with each of the others, a not with a′, b not
+//! - **crossing pairs**: a, a′ and b, b′ of one size with r/R ≤ 1/7, each of the first two linked with each of the others, a not with a′, b not
 //!   with b′: w = (½, ½, −½, −½). L is the least of (2ρ − 2r − 2rα)/√(1 − 2α²), ρ = √(1 − α²), over 0 ≤ α < 1/√2, in units of R: the theorem
 //!   of `docs/theory/bounds.md`.
 //! - **chain**: a walk of links and of rigid edges from a ring to its image at v: |F v| ≤ L, its length.
@@ -13,7 +13,7 @@
 use crate::sheet::{Pair, Ring, Sheet, Vec3};
 
 /// Largest minor radius in major radii for which the theorem on crossing pairs is proved.
-const THICKEST: f64 = 0.125;
+const THICKEST: f64 = 1.0 / 7.0;
 
 /// A ring and its cell.
 pub(crate) type Place = (usize, [i32; 2]);
@@ -171,7 +171,7 @@ mod tests {
     #[test]
     fn crossing_pairs_have_the_length_of_the_theorem() {
         // With tan φ = r (1 + 2 sin φ): (2 cos φ − 2r − 2r sin φ)/√(1 − 2 sin² φ).
-        for r in [0.001, 0.02, 0.05, 0.1, 0.125] {
+        for r in [0.001, 0.02, 0.05, 0.1, 0.125, THICKEST] {
             let mut phi = 0.0_f64;
             for _ in 0..200 {
                 phi = (r * (1.0 + 2.0 * phi.sin())).atan();

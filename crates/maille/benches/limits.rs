@@ -53,7 +53,7 @@ fn medians() {
                     &L2,
                     &AtomicBool::new(false),
                     &|_| (),
-                    &mut |k, limit| {
+                    &mut |k, limit, _| {
                         best[k] = best[k].min(begun.elapsed().as_secs_f64());
                         drop(divan::black_box(limit));
                         begun = Instant::now();
@@ -90,7 +90,7 @@ fn scaling() {
                 &[0.0],
                 &AtomicBool::new(false),
                 &|_| (),
-                &mut |_, limit| {
+                &mut |_, limit, _| {
                     found.push((begun.elapsed().as_secs_f64(), limit.iterations));
                     global += usize::from(limit.status == Status::Global);
                 },
@@ -127,9 +127,13 @@ fn exact_map(bencher: Bencher<'_, '_>, name: &str) {
     bencher.counter(ItemsCount::new(24 * L2.len())).bench_local(|| {
         let method = ExactMethod::new(&models, ExactOptions::default(), &AtomicBool::new(false));
         for direction in directions() {
-            method.limits(Direction::of_degrees(direction), &L2, &AtomicBool::new(false), &|_| (), &mut |_, limit| {
-                drop(divan::black_box(limit))
-            });
+            method.limits(
+                Direction::of_degrees(direction),
+                &L2,
+                &AtomicBool::new(false),
+                &|_| (),
+                &mut |_, limit, _| drop(divan::black_box(limit)),
+            );
         }
     });
 }
@@ -155,7 +159,7 @@ fn one_limit(bencher: Bencher<'_, '_>, what: &str) {
             ExactOptions { starts: Some(1), ..ExactOptions::default() },
             &AtomicBool::new(false),
         );
-        method.limits(Direction::of_degrees(15.0), &[0.0], &AtomicBool::new(false), &|_| (), &mut |_, limit| {
+        method.limits(Direction::of_degrees(15.0), &[0.0], &AtomicBool::new(false), &|_| (), &mut |_, limit, _| {
             drop(divan::black_box(limit))
         });
     });

@@ -143,7 +143,7 @@ fn link_bound_improves_branched_and_doubled_weaves() {
             _ => assert_eq!(better, 0, "{name}"),
         }
     }
-    // Four rings of a doubled weave cross: 2 L for 2 (1 + 1 - 2r) along the threads, at any r/R up to 1/8.
+    // Four rings of a doubled weave cross: 2 L for 2 (1 + 1 - 2r) along the threads, at any r/R up to 1/7.
     for r in [0.1, 0.05, 0.02] {
         let (chain, link) = bounds("5.1", r, "1x1");
         let Bound::Finite { l1, .. } = best_bound(&chain, Some(&link), Direction::of_degrees(0.0), 0.0) else {

@@ -9,6 +9,7 @@ use maille::{
     model::Model,
     record::{LimitRow, StateRecord, Status},
     search::ExactOptions,
+    survey::Finished,
 };
 use maille_geometry::{Circle, Vec3, linking_number};
 use nalgebra::{Quaternion, Unit, UnitQuaternion};
@@ -285,6 +286,21 @@ fn thick_chain(minor_radius: f64, cell: &str) -> Model {
     );
     let design = maille_io::read_design("thick", &text).unwrap();
     Model::compile(&design, cell.parse().unwrap()).unwrap()
+}
+
+/// A fold that is found at l2 = 0.2 goes further at 0.1, too: with two starts the latter is not found from inside. Both rows are certified.
+#[test]
+fn a_fold_found_further_out_is_handed_back() {
+    let model = model("3.1", 0.1);
+    let options = ExactOptions { compression: true, starts: Some(2), ..ExactOptions::default() };
+    let least = |l2: &[f64]| -> Vec<f64> {
+        let rows = map(std::slice::from_ref(&model), &[0.0], l2, &options);
+        let certified = |found: &Finished| found.row.status == Status::Local && found.row.links_ok == Some(true);
+        assert!(rows.iter().all(certified));
+        rows.iter().filter_map(|found| found.row.l1).collect()
+    };
+    let (alone, handed) = (least(&[0.0, 0.1]), least(&[0.0, 0.1, 0.2]));
+    assert!(handed[1] < alone[1] - 0.01 && handed[0] <= alone[0], "{alone:?} {handed:?}");
 }
 
 /// A start that overlaps beyond repair is said to be one, at once and for every l2; one that can be freed is solved.

@@ -28,7 +28,7 @@ fn a_thousand_limits_leave_nothing_behind() {
     let mut map = || {
         let method = ExactMethod::new(&models, ExactOptions::default(), &AtomicBool::new(false));
         for k in 0..24 {
-            let mut count = |_, outcome: maille::answer::Answer| limits += usize::from(outcome.n_starts.is_some());
+            let mut count = |_, outcome: maille::answer::Answer, _| limits += usize::from(outcome.n_starts.is_some());
             method.limits(
                 Direction::of_degrees(7.5 * f64::from(k)),
                 &[-0.125, 0.0, 0.125],

@@ -2,7 +2,9 @@
 //! holds.
 
 use super::{
-    options::{FEASIBLE, RESTART_SIZE, ROUNDS, STALLED_GAIN},
+    options::{
+        FEASIBLE, HOPELESS_GAIN, HOPELESS_ROUNDS, RESTART_SIZE, ROUNDS, SLOW_GAIN, SLOW_ITERATIONS, STALLED_GAIN,
+    },
     starts::perturbed,
 };
 use crate::{
@@ -69,11 +71,12 @@ pub(super) fn local_maximize(
     model: &Model,
     program: &mut SheetProgram<'_>,
     start: Posed,
-    (restarts, first_radius): (usize, f64),
+    course: Course,
     rng: &mut ChaCha8Rng,
     cancel: &AtomicBool,
 ) -> (Option<LocalSolution>, u64) {
-    let mut rounds = Rounds { model, cancel, iterations: 0, last_resort: None };
+    let Course { restarts, first_radius, floor } = course;
+    let mut rounds = Rounds { model, cancel, floor, iterations: 0, hopeless: false, last_resort: None };
     let (mut x, mut best): (Posed, Option<Solve>) = (start, None);
     for restart in 0..=restarts {
         if restart > 0 {
@@ -91,7 +94,7 @@ pub(super) fn local_maximize(
         if better && feasible(program, &solve.x) {
             best = Some(solve);
         }
-        if cancel.load(Ordering::Relaxed) {
+        if rounds.hopeless || cancel.load(Ordering::Relaxed) {
             break;
         }
     }
@@ -101,9 +104,22 @@ pub(super) fn local_maximize(
     (best.map(LocalSolution::of), rounds.iterations)
 }
 
+/// How a local maximisation goes on from its start.
+pub(super) struct Course {
+    /// How often it begins again from a perturbed state where no certificate holds.
+    pub restarts: usize,
+    /// First half width of the trust box.
+    pub first_radius: f64,
+    /// The best certified value of earlier starts in its cell. In a larger cell a start that will stay below it is given up.
+    pub floor: f64,
+}
+
 struct Rounds<'a> {
     model: &'a Model,
     cancel: &'a AtomicBool,
+    floor: f64,
+    /// Whether the start was given up.
+    hopeless: bool,
     iterations: u64,
     /// Certified at a small cost in the value, if nothing better is found.
     last_resort: Option<Solve>,
@@ -132,13 +148,19 @@ impl Rounds<'_> {
         let mut known: Vec<Multiplier> = Vec::new();
         let (mut pause_at, mut first_radius) = (0.1, first_radius);
         let mut last = None;
+        let larger = self.model.cell.copies() > 1;
+        let mut gain = f64::INFINITY;
         for round in 0..ROUNDS {
-            let options = SqpOptions { pause_at, first_radius, ..SqpOptions::default() };
+            let mut options = SqpOptions { pause_at, first_radius, ..SqpOptions::default() };
+            if larger && gain.abs() < SLOW_GAIN {
+                options.max_iterations = SLOW_ITERATIONS;
+            }
             let before = program.value(&x);
             let end = maximize(program, x, known, &options, self.cancel);
             self.iterations += end.iterations as u64;
-            let used_up = self.model.cell.copies() > 1 && end.iterations >= options.max_iterations;
-            let stalled = used_up && program.value(&end.point) - before < STALLED_GAIN;
+            let used_up = larger && end.iterations >= options.max_iterations;
+            gain = program.value(&end.point) - before;
+            let stalled = used_up && gain < STALLED_GAIN;
             let ((polished, mut certificate), last_resort) = polish(program, &end);
             self.keep(program, last_resort);
             let locked = certificate.holds();
@@ -167,7 +189,9 @@ impl Rounds<'_> {
                 (pause_at, first_radius) = (1e-2, 0.03);
                 continue;
             }
-            if stalled || end.settled && round > 0 {
+            let promised = HOPELESS_ROUNDS * gain.abs().max(HOPELESS_GAIN);
+            self.hopeless = larger && round > 0 && program.value(&x) + promised < self.floor;
+            if self.hopeless || stalled || end.settled && round > 0 {
                 break;
             }
             pause_at *= 0.2;

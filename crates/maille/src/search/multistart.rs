@@ -5,7 +5,7 @@
 //! not on the number of threads.
 
 use super::{
-    local::{LocalSolution, local_maximize},
+    local::{Course, LocalSolution, local_maximize},
     options::{
         ATTAINED, BOUND_RETRIES, BOUND_RETRY_GAP, BOUND_RETRY_SIZE, CELL_PERTURBATION, EXPLORATIONS,
         LARGER_CELL_RESTARTS, OWN_IMAGE_FORCE, RESTARTS, SAME_VALUE, WIRE_PAUSE,
@@ -151,7 +151,9 @@ impl<T: Target> Multistart<'_, T> {
                 break;
             }
             let numbered: Vec<(u64, Start)> = (result.starts..).zip(starts).collect();
-            let solve = |(k, start): (u64, Start)| (!self.cancelled()).then(|| self.retried(model, start, k));
+            let certified = result.best.as_ref().filter(|best| best.certified);
+            let floor = certified.map_or(f64::NEG_INFINITY, LocalSolution::value);
+            let solve = |(k, start): (u64, Start)| (!self.cancelled()).then(|| self.retried(model, start, k, floor));
             let solved: Vec<Option<SearchResult>> = numbered.into_par_iter().with_max_len(1).map(solve).collect();
             solved.into_iter().flatten().for_each(|found| result.take(found));
         }
@@ -160,9 +162,9 @@ impl<T: Target> Multistart<'_, T> {
 
     /// One start. A certified solution just short of the upper bound is perturbed and solved again: in cells of many elements
     /// contacts that hardly carry can hold it there.
-    fn retried(&self, model: &Model, start: Start, number: u64) -> SearchResult {
+    fn retried(&self, model: &Model, start: Start, number: u64, floor: f64) -> SearchResult {
         let first = number * (1 + BOUND_RETRIES);
-        let mut result = self.solve(model, start, first);
+        let mut result = self.solve(model, start, first, floor);
         for retry in 1..=BOUND_RETRIES {
             let Some(solution) = result.best.as_ref().filter(|best| best.certified) else { break };
             let short = self.upper_bound - solution.value();
@@ -171,7 +173,7 @@ impl<T: Target> Multistart<'_, T> {
             }
             let from = self.target.start(solution);
             let state = perturbed(model, &from.state, BOUND_RETRY_SIZE, &mut rng(self.seed, Use::Retry, first + retry));
-            let again = self.solve(model, Start { state, ..from }, first + retry);
+            let again = self.solve(model, Start { state, ..from }, first + retry, floor);
             let better = again.best.filter(|new| (new.certified, new.value()) > (true, solution.value()));
             (result.iterations, result.runs) = (result.iterations + again.iterations, result.runs + again.runs);
             if let Some(better) = better {
@@ -183,7 +185,7 @@ impl<T: Target> Multistart<'_, T> {
     }
 
     /// One local maximisation, by the start's route.
-    fn solve(&self, model: &Model, start: Start, number: u64) -> SearchResult {
+    fn solve(&self, model: &Model, start: Start, number: u64, floor: f64) -> SearchResult {
         let route = start.route;
         let Entered { at, mut iterations } = self.target.enter(model, start, self.cancel);
         let one = SearchResult { starts: 1, runs: 1, ..SearchResult::default() };
@@ -199,9 +201,9 @@ impl<T: Target> Multistart<'_, T> {
             x = end.point;
         }
         let restarts = if model.cell.copies() > 1 { LARGER_CELL_RESTARTS } else { RESTARTS };
+        let course = Course { restarts, first_radius: route.first_radius, floor };
         let mut stream = rng(self.seed, Use::Restart, number);
-        let (best, more) =
-            local_maximize(model, &mut program, x, (restarts, route.first_radius), &mut stream, self.cancel);
+        let (best, more) = local_maximize(model, &mut program, x, course, &mut stream, self.cancel);
         let distinct = best.iter().filter(|best| best.certified).map(|best| (best.value(), 1)).collect();
         let first = best.as_ref().map(LocalSolution::value);
         SearchResult { best, first, distinct, iterations: iterations + more, ..one }

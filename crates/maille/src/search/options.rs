@@ -94,6 +94,14 @@ pub(super) const EXPLORATIONS: [Exploration; 8] = [
     exploration(20, 0.1, &[0.2, 0.5, 0.8], FIRST_RADIUS),
     exploration(20, 0.1, &[], 0.03),
 ];
+/// One of so many starts of a least stretch is buckled, see [`super::starts`].
+pub(super) const BUCKLED_SHARE: usize = 3;
+/// Its waves, in periods along the cell's two vectors: they take turns.
+pub(super) const BUCKLED_WAVES: [[f64; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [1.0, -1.0]];
+/// Its height is drawn from these, in R.
+pub(super) const BUCKLED_HEIGHT: std::ops::Range<f64> = 0.2..1.0;
+/// Its elements are moved in so many steps, each as far as no circle can meet another.
+pub(super) const BUCKLED_STEPS: u32 = 4;
 /// A solve with another wire pauses when its steps are shorter than this: only where it goes matters.
 pub(super) const WIRE_PAUSE: f64 = 1e-2;
 /// Size of the perturbation of a start that goes straight from the design's state: it only breaks symmetries.
@@ -104,6 +112,14 @@ pub(super) const ROUNDS: usize = 10;
 /// A round in a larger cell that uses up its iterations for less than this is the last one: a perturbed state gets further in
 /// less time.
 pub(super) const STALLED_GAIN: f64 = 1e-3;
+/// After a round in a larger cell that changed the value by less than this,
+pub(super) const SLOW_GAIN: f64 = 1e-5;
+/// the next one has this many quadratic programs at most: what has no certificate by then mostly gets none.
+pub(super) const SLOW_ITERATIONS: usize = 40;
+/// A start in a larger cell is given up where so many times what its last round gained
+pub(super) const HOPELESS_ROUNDS: f64 = 10.0;
+/// (this at least) leaves it below the best value of its cell.
+pub(super) const HOPELESS_GAIN: f64 = 1e-4;
 /// A local maximisation without a certificate begins again from a perturbed state so often.
 pub(super) const RESTARTS: usize = 6;
 /// The same in larger cells, where it is costly.
@@ -176,9 +192,17 @@ pub struct ExactParameters {
     first_radius: f64,
     explorations: [Exploration; 8],
     wire_pause: f64,
+    buckled_share: usize,
+    buckled_waves: [[f64; 2]; 4],
+    buckled_height: [f64; 2],
+    buckled_steps: u32,
     straight_perturbation: f64,
     rounds: usize,
     stalled_gain: f64,
+    slow_gain: f64,
+    slow_iterations: usize,
+    hopeless_rounds: f64,
+    hopeless_gain: f64,
     restarts: usize,
     larger_cell_restarts: usize,
     restart_size: f64,
@@ -220,9 +244,17 @@ impl ExactOptions {
             first_radius: FIRST_RADIUS,
             explorations: EXPLORATIONS,
             wire_pause: WIRE_PAUSE,
+            buckled_share: BUCKLED_SHARE,
+            buckled_waves: BUCKLED_WAVES,
+            buckled_height: [BUCKLED_HEIGHT.start, BUCKLED_HEIGHT.end],
+            buckled_steps: BUCKLED_STEPS,
             straight_perturbation: STRAIGHT,
             rounds: ROUNDS,
             stalled_gain: STALLED_GAIN,
+            slow_gain: SLOW_GAIN,
+            slow_iterations: SLOW_ITERATIONS,
+            hopeless_rounds: HOPELESS_ROUNDS,
+            hopeless_gain: HOPELESS_GAIN,
             restarts: RESTARTS,
             larger_cell_restarts: LARGER_CELL_RESTARTS,
             restart_size: RESTART_SIZE,

@@ -1,6 +1,8 @@
 //! Starts of a search: states, and how they are perturbed and repeated over larger cells.
 
-use super::options::{EXPLORATIONS, Exploration, FIRST_RADIUS};
+use super::options::{
+    BUCKLED_HEIGHT, BUCKLED_SHARE, BUCKLED_STEPS, BUCKLED_WAVES, EXPLORATIONS, Exploration, FIRST_RADIUS, STRAIGHT,
+};
 use crate::{
     lattice::Cell,
     model::Model,
@@ -8,8 +10,10 @@ use crate::{
     topology::step_bound::{Motion, StepBound},
 };
 use maille_geometry::Vec3;
+use nalgebra::{Matrix2, Vector2};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use std::f64::consts::TAU;
 
 /// A state from which a search begins, with the strains of its lattice where it is stretched along a direction.
 #[derive(Clone)]
@@ -56,6 +60,8 @@ pub(super) enum Use {
     Cell,
     /// A start of this number that overlaps.
     Freeing,
+    /// The buckled start of this number.
+    Buckling,
 }
 
 /// The random numbers of one use.
@@ -74,7 +80,46 @@ pub(super) fn explored(model: &Model, seed: u64, k: usize) -> Start {
     Start { route: Route { wires, first_radius }, ..Start::written(state) }
 }
 
-/// The same without a change of the wire on the way.
+/// The start of number `k` of a search for a fold: every third one is buckled, the others are [`explored`].
+pub(super) fn explored_or_buckled(model: &Model, seed: u64, k: usize) -> Start {
+    match k % BUCKLED_SHARE {
+        2 => buckled(model, seed, k),
+        _ => explored(model, seed, k - k / BUCKLED_SHARE),
+    }
+}
+
+/// The design's state with its elements moved out of the plane in a wave that repeats with the cell, each tilted as the wave slopes:
+/// z = h cos(q·x + φ), with q along one vector of the reciprocal lattice, the other, or both, in turn, and height and phase
+/// drawn; less where circles could meet.
+fn buckled(model: &Model, seed: u64, k: usize) -> Start {
+    let mut stream = rng(seed, Use::Buckling, k as u64);
+    let state = perturbed(model, &model.start, STRAIGHT, &mut stream);
+    let Some(inverse) = Matrix2::from_columns(&[state.a1.xy(), state.a2.xy()]).try_inverse() else {
+        return Start::written(state);
+    };
+    let periods = BUCKLED_WAVES[k / BUCKLED_SHARE % BUCKLED_WAVES.len()];
+    let wave = inverse.transpose() * Vector2::from(periods) * TAU;
+    let phase_rad = stream.random_range(0.0..TAU);
+    let height = stream.random_range(BUCKLED_HEIGHT);
+    let out_of_plane = |pose: &Pose| {
+        let at_rad = wave.dot(&pose.position.xy()) + phase_rad;
+        let slope = wave * (-height * at_rad.sin());
+        let steepness = slope.norm();
+        // Turned about the horizontal axis across the slope.
+        let turn = Vec3::new(slope.y, -slope.x, 0.0) * if steepness > 0.0 { steepness.atan() / steepness } else { 0.0 };
+        (Vec3::z() * (height * at_rad.cos()), turn)
+    };
+    let steps = f64::from(BUCKLED_STEPS);
+    let part = |pose: &Pose| {
+        let (shift, turn) = out_of_plane(pose);
+        (shift / steps, turn / steps)
+    };
+    let elements: Vec<(Vec3, Vec3)> = state.poses.iter().map(part).collect();
+    let motion = || Motion { elements: elements.clone(), lattice: [Vec3::zeros(); 2], carried: false };
+    Start::written((0..BUCKLED_STEPS).fold(state, |state, _| moved(model, &state, motion())))
+}
+
+/// [`explored`] without a change of the wire on the way.
 pub(super) fn explored_with_own_wire(model: &Model, seed: u64, k: usize) -> Start {
     let start = explored(model, seed, k);
     Start { route: Route { wires: &[], ..start.route }, ..start }

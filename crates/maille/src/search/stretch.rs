@@ -14,7 +14,7 @@ use super::{
     multistart::{CellStarts, Entered, LargerCells, Multistart, SearchResult, Target, verdict},
     options::{ATTAINED, ExactOptions, LATERAL_ROUNDS, LATERAL_STARTS, LATERAL_STEP, SAME_VALUE},
     overlap::{Overlapping, beyond_repair},
-    starts::{Start, explored},
+    starts::{Start, explored, explored_or_buckled},
     stop::StopRule,
     stretch_lattices::StretchLattices,
     waves::OwnCell,
@@ -93,6 +93,11 @@ impl Target for Stretch {
         Entered { at, iterations: end.iterations as u64 }
     }
 
+    /// Where the least l1 is sought the sheet folds.
+    fn explored(&self, model: &Model, seed: u64, number: usize) -> Start {
+        if self.sign < 0.0 { explored_or_buckled(model, seed, number) } else { explored(model, seed, number) }
+    }
+
     fn start(&self, solution: &LocalSolution) -> Start {
         let mut free = solution.p[1..].iter().copied();
         let l2 = if self.across.lateral_free { free.next().unwrap_or(self.l2) } else { self.l2 };
@@ -117,41 +122,13 @@ impl<'a> ExactMethod<'a> {
         ExactMethod { models, options, chain, link, image: OnceLock::new(), overlapping, own }
     }
 
-    /// The limits along one direction, in the order of `l2`. Solved outwards from l2 = 0, each from its neighbour's states.
-    ///
-    /// Where an element presses on its own image, or a lateral compression is not reached, and of every least l1, larger cells
-    /// are solved, too, from the smaller cell's state, and unstable waves are followed; the best limit counts, and the answer says which cell gave it.
-    /// `begins` hears of each limit before it is solved, and `finished` gets it, with its index in `l2`; after `cancel` the rest comes back as interrupted.
-    pub fn limits(
-        &self,
-        direction: Direction,
-        l2: &[f64],
-        cancel: &AtomicBool,
-        begins: &dyn Fn(usize),
-        finished: &mut dyn FnMut(usize, Answer),
-    ) {
-        let ExactOptions { across, compression, .. } = self.options;
-        let stretch = |l2: f64| Stretch { direction, l2, across, sign: if compression { -1.0 } else { 1.0 } };
-        let mut order: Vec<usize> = (0..l2.len()).collect();
-        order.sort_by(|&a, &b| l2[a].abs().total_cmp(&l2[b].abs()).then(l2[a].total_cmp(&l2[b])));
-        let mut sides: [CellStarts; 2] = [Vec::new(), Vec::new()];
-        if !compression && !l2.contains(&0.0) {
-            let (_, at_zero) = self.limit(&stretch(0.0), &[], cancel);
-            sides = [at_zero.clone(), at_zero];
-        }
-        for k in order {
-            begins(k);
-            let (answer, found) = self.limit(&stretch(l2[k]), &sides[usize::from(l2[k] > 0.0)], cancel);
-            for (side, _) in sides.iter_mut().zip([l2[k] <= 0.0, l2[k] >= 0.0]).filter(|(_, belongs)| *belongs) {
-                side.retain(|(cell, _)| found.iter().all(|(new, _)| new != cell));
-                side.extend(found.iter().cloned());
-            }
-            finished(k, answer);
-        }
-    }
-
     /// One limit; with the states of the cells at it, from which the next one goes on.
-    fn limit(&self, stretch: &Stretch, neighbours: &[(Cell, Start)], cancel: &AtomicBool) -> (Answer, CellStarts) {
+    pub(super) fn limit(
+        &self,
+        stretch: &Stretch,
+        neighbours: &[(Cell, Start)],
+        cancel: &AtomicBool,
+    ) -> (Answer, CellStarts) {
         let least = stretch.sign < 0.0;
         let Stretch { direction, l2, across, .. } = *stretch;
         let bound = best_bound_across(&self.chain, Some(&self.link), direction, l2, across);

@@ -91,15 +91,13 @@ pub fn characterize(
                 if cancel.load(Ordering::Relaxed) || !(0..l2.len()).any(|k| open(k).next().is_some()) {
                     return;
                 }
-                let mut begun = Instant::now();
                 let solved = |k: usize| Task { direction_deg: solved_deg, l2: l2[k] };
                 let begins = |k| work(solved(k), Work::Begins);
-                exact.limits(Direction::of_degrees(solved_deg), l2, cancel, &begins, &mut |k, answer| {
+                exact.limits(Direction::of_degrees(solved_deg), l2, cancel, &begins, &mut |k, answer, wall_s| {
                     let answer = both_shears(answer, &operations, solved_deg);
                     for task in open(k) {
                         let image_of_deg = (task.direction_deg != solved_deg).then_some(solved_deg);
                         let asked = Asked { task: &task, method, minor_radius, image_of_deg };
-                        let wall_s = begun.elapsed().as_secs_f64();
                         finished(match image_of_deg {
                             Some(solved_deg) => {
                                 let (model, answer) =
@@ -108,7 +106,6 @@ pub fn characterize(
                             }
                             None => asked.finished(&of_cell(models, answer.cell), &answer, wall_s),
                         });
-                        begun = Instant::now();
                     }
                     work(solved(k), Work::Ends);
                 });
@@ -140,7 +137,7 @@ pub(crate) fn one<'a>(
     let solved_deg = chains[0].representative_deg;
     let mut answer = Answer::new(&models[0], Status::Interrupted);
     let solved = Direction::of_degrees(solved_deg);
-    let mut finished = |_, found| answer = found;
+    let mut finished = |_, found, _| answer = found;
     ExactMethod::new(models, options.clone(), cancel).limits(solved, &[l2], cancel, &|_| (), &mut finished);
     let answer = both_shears(answer, &operations, solved_deg);
     if solved_deg != direction_deg {
