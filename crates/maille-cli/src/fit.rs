@@ -235,7 +235,7 @@ fn over(args: &Args, targets: &[Target], cancel: &AtomicBool) -> Result<ExitCode
     let usual = || USUAL.iter().filter_map(|text| text.parse().ok()).collect();
     let free: Vec<FreeSpec> = if named { usual() } else { args.free.clone() };
     let out = args.out.clone().unwrap_or_else(|| Path::new("maille-out").join("fits"));
-    let (mut ranked, mut unused): (Vec<(String, FitRecord)>, Vec<(String, Report)>) = Default::default();
+    let (mut ranked, mut unused) = (Vec::new(), Vec::new());
     for name in fit_over::designs(&args.over)? {
         if cancel.load(Ordering::Relaxed) {
             break;

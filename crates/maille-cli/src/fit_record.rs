@@ -92,7 +92,7 @@ impl Files<'_> {
         let exact =
             ExactOptions { seed: self.request.options.seed, across: Across::default(), ..ExactOptions::default() };
         let cells = self.request.options.cells.clone();
-        (!l2.is_empty()).then(|| MapQuestion { method: Method::Exact(exact), cells, directions_deg, l2 })
+        (!l2.is_empty()).then_some(MapQuestion { method: Method::Exact(exact), cells, directions_deg, l2 })
     }
 }
 
@@ -132,14 +132,15 @@ pub fn print(record: &FitRecord, out: &Path, time: Duration) {
     if request.shape {
         say!("  the shape is reached at {:.6} times the wanted limits", outcome.factor);
     }
-    say!("  {:<44} {:>12} {:>12}", "number", "before", "after");
+    let width = request.free.iter().map(|free| free.name.len()).max().unwrap_or(0).max(20);
+    say!("  {:<width$} {:>12} {:>12}", "number", "before", "after");
     for (free, value) in request.free.iter().zip(&outcome.numbers) {
         let end = match *value {
             x if x == free.min => "  its least",
             x if x == free.max => "  its largest",
             _ => "",
         };
-        say!("  {:<44} {:>12.6} {value:>12.6}{end}", free.name, free.value);
+        say!("  {:<width$} {:>12.6} {value:>12.6}{end}", free.name, free.value);
     }
     if !outcome.targets.is_empty() {
         say!("  {:<22} {:>18} {:>10} {:>10} {:>10}", "target", "wanted", "before", "after", "miss");
@@ -155,11 +156,20 @@ pub fn print(record: &FitRecord, out: &Path, time: Duration) {
     }
 }
 
+/// What is measured, in words.
+fn name(measure: Measure) -> String {
+    match measure {
+        Measure::Stretch { direction_deg, l2: 0.0 } => format!("{direction_deg}\u{b0}"),
+        Measure::Stretch { direction_deg, l2 } => format!("{direction_deg}\u{b0}, l2 = {l2}"),
+        Measure::Clearance => "widest gap".into(),
+    }
+}
+
 fn print_target(request: &FitRequest, factor: f64, target: &maille::fit::Target, found: &FittedTarget) {
-    let (name, by, scale) = match target.measure {
-        Measure::Stretch { direction_deg, l2 } if l2 == 0.0 => (format!("{direction_deg}\u{b0}"), factor, 1.0),
-        Measure::Stretch { direction_deg, l2 } => (format!("{direction_deg}\u{b0}, l2 = {l2}"), factor, 1.0),
-        Measure::Clearance => ("widest gap".into(), 1.0, request.design.reference_radius),
+    let name = name(target.measure);
+    let (by, scale) = match target.measure {
+        Measure::Stretch { .. } => (factor, 1.0),
+        Measure::Clearance => (1.0, request.design.reference_radius),
     };
     let word = match target.wanted {
         Wanted::Value(_) => "",
@@ -185,11 +195,7 @@ fn print_missed(request: &FitRequest, targets: &[FittedTarget]) {
     let mut all: Vec<_> = request.targets.iter().zip(targets).filter(|(_, found)| missed(found)).collect();
     all.sort_by(|a, b| b.1.miss.abs().total_cmp(&a.1.miss.abs()));
     for (target, found) in all.iter().take(TOLD) {
-        let name = match target.measure {
-            Measure::Stretch { direction_deg, l2 } if l2 == 0.0 => format!("{direction_deg}\u{b0}"),
-            Measure::Stretch { direction_deg, l2 } => format!("{direction_deg}\u{b0}, l2 = {l2}"),
-            Measure::Clearance => "widest gap".into(),
-        };
+        let name = name(target.measure);
         let proof = match (found.forbidden, found.family_bound) {
             (true, Some(bound)) => format!("proved out of reach: no design between these bounds exceeds {bound:.6}"),
             _ => "not reached; that no design between these bounds does better is not proved".into(),

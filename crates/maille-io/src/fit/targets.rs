@@ -128,11 +128,10 @@ impl Row<'_> {
         }
         let direction_deg = self.number("direction_deg")?.ok_or(("the row has no direction_deg".into(), FORM))?;
         let l2 = self.number("l2")?.unwrap_or(0.0);
-        let kinds: [(&str, fn(f64) -> Wanted); 3] =
-            [("l1", Wanted::Value), ("at_least", Wanted::AtLeast), ("at_most", Wanted::AtMost)];
-        let mut wanted = Vec::new();
-        for (column, kind) in kinds.iter().take(if of_record { 1 } else { 3 }) {
-            wanted.extend(self.number(column)?.map(kind));
+        let mut wanted: Vec<Wanted> = self.number("l1")?.map(Wanted::Value).into_iter().collect();
+        if !of_record {
+            wanted.extend(self.number("at_least")?.map(Wanted::AtLeast));
+            wanted.extend(self.number("at_most")?.map(Wanted::AtMost));
         }
         let [wanted] = wanted[..] else {
             let problem = match wanted.len() {

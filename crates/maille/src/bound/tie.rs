@@ -238,7 +238,7 @@ mod tests {
                 assert!(member >= found - 1e-12, "{sin}: {member} < {found}");
             }
         }
-        assert!(crossing_pairs_length(1.0, 0.126).is_none());
+        assert!(crossing_pairs_length(1.0, 0.143).is_none());
         assert!(crossing_pairs_length(1.0, f64::NAN).is_none());
     }
 
