@@ -66,8 +66,9 @@ pub fn read(named: &[PathBuf]) -> Result<Vec<NamedRecord>> {
         if out.iter().any(|known| known.name == name) {
             return Err(wrong(exit::USAGE, format!("the record {name} is given twice"), "name each record once"));
         }
+        let record = read_record(&folder)?;
         let sensitivities = Record::read_sensitivities(&folder)?.unwrap_or_default();
-        out.push(NamedRecord { record: read_record(&folder)?, name, sensitivities });
+        out.push(NamedRecord { record, name, sensitivities });
     }
     Ok(out)
 }

@@ -1,9 +1,8 @@
 //! Whether the files of a record are whole and fit together.
 
 use crate::{
-    record::{Counters, LIMITS, RUN, Row, Run, STATES, State, Texts},
+    record::{Counters, LIMITS, RUN, Row, Run, SENSITIVITIES, STATES, State, Texts},
     report::{Check, Finding, Verdict},
-    sensitivities::FILE as SENSITIVITIES,
 };
 use serde_json::Value;
 use sha2::{Digest, Sha256};

@@ -35,6 +35,8 @@ pub struct Unreadable {
 pub(crate) const RUN: &str = "run.json";
 pub(crate) const LIMITS: &str = "limits.csv";
 pub(crate) const STATES: &str = "states.jsonl";
+/// Written beside the others on request.
+pub(crate) const SENSITIVITIES: &str = "sensitivities.csv";
 
 #[derive(Clone, Debug, Deserialize)]
 pub(crate) struct Run {

@@ -10,14 +10,12 @@
 
 use crate::{
     files::key,
-    record::{Design, Row, State},
+    record::{Design, Row, SENSITIVITIES as FILE, State},
     report::{Check, Finding, Verdict},
     sheet,
 };
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Name of the file.
-pub(crate) const FILE: &str = "sensitivities.csv";
 const HEADER: &str = "direction_deg,l2,number,derivative,derivative_back";
 const WIRE: &str = "minor_radius";
 const SPACING: &str = "spacing";

@@ -83,11 +83,24 @@ impl FitRequest {
         progress: &dyn Fn(FitProgress),
         cancel: &AtomicBool,
     ) -> Result<Fit, InvalidInput> {
-        let paths = self.free.iter().map(|number| number.name.parse()).collect::<Result<Vec<NumberPath>, _>>()?;
-        let begin = Design { allow_initial_overlap: true, ..self.design.clone() };
+        let (begin, paths) = (self.tolerant(), self.paths()?);
         let make = |values: &[f64]| with(&begin, &paths, values);
         let family = Family { numbers: self.free.clone(), make: &make };
         fit(&family, &self.checked_targets()?, &self.options, resumed, progress, cancel)
+    }
+
+    /// Rings may overlap as written.
+    fn tolerant(&self) -> Design {
+        Design { allow_initial_overlap: true, ..self.design.clone() }
+    }
+
+    fn paths(&self) -> Result<Vec<NumberPath>, InvalidInput> {
+        self.free.iter().map(|number| number.name.parse()).collect()
+    }
+
+    /// The design with other values of its free numbers; `None` where they make none.
+    fn made(&self, values: &[f64]) -> Option<Design> {
+        with(&self.tolerant(), &self.paths().ok()?, values).ok()
     }
 
     /// The request without what does not change where a search leads: more starts go on from fewer.
@@ -113,13 +126,15 @@ fn with(design: &Design, paths: &[NumberPath], values: &[f64]) -> Result<Design,
     Ok(out)
 }
 
-/// The design of a fit as a design of its own, with numbers to 1e-9 of the reference radius. Where its rings overlap as written it is laid out
+/// The design of a fit as a design of its own, with its free numbers to nine digits. Where its rings overlap as written it is laid out
 /// with the widest gaps that its lattice allows. It allows overlaps only where these are left.
 pub fn fitted_design(request: &FitRequest, found: &Fit, cancel: &AtomicBool) -> Design {
     let given = &request.design;
     let title = format!("{}, fitted", if given.title.is_empty() { &given.name } else { &given.title });
     let name = format!("{}-fitted", given.name);
-    let mut out = Design { name, title, varied: given.varied.clone(), ..found.design.clone() }.rounded();
+    let made = request.made(&found.numbers.iter().map(|x| nine_digits(*x)).collect::<Vec<_>>());
+    let made = made.unwrap_or_else(|| found.design.clone());
+    let mut out = Design { name, title, varied: given.varied.clone(), ..made }.rounded();
     let overlaps = |design: &Design| {
         Model::compile(&Design { allow_initial_overlap: false, ..design.clone() }, Cell::PRIMITIVE).is_err()
     };
@@ -128,6 +143,11 @@ pub fn fitted_design(request: &FitRequest, found: &Fit, cancel: &AtomicBool) -> 
     }
     out.allow_initial_overlap = given.allow_initial_overlap || overlaps(&out);
     out
+}
+
+/// Rounded to nine significant digits.
+fn nine_digits(x: f64) -> f64 {
+    format!("{x:.8e}").parse().unwrap_or(x)
 }
 
 /// With the widest gaps that the lattice allows; `None` where no state is found.

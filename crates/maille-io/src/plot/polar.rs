@@ -292,6 +292,8 @@ impl PolarPlot {
         let look = looks.of(curve.record, looks.l2.iter().position(|x| *x == curve.l2).unwrap_or(0));
         match curve.kind {
             CurveKind::Bound if self.records.1.is_empty() => Look { width: 1.4, dash: "5 4", ..look },
+            // Those of no record.
+            CurveKind::Check if !self.records.1.is_empty() => Look { color: "#111111".into(), ..look },
             _ => look,
         }
     }

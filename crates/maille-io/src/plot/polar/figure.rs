@@ -245,8 +245,10 @@ fn legend(input: &PolarPlot, of_all: &Looks, looks: &[Look], scale: &Scale) -> V
     if input.records.1.is_empty() {
         let marker = input.check.is_empty();
         out.extend(of_kind(CurveKind::Limits).map(|(curve, look)| Entry::sample(look, true, marker, &label(curve.l2))));
-        out.extend((!marker).then(|| Entry::sample(&look::hollow(), false, true, &input.check)));
     }
+    let check = of_kind(CurveKind::Check).next().filter(|_| !input.records.1.is_empty()).map(|(_, look)| look.clone());
+    let check = check.unwrap_or_else(look::hollow);
+    out.extend((!input.check.is_empty()).then(|| Entry::sample(&check, false, true, &input.check)));
     if let Some((_, look)) = of_kind(CurveKind::Bound).next() {
         let cut = of_kind(CurveKind::Bound).flat_map(|(curve, _)| curve.values()).any(|value| value > scale.high);
         let cut = if cut { format!(", cut off at {}", scale.label(scale.high)) } else { String::new() };
