@@ -43,5 +43,4 @@ pub use simulation::{
     SIMULATION, SimulationFiles, SimulationOutcome, SimulationRecord, open_simulation, read_frames, read_simulation,
     save_simulation, write_frames, write_simulation,
 };
-pub(crate) use states::state_at;
 pub use states::{read_states, write_states};

@@ -138,6 +138,16 @@ pub enum Goal {
         /// The gap, in the design's unit.
         min_gap: f64,
     },
+    /// κ of a sheet that is rolled about an axis across the direction: its turn for each unit of the written length along it, in
+    /// 1/R. The largest is that with the axis below the sheet, at negative z; the least, which is negative, has it above. The length along
+    /// the direction is free in any case: see `docs/theory/roll.md`.
+    Curvature {
+        /// Direction that is rolled, in degrees.
+        direction_deg: f64,
+        /// Whether the width along the axis and the shear are held or left to the sheet.
+        #[serde(default)]
+        free: Across,
+    },
 }
 
 /// Which end of it.
@@ -196,6 +206,13 @@ impl Question {
         Question::new(Goal::Area { min_gap }, Sense::Least)
     }
 
+    /// How tightly the sheet can be rolled along a direction, in degrees, with its width held and no shear: with the axis below it,
+    /// or above it where the sign is negative.
+    pub fn curvature_along(direction_deg: f64, sign: f64) -> Self {
+        let sense = if sign < 0.0 { Sense::Least } else { Sense::Largest };
+        Question::new(Goal::Curvature { direction_deg, free: Across::HELD }, sense)
+    }
+
     /// The same stretch with the width held at 1 + l2 times the written one. Other goals stay as they are.
     pub fn with_lateral(mut self, lateral: f64) -> Self {
         if let Goal::Stretch { l2, across, .. } = &mut self.goal {
@@ -204,8 +221,11 @@ impl Question {
         self
     }
 
-    /// The same stretch with the width, or the shear, or both left to the sheet. Other goals stay as they are.
+    /// The same stretch or roll with the width, or the shear, or both left to the sheet. Other goals stay as they are.
     pub fn with_free(mut self, free: Across) -> Self {
+        if let Goal::Curvature { free: known, .. } = &mut self.goal {
+            *known = free;
+        }
         if let Goal::Stretch { l2, across, .. } = &mut self.goal {
             *l2 = if free.lateral_free { 0.0 } else { *l2 };
             *across = free;
@@ -261,6 +281,7 @@ impl Question {
                     return Err(InvalidInput::new("direction", problem, "give a unit vector"));
                 }
             }
+            Goal::Curvature { direction_deg, .. } => within("direction_deg", "direction", *direction_deg)?,
             Goal::Wire { .. } | Goal::Clearance { .. } if self.sense == Sense::Least => {
                 return Err(InvalidInput::new("sense", "nothing bounds it from below", "ask for the largest"));
             }
@@ -295,7 +316,11 @@ impl Question {
                 let along = Matrix2::new(*xx, *xy, *xy, *yy) * self.sense.sign();
                 Ok(Some(StrainQuery { held: Matrix2::zeros(), free: vec![along] }))
             }
-            Goal::Stretch { .. } | Goal::Wire { .. } | Goal::Clearance { .. } | Goal::Area { .. } => Ok(None),
+            Goal::Stretch { .. }
+            | Goal::Wire { .. }
+            | Goal::Clearance { .. }
+            | Goal::Area { .. }
+            | Goal::Curvature { .. } => Ok(None),
         }
     }
 

@@ -6,8 +6,10 @@ pub use row::{Column, Entry, Kind, LIMIT_COLUMNS, LimitRow, Status, Unit};
 
 use crate::{
     model::{Element, Model},
-    state::{Pose, State},
+    state::{Pose, Roll, State},
 };
+use maille_geometry::Vec3;
+use nalgebra::{Quaternion, UnitQuaternion};
 use serde::{Deserialize, Serialize};
 
 /// Version of the record's files.
@@ -130,6 +132,41 @@ pub struct StepRecord {
     pub wall_s: f64,
 }
 
+/// How a sheet is rolled, see `docs/theory/roll.md`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RollRecord {
+    /// u, the unit vector along which the sheet is rolled. The axis is along w, to its left.
+    pub along: [f64; 2],
+    /// Turn about w from a cell to the next along a1 and along a2.
+    pub turn_rad: [f64; 2],
+}
+
+impl StateRecord {
+    /// The state, for the model of its cell; `None` where it has other elements.
+    pub fn state(&self, model: &Model) -> Option<State> {
+        let names = model.elements.iter().map(|e| e.name.as_str());
+        if !self.poses.iter().map(|p| p.element.as_str()).eq(names) {
+            return None;
+        }
+        let length = |x: [f64; 3]| Vec3::from(x) / model.unit;
+        let pose = |p: &PoseRecord| {
+            let [w, x, y, z] = p.rotation;
+            let rotation = UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z));
+            Pose { position: length(p.position), rotation }
+        };
+        let along = |[x, y]: [f64; 2]| Vec3::new(x, y, 0.0);
+        let roll = self.roll.map(|roll| Roll { along: along(roll.along), turn_rad: roll.turn_rad });
+        Some(State { poses: self.poses.iter().map(pose).collect(), a1: length(self.a1), a2: length(self.a2), roll })
+    }
+}
+
+impl RollRecord {
+    /// That of a state.
+    pub fn of(state: &State) -> Option<Self> {
+        state.roll.map(|roll| RollRecord { along: [roll.along.x, roll.along.y], turn_rad: roll.turn_rad })
+    }
+}
+
 /// One line of `states.jsonl`: the state at the limit of one row (or the last state of a failed search).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StateRecord {
@@ -143,6 +180,9 @@ pub struct StateRecord {
     pub a1: [f64; 3],
     /// Deformed second lattice vector of the solved cell.
     pub a2: [f64; 3],
+    /// How images are turned; absent where the sheet is flat.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub roll: Option<RollRecord>,
     /// In-plane deformation gradient, rows `[[Fxx, Fxy], [Fyx, Fyy]]`.
     pub deformation_gradient: [[f64; 2]; 2],
     /// Poses of the elements of the solved cell.

@@ -4,18 +4,22 @@ use crate::{
     answer::{Answer, CellTrend},
     design::Design,
     error::InvalidInput,
-    lattice::Cell,
+    lattice::{Cell, Direction},
     model::{Model, of_cell},
     program::{Contact, metric::factor},
     question::{Goal, Question, Sense},
     record::Status,
     search::{
         ExactOptions, ExtremeOptions,
+        curl::{Curl, tightest_roll},
         extreme::{Extreme, extreme},
         strain::{StrainMethod, StrainOptions},
     },
     state::{Pose, State},
-    survey::{CellChoice, one},
+    survey::{
+        CellChoice, one,
+        roll::{RollLimit, RollQuestion, rolls},
+    },
 };
 use maille_geometry::Vec3;
 use nalgebra::{Matrix2, Rotation3, UnitQuaternion};
@@ -87,7 +91,27 @@ impl Sheet {
             Goal::Clearance { lattice_free } => extreme(Extreme::LargestClearance, lattice_free),
             Goal::Area { min_gap } => extreme(Extreme::ClosestCell { gap: min_gap / self.model().unit }, true),
             Goal::Strain { .. } | Goal::Ray { .. } => self.strain(question, cancel)?,
+            Goal::Curvature { direction_deg, free } => {
+                let curl = Curl { direction: Direction::of_degrees(direction_deg), sign: sense.sign(), free };
+                let options = ExtremeOptions { lattice_free: true, effort, starts, seed };
+                tightest_roll(&self.models, curl, &options, &[], cancel)
+            }
         })
+    }
+
+    /// How tightly it can be rolled, see [`crate::survey::roll::rolls`].
+    ///
+    /// # Errors
+    /// What [`RollQuestion::check`] refuses.
+    pub fn rolls(
+        &self,
+        question: &RollQuestion,
+        known: &[RollLimit],
+        cancel: &AtomicBool,
+        found: &(dyn Fn(&RollLimit) + Sync),
+    ) -> Result<Vec<RollLimit>, InvalidInput> {
+        question.check()?;
+        Ok(rolls(&self.models, question, known, cancel, found))
     }
 
     /// One strain: where a stretch asks the same, found as that, so that one question has one answer.
@@ -129,8 +153,8 @@ fn as_strain(answer: Answer) -> Answer {
         let (n_starts, n_distinct) = (answer.n_starts.unwrap_or(0), answer.n_distinct.unwrap_or(0));
         by_cell.push(CellTrend { cell: answer.cell, value: answer.limit().map(green), n_starts, n_distinct });
     }
-    let State { poses, a1, a2 } = &answer.state;
-    let state = State { poses: poses.iter().map(pose).collect(), a1: turn * a1, a2: turn * a2 };
+    let State { poses, a1, a2, .. } = &answer.state;
+    let state = State { poses: poses.iter().map(pose).collect(), a1: turn * a1, a2: turn * a2, roll: None };
     let gradient = turn.matrix().fixed_view::<2, 2>(0, 0) * f;
     Answer {
         value: answer.value.map(green),

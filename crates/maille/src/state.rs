@@ -1,4 +1,9 @@
-//! The state: all that changes. Poses of the elements and the deformed lattice.
+//! The state: all that changes. Poses of the elements, the deformed lattice, and how the sheet is rolled.
+
+pub mod images;
+mod roll;
+
+pub use roll::{Carried, NeutralSurface, Roll};
 
 use crate::lattice::Shift;
 use maille_geometry::Vec3;
@@ -25,7 +30,7 @@ impl Pose {
     }
 }
 
-/// Poses of the cell's elements and its lattice vectors, in units of the reference radius.
+/// Poses of the cell's elements, its lattice vectors, and how the sheet is rolled; lengths in units of the reference radius.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
     /// One pose for each element of the cell.
@@ -34,10 +39,12 @@ pub struct State {
     pub a1: Vec3,
     /// Second lattice vector, deformed.
     pub a2: Vec3,
+    /// How images are turned; `None` for a flat sheet, whose images are translations.
+    pub roll: Option<Roll>,
 }
 
 impl State {
-    /// Translation of the image `shift`.
+    /// The lattice vector of `shift`: in a flat sheet the translation of that image.
     pub fn translation(&self, shift: Shift) -> Vec3 {
         self.a1 * f64::from(shift[0]) + self.a2 * f64::from(shift[1])
     }

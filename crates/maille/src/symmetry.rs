@@ -336,7 +336,7 @@ impl<'a> Image<'a> {
     /// The image of a state.
     pub fn state(&self, state: &State) -> State {
         let [a1, a2] = self.lattice([&state.a1, &state.a2]);
-        let mut out = State { poses: self.to.start.poses.clone(), a1, a2 };
+        let mut out = State { poses: self.to.start.poses.clone(), a1, a2, roll: None };
         for (pose, (image, shift, miss)) in state.poses.iter().zip(&self.elements) {
             let q = pose.rotation.quaternion();
             let rotation = UnitQuaternion::new_normalize(Quaternion::from_parts(q.w, self.axial(&q.imag())));

@@ -18,7 +18,7 @@ fn supercell() -> (Model, LatticeFamily) {
     let stretch = |along: Vec3| [model.start.a1, model.start.a2].map(|a| along * a.dot(&along));
     let parameter = |rate| Parameter { rate, weight: 1.0, ..Parameter::default() };
     let parameters = vec![parameter(stretch(Vec3::x())), parameter(stretch(Vec3::y()))];
-    let pull = LatticeFamily { base: [model.start.a1, model.start.a2], parameters, metric: None };
+    let pull = LatticeFamily { base: [model.start.a1, model.start.a2], parameters, metric: None, roll: None };
     (model, pull)
 }
 

@@ -219,7 +219,7 @@ fn state_of(found: &Finished, design: &Design) -> (Model, State) {
         let rotation = UnitQuaternion::from_quaternion(Quaternion::new(w, i, j, k));
         maille::state::Pose { position: vector(pose.position), rotation }
     });
-    let state = State { poses: poses.collect(), a1: vector(found.state.a1), a2: vector(found.state.a2) };
+    let state = State { poses: poses.collect(), a1: vector(found.state.a1), a2: vector(found.state.a2), roll: None };
     (model, state)
 }
 

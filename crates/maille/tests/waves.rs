@@ -57,7 +57,12 @@ fn pull(model: &Model, direction_deg: f64, l2: f64) -> LatticeFamily {
         Vec3::new(v.x, v.y, 0.0)
     });
     let rate = reference.map(|a| (d * d.dot(&a.xy())).push(0.0));
-    LatticeFamily { base, parameters: vec![Parameter { rate, weight: 1.0, ..Parameter::default() }], metric: None }
+    LatticeFamily {
+        base,
+        parameters: vec![Parameter { rate, weight: 1.0, ..Parameter::default() }],
+        metric: None,
+        roll: None,
+    }
 }
 
 /// The state of a cell repeated over a larger one.
@@ -71,7 +76,7 @@ fn tiled(model: &Model, state: &State) -> State {
         let shift = state.translation(copy);
         state.poses.iter().map(move |pose| Pose { position: pose.position + shift, ..*pose })
     });
-    State { poses: poses.collect(), a1, a2 }
+    State { poses: poses.collect(), a1, a2, roll: None }
 }
 
 fn rows(cell: &Cell) -> [[i32; 2]; 2] {

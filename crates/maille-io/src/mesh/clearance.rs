@@ -188,9 +188,10 @@ impl<'a> Meshes<'a> {
     /// The distance of the two meshes where it is less than `most`, else `most`.
     fn distance(&self, pair: &Near, most: f64) -> f64 {
         let RingPair { ring_a, ring_b, shift } = pair.rings;
-        let shift = self.state.translation(shift) * self.to_mm;
+        let image = self.state.image(shift);
+        let moved = |p: Vec3| image.vector(&p) + image.point(&Vec3::zeros()) * self.to_mm;
         let mut a = self.triangles[ring_a].clone();
-        let mut b: Vec<Triangle> = self.triangles[ring_b].iter().map(|t| t.map(|p| p + shift)).collect();
+        let mut b: Vec<Triangle> = self.triangles[ring_b].iter().map(|t| t.map(moved)).collect();
         // Rounding of the bound must not hide the distance.
         let bound = (pair.gap + pair.errors) * (1.0 + 1e-9) + 1e-9 * self.to_mm;
         let found = least_distance(&mut a, &mut b, most.min(bound.max(0.0)));

@@ -4,11 +4,11 @@ use super::{
     error::MeshError,
     torus::{Fineness, TorusMesh},
 };
-use crate::{record::state_at, tile::Tile};
+use crate::tile::Tile;
 use maille::{
     model::Model,
     record::{ContactRecord, StateRecord},
-    state::{Pose, State},
+    state::{Pose, Roll, State},
 };
 use maille_geometry::Vec3;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
@@ -101,6 +101,8 @@ pub struct Scene {
     /// The point that becomes the origin of files for printing and showing: [`Scene::corner`] of a new scene, so that
     /// what is printed stands on the bed. VTK files keep the coordinates of the state.
     pub origin: Vec3,
+    /// Whether images are turned.
+    rolled: bool,
     /// First ring of every element of the solved cell.
     first_ring: Vec<usize>,
 }
@@ -144,9 +146,10 @@ impl Scene {
         let mut elements = Vec::with_capacity(columns * rows * model.elements.len());
         for i in 0..tile.0[0] {
             for j in 0..tile.0[1] {
-                let shift = state.translation([i as i32, j as i32]);
+                let image = state.image([i as i32, j as i32]);
                 for (member, pose) in state.poses.iter().enumerate() {
-                    let translation = Translation3::from((pose.position + shift) * to_mm);
+                    let pose = image.pose(pose);
+                    let translation = Translation3::from(pose.position * to_mm);
                     let pose = Isometry3::from_parts(translation, pose.rotation);
                     elements.push(Placed { kind: member % kind_count, member, cell: [i, j], pose });
                 }
@@ -162,6 +165,7 @@ impl Scene {
             contacts: Vec::new(),
             loads: None,
             origin: Vec3::zeros(),
+            rolled: state.roll.is_some(),
             first_ring: model.elements.iter().map(|e| e.rings.start).collect(),
         };
         scene.origin = scene.corner();
@@ -180,11 +184,12 @@ impl Scene {
             let on_b = Vec3::from(contact.point_b) - normal * outer;
             for i in 0..tile.0[0] {
                 for j in 0..tile.0[1] {
-                    let shift = state.translation([i as i32, j as i32]) * model.unit;
+                    let image = state.image([i as i32, j as i32]);
+                    let middle = image.point(&((on_a + on_b) * (0.5 / model.unit))) * model.unit;
                     let there = [i as i32 + contact.shift[0], j as i32 + contact.shift[1]];
                     self.contacts.push(PlacedContact {
-                        point: ((on_a + on_b) * 0.5 + shift) * self.mm,
-                        force: normal * contact.force,
+                        point: middle * self.mm,
+                        force: image.vector(&normal) * contact.force,
                         ring_a: contact.ring_a,
                         ring_b: contact.ring_b,
                         cell: [i, j],
@@ -242,9 +247,12 @@ impl Scene {
 
     /// The corner of the box around the meshes with the smallest x, y and z.
     pub fn corner(&self) -> Vec3 {
-        // Copies of a ring in other cells are translated, not turned.
+        // Copies of a ring in other cells are translated, but turned in a rolled sheet.
         let mut reaches = vec![None; self.first_ring.last().map_or(0, |last| last + self.largest_kind())];
         self.rings().fold(Vec3::repeat(f64::INFINITY), |corner, ring| {
+            if self.rolled {
+                reaches[ring.ring] = None;
+            }
             let reach: &mut Option<Vec3> = &mut reaches[ring.ring];
             let reach = reach.get_or_insert_with(|| {
                 let turned = self.shapes[ring.shape].vertices.iter().map(|v| ring.pose.rotation * v);
@@ -288,7 +296,7 @@ fn turn_of_axis(normal: &Vector3<f64>) -> UnitQuaternion<f64> {
 
 /// The state of a record's line, for the model that was solved.
 pub fn state_of(model: &Model, record: &StateRecord) -> Result<State, MeshError> {
-    state_at(model, record).ok_or(MeshError::OtherElements { state: record.poses.len(), cell: model.elements.len() })
+    record.state(model).ok_or(MeshError::OtherElements { state: record.poses.len(), cell: model.elements.len() })
 }
 
 /// A state of a record in words, or the start.
@@ -309,5 +317,9 @@ pub fn between(start: &State, end: &State, t: f64) -> State {
         position: mix(&a.position, &b.position),
         rotation: UnitQuaternion::from_scaled_axis((b.rotation * a.rotation.inverse()).scaled_axis() * t) * a.rotation,
     });
-    State { poses: poses.collect(), a1: mix(&start.a1, &end.a1), a2: mix(&start.a2, &end.a2) }
+    // A sheet that is not rolled is one whose turns are 0, along any direction.
+    let turns = |state: &State| state.roll.map_or([0.0; 2], |roll| roll.turn_rad);
+    let turn_rad = [0, 1].map(|k| turns(start)[k] * (1.0 - t) + turns(end)[k] * t);
+    let roll = end.roll.or(start.roll).map(|roll| Roll { turn_rad, ..roll });
+    State { poses: poses.collect(), a1: mix(&start.a1, &end.a1), a2: mix(&start.a2, &end.a2), roll }
 }

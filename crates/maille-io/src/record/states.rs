@@ -1,13 +1,7 @@
 //! `states.jsonl`.
 
 use super::error::{RecordError, complete};
-use maille::{
-    model::Model,
-    record::{PoseRecord, StateRecord},
-    state::{Pose, State},
-};
-use maille_geometry::Vec3;
-use nalgebra::{Quaternion, UnitQuaternion};
+use maille::record::{RollRecord, StateRecord};
 
 /// The states as text, one a line.
 ///
@@ -29,21 +23,6 @@ pub fn read_states(file: &str, text: &str) -> Result<Vec<StateRecord>, RecordErr
     text.lines().enumerate().map(read).collect()
 }
 
-/// The state of a line, for the model of its cell; `None` where it has other elements.
-pub(crate) fn state_at(model: &Model, record: &StateRecord) -> Option<State> {
-    let names = model.elements.iter().map(|e| e.name.as_str());
-    if !record.poses.iter().map(|p| p.element.as_str()).eq(names) {
-        return None;
-    }
-    let length = |x: [f64; 3]| Vec3::from(x) / model.unit;
-    let pose = |p: &PoseRecord| {
-        let [w, x, y, z] = p.rotation;
-        let rotation = UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z));
-        Pose { position: length(p.position), rotation }
-    };
-    Some(State { poses: record.poses.iter().map(pose).collect(), a1: length(record.a1), a2: length(record.a2) })
-}
-
 fn finite(state: &StateRecord) -> Result<(), RecordError> {
     let check = |field: &'static str, numbers: &[f64]| match numbers.iter().find(|x| !x.is_finite()) {
         None => Ok(()),
@@ -53,6 +32,10 @@ fn finite(state: &StateRecord) -> Result<(), RecordError> {
     check("l2", &[state.l2])?;
     check("a1", &state.a1)?;
     check("a2", &state.a2)?;
+    if let Some(RollRecord { along, turn_rad }) = &state.roll {
+        check("along", along)?;
+        check("turn_rad", turn_rad)?;
+    }
     check("deformation_gradient", state.deformation_gradient.as_flattened())?;
     for pose in &state.poses {
         check("position", &pose.position)?;

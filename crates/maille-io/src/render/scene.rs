@@ -89,7 +89,8 @@ impl Scene {
             let only = (options.forces == Forces::Arrows).then_some(middle);
             scene.add_arrows(subject, &members, only);
         }
-        if options.cell {
+        // In the plane: a rolled cell has no such outline.
+        if options.cell && state.roll.is_none() {
             let corner = state.poses[0].position + state.translation(middle);
             let corner = Vec3::new(corner.x, corner.y, 0.0);
             scene.cell = Some([corner, corner + state.a1, corner + state.a1 + state.a2, corner + state.a2]);
@@ -119,7 +120,8 @@ impl Scene {
                 if !there.contains(&(b, image)) {
                     continue;
                 }
-                let from = 0.5 * (on_a + on_b) + state.translation(shift);
+                let image = state.image(shift);
+                let (from, normal) = (image.point(&(0.5 * (on_a + on_b))), image.vector(&normal));
                 let length = ARROW.0 * contact.force / most;
                 self.arrows.push(Arrow::new(from, normal, length, thickness));
                 self.arrows.push(Arrow::new(from, -normal, length, thickness));

@@ -1,7 +1,7 @@
 //! Derivatives of the limits of a record: from its states and forces, with no further solve.
 
 use crate::{
-    record::{Record, RecordError, SensitivityRow, state_at},
+    record::{Record, RecordError, SensitivityRow},
     sensitivity::shared_numbers,
 };
 use maille::{
@@ -79,7 +79,7 @@ fn answer(model: &Model, row: &LimitRow, state: &StateRecord) -> Option<Answer> 
     let [[xx, xy], [yx, yy]] = state.deformation_gradient;
     Some(Answer {
         value: row.l1,
-        state: state_at(model, state)?,
+        state: state.state(model)?,
         gradient: Matrix2::new(xx, xy, yx, yy),
         contacts: state.contacts.iter().map(contact).collect(),
         certificate: Some(certificate),

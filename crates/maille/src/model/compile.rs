@@ -80,7 +80,7 @@ impl Model {
             largest_radius: rings.iter().map(|r| r.major_radius).fold(0.0, f64::max),
             elements,
             rings,
-            start: State { poses, a1, a2 },
+            start: State { poses, a1, a2, roll: None },
             reference_inverse,
             links: Vec::new(),
             short_basis: lattice::short_basis(a1, a2),
@@ -163,7 +163,7 @@ impl Model {
         let [a1, a2] = cell.vectors(self.start.a1, self.start.a2);
         // Dependent rows are no cell.
         let inverse = Matrix2::new(a1.x, a2.x, a1.y, a2.y).try_inverse().unwrap_or(self.reference_inverse);
-        let start = State { poses: Vec::new(), a1, a2 };
+        let start = State { poses: Vec::new(), a1, a2, roll: None };
         let (elements, rings, links) = (Vec::new(), Vec::new(), Vec::new());
         let mut out = Model { cell, start, reference_inverse: inverse, elements, rings, links, ..self.clone() };
         for coset in cell.cosets() {

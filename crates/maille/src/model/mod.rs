@@ -5,7 +5,7 @@ mod compile;
 use crate::{
     design::Design,
     lattice::{Cell, Shift},
-    state::State,
+    state::{NeutralSurface, State},
 };
 use maille_geometry::{Circle, Vec3};
 use nalgebra::{Matrix2, Unit, UnitVector3};
@@ -142,8 +142,15 @@ impl State {
     pub fn circle(&self, model: &Model, ring: usize, shift: Shift) -> Circle {
         let r = &model.rings[ring];
         let pose = &self.poses[r.element];
-        let center = pose.position + pose.rotation * r.offset + self.translation(shift);
-        Circle::new(center, Unit::new_normalize(pose.rotation * r.normal.into_inner()), r.major_radius)
+        let center = pose.position + pose.rotation * r.offset;
+        let normal = Unit::new_normalize(pose.rotation * r.normal.into_inner());
+        self.image(shift).circle(&Circle::new(center, normal, r.major_radius))
+    }
+
+    /// The neutral surface of a rolled state; `None` where nothing turns.
+    pub fn neutral_surface_of(&self, model: &Model) -> Option<NeutralSurface> {
+        let anchors: Vec<[f64; 2]> = model.elements.iter().map(|e| e.anchor).collect();
+        self.neutral_surface(&anchors, &model.reference_inverse)
     }
 
     /// In-plane deformation gradient F of the lattice vectors, F a_k(reference) = a_k (eq. 5.2.1).

@@ -156,7 +156,7 @@ impl SheetProgram<'_> {
         let weight = (force * self.required(x, model.contact_distance(pair.ring_a, pair.ring_b))).sqrt();
         let reference = |ring: usize| state.poses[model.rings[ring].element].position;
         // From the element's reference point: to B's centre on B, and on A.
-        let own = b.center - reference(pair.ring_b) - state.translation(pair.shift);
+        let own = state.image(pair.shift).way_from(&reference(pair.ring_b), &b.center);
         let seen = b.center - reference(pair.ring_a);
         // The axes come apart by what B's centre moves in A's frame: e = x + β × own − α × seen.
         let parts = [moment, -seen.cross(&moment), own.cross(&moment)].map(|part| part / weight);

@@ -14,6 +14,7 @@ pub mod gap_kernel;
 pub mod key;
 pub mod metric;
 mod pair;
+mod rolled;
 pub mod waves;
 
 use self::{
@@ -27,11 +28,12 @@ use crate::{
         constraints::{Derivatives, Loads, Multiplier, Row},
         sqp::Program,
     },
-    state::State,
+    state::{Roll, State},
     topology::{
         RingPair,
+        motion::{MARGIN, Motion},
         near_pairs::{NearPair, near_pairs},
-        step_bound::{MARGIN, Motion, StepBound},
+        step_bound::StepBound,
     },
 };
 use maille_geometry::{Vec3, point_circle_distance};
@@ -43,6 +45,8 @@ use std::{cell::OnceCell, collections::BTreeSet, rc::Rc};
 pub struct Parameter {
     /// Rates of a1 and a2.
     pub rate: [Vec3; 2],
+    /// Rates of the turns of a1 and a2, where the sheet is rolled.
+    pub turn_rad: [f64; 2],
     /// Rate of the metric C instead, where the pull has one.
     pub metric: Matrix2<f64>,
     /// Growth of all minor radii, as a share of them.
@@ -58,6 +62,11 @@ pub struct Parameter {
 }
 
 impl Parameter {
+    /// Rates of the lattice vector with these coordinates and of its turn.
+    fn at(&self, [first, second]: [f64; 2]) -> (Vec3, f64) {
+        (self.rate[0] * first + self.rate[1] * second, self.turn_rad[0] * first + self.turn_rad[1] * second)
+    }
+
     /// Rate of the distance that rings which touch at `touching` must keep.
     fn keeps(&self, touching: f64) -> f64 {
         self.thicken * touching + self.widen
@@ -73,6 +82,8 @@ pub struct LatticeFamily {
     pub parameters: Vec<Parameter>,
     /// The metric C where all parameters are 0, if it is C that is affine in them: the lattice vectors are then F(C) base.
     pub metric: Option<Matrix2<f64>>,
+    /// How the sheet is rolled where all parameters are 0; `None` where it stays flat. A family with a metric stays flat.
+    pub roll: Option<Roll>,
 }
 
 impl LatticeFamily {
@@ -99,6 +110,13 @@ impl LatticeFamily {
             self.base[k] + free.map(|(parameter, value)| parameter.rate[k] * *value).sum::<Vec3>()
         };
         [moved(0), moved(1)]
+    }
+
+    /// How the sheet is rolled at `p`.
+    fn rolled(&self, p: &[f64]) -> Option<Roll> {
+        let moved =
+            |k: usize| self.parameters.iter().zip(p).map(|(parameter, p)| parameter.turn_rad[k] * p).sum::<f64>();
+        self.roll.map(|base| Roll { turn_rad: [0, 1].map(|k| base.turn_rad[k] + moved(k)), ..base })
     }
 
     /// Whether the metric stays positive definite, and far from not being so, on the step from `p` to `to`.
@@ -188,6 +206,7 @@ impl<'a> SheetProgram<'a> {
     /// Poses of `state` with the lattice of the parameters `p`.
     pub fn posed(&self, mut state: State, p: Vec<f64>) -> Posed {
         [state.a1, state.a2] = self.pull.lattice(&p);
+        state.roll = self.pull.rolled(&p);
         Posed { state, p, near: OnceCell::new() }
     }
 
@@ -250,7 +269,11 @@ impl<'a> SheetProgram<'a> {
                 rates.map(|(m, parameter)| parameter.rate[k] * y[self.first_parameter + m]).sum()
             })
         };
-        Motion { elements, lattice, carried: true }
+        let turn_rad = [0, 1].map(|k| {
+            let rates = self.pull.parameters.iter().enumerate();
+            rates.map(|(m, parameter)| parameter.turn_rad[k] * y[self.first_parameter + m]).sum()
+        });
+        Motion { elements, lattice, turn_rad, carried: true }
     }
 
     /// The parameters after the step `y`.
@@ -292,7 +315,7 @@ impl Program for SheetProgram<'_> {
         let turns = self.all_turns(&x.state);
         let factored = self.pull.factored(&x.p);
         for near in within {
-            let map = self.pair_map(&near.pair, &turns, factored.as_ref());
+            let map = self.pair_map(x, &near.pair, &turns, factored.as_ref());
             self.pair_rows(x, near, band, &map, derivatives, &mut rows);
         }
         rows
@@ -339,6 +362,9 @@ impl Program for SheetProgram<'_> {
 
     fn moved(&self, x: &Posed, step: &[f64]) -> Posed {
         let motion = self.motion(x, step);
+        if x.state.roll.is_some() {
+            return self.moved_rolled(x, &motion, self.stepped(x, step));
+        }
         let moved = x.state.poses.iter().zip(&motion.elements).enumerate();
         let moved = moved.map(|(e, (pose, (shift, turn)))| pose.moved(&(shift + motion.carries(self.model, e)), turn));
         let poses = moved.collect();
@@ -350,7 +376,7 @@ impl Program for SheetProgram<'_> {
         let n = self.first_parameter + self.pull.parameters.len();
         let term = |&key: &u64| {
             let v = self.flat_curvature(x, multipliers, key)?;
-            let map = self.pair_map(&pair_of_key(key), &turns, factored.as_ref());
+            let map = self.pair_map(x, &pair_of_key(key), &turns, factored.as_ref());
             let mut term = vec![0.0; n];
             map.columns.iter().zip(map.gradient(&v)).for_each(|(&column, entry)| term[column] = entry);
             Some(term)

@@ -25,14 +25,14 @@ const HEIGHTS: usize = 16;
 pub(super) struct PairMap {
     pub columns: Vec<usize>,
     pub motions: Vec<Grad>,
-    /// Second derivatives of the relative position with two of these columns, where the lattice moves on a curve.
-    bends: Vec<(usize, usize, Vec3)>,
+    /// Second derivatives of the motion with two of these columns, where the lattice moves on a curve.
+    pub(super) bends: Vec<(usize, usize, Grad)>,
     /// Parameters among the columns: parameter and place.
-    parameters: Vec<(usize, usize)>,
+    pub(super) parameters: Vec<(usize, usize)>,
 }
 
 impl PairMap {
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         let room = || Vec::with_capacity(14);
         PairMap { columns: room(), motions: Vec::with_capacity(14), bends: Vec::new(), parameters: Vec::new() }
     }
@@ -43,12 +43,17 @@ impl PairMap {
         PairMap { columns: (0..9).collect(), motions: motions.collect(), ..PairMap::new() }
     }
 
-    fn add(&mut self, column: usize, block: usize, v: &Vec3, sign: f64) {
-        let at = self.columns.iter().position(|&c| c == column).unwrap_or_else(|| {
+    /// Place of a column, which is added where it is new.
+    pub(super) fn place(&mut self, column: usize) -> usize {
+        self.columns.iter().position(|&c| c == column).unwrap_or_else(|| {
             self.columns.push(column);
             self.motions.push(Grad::zeros());
             self.columns.len() - 1
-        });
+        })
+    }
+
+    pub(super) fn add(&mut self, column: usize, block: usize, v: &Vec3, sign: f64) {
+        let at = self.place(column);
         for axis in 0..3 {
             self.motions[at][3 * block + axis] += sign * v[axis];
         }
@@ -69,15 +74,31 @@ impl PairMap {
             }
         }
         for (r, c, bend) in &self.bends {
-            out[c * k + r] += (0..3).map(|axis| grad[axis] * bend[axis]).sum::<f64>();
+            out[c * k + r] += grad.dot(bend);
         }
         out
     }
 }
 
+/// A vector as that part of a motion y = (x, α, β).
+pub(super) fn in_block(block: usize, v: &Vec3) -> Grad {
+    let mut out = Grad::zeros();
+    out.fixed_rows_mut::<3>(3 * block).copy_from(v);
+    out
+}
+
 impl SheetProgram<'_> {
     /// The unknowns that move the pair, with their motions.
-    pub(super) fn pair_map(&self, pair: &RingPair, turns: &[Vec<Vec3>], factored: Option<&Factored>) -> PairMap {
+    pub(super) fn pair_map(
+        &self,
+        x: &Posed,
+        pair: &RingPair,
+        turns: &[Vec<Vec3>],
+        factored: Option<&Factored>,
+    ) -> PairMap {
+        if let Some(roll) = &x.state.roll {
+            return self.rolled_map(&x.state, roll, pair, turns);
+        }
         let (i, j) = (self.model.rings[pair.ring_a].element, self.model.rings[pair.ring_b].element);
         let mut map = PairMap::new();
         let axes = [Vec3::x(), Vec3::y(), Vec3::z()];
@@ -103,7 +124,7 @@ impl SheetProgram<'_> {
             }
         }
         for (f, &(m, r)) in factored.iter().flat_map(|f| map.parameters.iter().map(move |at| (f, at))) {
-            let bend = |&(n, c): &(usize, usize)| (r, c, image(self.pull.base.map(|a| f.bend(m, n, &a))));
+            let bend = |&(n, c): &(usize, usize)| (r, c, in_block(0, &image(self.pull.base.map(|a| f.bend(m, n, &a)))));
             map.bends.extend(map.parameters.iter().map(bend));
         }
         map
@@ -124,7 +145,7 @@ impl SheetProgram<'_> {
     fn frame(&self, x: &Posed, near: &NearPair) -> PairFrame {
         let (pair, state) = (&near.pair, &x.state);
         let reference_a = state.poses[self.model.rings[pair.ring_a].element].position;
-        let reference_b = state.poses[self.model.rings[pair.ring_b].element].position + state.translation(pair.shift);
+        let reference_b = state.position(self.model.rings[pair.ring_b].element, pair.shift);
         PairFrame::new(&near.a, &reference_a, &near.b, &reference_b)
     }
 
@@ -146,7 +167,7 @@ impl SheetProgram<'_> {
         angles_rad: &[f64],
     ) -> Vec<Row> {
         let frame = self.frame(x, near);
-        let map = self.pair_map(&near.pair, turns, factored);
+        let map = self.pair_map(x, &near.pair, turns, factored);
         let required = self.required(x, near.touching);
         let gap = |&angle: &f64| {
             let (distance, grad) = frame.distance_gradient(angle);

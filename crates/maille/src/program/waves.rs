@@ -26,7 +26,7 @@ use crate::{
         hermitian::{Modes, kept_modes},
         reduced_hessian::ZERO_MODE,
     },
-    topology::step_bound::Motion,
+    topology::motion::Motion,
 };
 use faer::{Mat, c64};
 use maille_geometry::Vec3;
@@ -225,6 +225,6 @@ impl WaveMode {
             let elements = &self.elements[copy * each..(copy + 1) * each];
             elements.iter().map(move |[re, im]| (part(re.0, im.0), part(re.1, im.1)))
         });
-        Motion { elements: elements.collect(), lattice: [Vec3::zeros(); 2], carried: false }
+        Motion { elements: elements.collect(), ..Motion::default() }
     }
 }

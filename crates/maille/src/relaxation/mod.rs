@@ -22,10 +22,7 @@ use crate::{
         newton::{Derivatives, Objective},
     },
     state::State,
-    topology::{
-        side_signs::SideSigns,
-        step_bound::{Motion, StepBound},
-    },
+    topology::{motion::Motion, side_signs::SideSigns, step_bound::StepBound},
 };
 use faer::Mat;
 use load::Loads;
@@ -184,7 +181,7 @@ impl Objective for SheetEnergy<'_> {
             Some(_) => [block(step, lattice), block(step, lattice + 3)],
             None => [Vec3::zeros(); 2],
         };
-        let motion = Motion { elements, lattice: moved, carried: false };
+        let motion = Motion { elements, lattice: moved, ..Motion::default() };
         guard.largest_fraction(self.model, &motion, STEP_CAP * self.model.largest_radius)
     }
 
@@ -192,7 +189,7 @@ impl Objective for SheetEnergy<'_> {
         let part = |at: usize| block(step, at) * fraction;
         let lattice = self.lattice_index();
         let poses = x.state.poses.iter().enumerate().map(|(e, p)| p.moved(&part(6 * e), &part(6 * e + 3))).collect();
-        let mut state = State { poses, a1: x.state.a1, a2: x.state.a2 };
+        let mut state = State { poses, ..x.state };
         if self.target.is_some() {
             state.a1 += part(lattice);
             state.a2 += part(lattice + 3);

@@ -3,10 +3,11 @@
 //! `starts` are states to begin with, `stop` says when they are enough, `local` is one maximisation, `multistart` the search from
 //! many starts and in larger cells, and the other files say what is maximised and from where: `stretch` (with `stretch_lattices`,
 //! `along` for the limits of one direction, and `unlinked` where no chain of links binds), `strain`, and `extreme`: `room` (wire and clearance) or `closest` (the area of
-//! the cell). `family` is the program that an answer solves. `waves` tells whether a limit can go on in a larger cell. `overlap` frees a start that overlaps. Every tolerance is in `options`.
+//! the cell), and `curl`, the tightest roll. `family` is the program that an answer solves. `waves` tells whether a limit can go on in a larger cell. `overlap` frees a start that overlaps. Every tolerance is in `options`.
 
 mod along;
 mod closest;
+pub(crate) mod curl;
 #[doc(hidden)]
 pub mod extreme;
 pub(crate) mod family;

@@ -55,7 +55,7 @@ impl Target for Sought {
             let rates = [[base[0].normalize(), Vec3::zeros()], [Vec3::zeros(), Vec3::x()], [Vec3::zeros(), Vec3::y()]];
             parameters.extend(rates.map(|rate| Parameter { rate, ..Parameter::default() }));
         }
-        LatticeFamily { base, parameters, metric: None }
+        LatticeFamily { base, parameters, metric: None, roll: None }
     }
 
     /// With thin wire, or with a p below every gap.

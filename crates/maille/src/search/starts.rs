@@ -6,8 +6,8 @@ use super::options::{
 use crate::{
     lattice::Cell,
     model::Model,
-    state::{Pose, State},
-    topology::step_bound::{Motion, StepBound},
+    state::State,
+    topology::{motion::Motion, step_bound::StepBound},
 };
 use maille_geometry::Vec3;
 use nalgebra::{Matrix2, Vector2};
@@ -129,7 +129,7 @@ pub(super) fn explored_with_own_wire(model: &Model, seed: u64, k: usize) -> Star
 pub(super) fn perturbed(model: &Model, state: &State, size: f64, rng: &mut ChaCha8Rng) -> State {
     let mut vector = || Vec3::from_fn(|_, _| size * rng.random_range(-1.0..1.0));
     let elements = state.poses.iter().map(|_| (vector(), vector())).collect();
-    moved(model, state, Motion { elements, lattice: [Vec3::zeros(); 2], carried: false })
+    moved(model, state, Motion { elements, ..Motion::default() })
 }
 
 /// `state` after a motion of its elements; after less of it where circles could meet.
@@ -148,11 +148,11 @@ pub(super) fn tiled(model: &Model, of: Cell, state: &State) -> State {
     let elements = state.poses.len() / of.copies();
     let poses = model.cell.cosets().into_iter().flat_map(|coset| {
         let (copy, image) = of.copy_at(coset);
-        let shift = state.translation(image);
+        let image = state.image(image);
         let poses = &state.poses[copy * elements..(copy + 1) * elements];
-        poses.iter().map(move |pose| Pose { position: pose.position + shift, ..*pose })
+        poses.iter().map(move |pose| image.pose(pose))
     });
     let [a1, a2] = of.primitive(state.a1, state.a2);
     let [a1, a2] = model.cell.vectors(a1, a2);
-    State { poses: poses.collect(), a1, a2 }
+    State { poses: poses.collect(), a1, a2, roll: state.roll.map(|roll| roll.in_cell(of, model.cell)) }
 }

@@ -67,7 +67,7 @@ fn parameter(rate: &Matrix2<f64>) -> Parameter {
 /// The sheet's lattices where E is `at` with all parameters at 0.
 fn lattices(model: &Model, at: &Matrix2<f64>, parameters: Vec<Parameter>) -> LatticeFamily {
     let base = [model.start.a1, model.start.a2];
-    LatticeFamily { base, parameters, metric: Some(Matrix2::identity() + at * 2.0) }
+    LatticeFamily { base, parameters, metric: Some(Matrix2::identity() + at * 2.0), roll: None }
 }
 
 impl Target for StrainQuery {

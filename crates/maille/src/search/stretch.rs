@@ -278,7 +278,7 @@ impl<'a> ExactMethod<'a> {
     fn too_near(&self, stretch: &Stretch, upper_bound: f64) -> Option<NearImages> {
         let model = &self.models[0];
         let [a1, a2] = stretch.lattices(model).lattice(upper_bound, stretch.l2, 0.0);
-        let state = State { poses: Vec::new(), a1, a2 };
+        let state = State { poses: Vec::new(), a1, a2, roll: None };
         self.image.get_or_init(|| ImageBound::new(model)).too_near(model, &state)
     }
 

@@ -93,7 +93,7 @@ impl StretchLattices {
         parameters.extend(self.across.lateral_free.then(|| parameter(lateral, 0.0)));
         parameters.extend(self.across.shear_free.then(|| parameter(shear, 0.0)));
         let l2 = if self.across.lateral_free { 0.0 } else { l2 };
-        LatticeFamily { base: self.lattice(0.0, l2, 0.0), parameters, metric: None }
+        LatticeFamily { base: self.lattice(0.0, l2, 0.0), parameters, metric: None, roll: None }
     }
 
     /// The parameters of [`Self::pull`] at a state.
@@ -110,7 +110,7 @@ impl StretchLattices {
         let l1 = Parameter { rate: along, ..Parameter::default() };
         let most = Some((to - at.l2).abs());
         let l2 = Parameter { rate: lateral.map(|v| v * sign), weight: 1.0, most, ..Parameter::default() };
-        LatticeFamily { base: self.lattice(0.0, at.l2, at.shear), parameters: vec![l1, l2], metric: None }
+        LatticeFamily { base: self.lattice(0.0, at.l2, at.shear), parameters: vec![l1, l2], metric: None, roll: None }
     }
 
     /// Least and largest l2 and γ that are found from the state of a limit, with l1 held there less a slack of
@@ -139,8 +139,12 @@ impl StretchLattices {
                     weight: if m == k { 1.0 } else { 0.0 },
                     ..Parameter::default()
                 });
-                let pull =
-                    LatticeFamily { base: self.lattice(l1, l2, shear), parameters: parameters.collect(), metric: None };
+                let pull = LatticeFamily {
+                    base: self.lattice(l1, l2, shear),
+                    parameters: parameters.collect(),
+                    metric: None,
+                    roll: None,
+                };
                 let (moved, more) = farthest(model, &pull, &limit.state, cancel);
                 iterations += more;
                 end[side] = moved.map_or(from, |moved| from + sign * moved);

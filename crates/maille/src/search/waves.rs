@@ -107,6 +107,10 @@ impl<T: Target> Multistart<'_, T> {
             return FoundWaves::none(model.cell);
         }
         let family = self.target.family(model);
+        // Waves are known of sheets whose images are translations.
+        if family.roll.is_some() {
+            return FoundWaves::none(model.cell);
+        }
         let program = SheetProgram::new(model, &family).with_flat_pairs(best.flat.clone());
         let x = program.posed(best.state.clone(), best.p.clone());
         FoundWaves::among(&program.waves(&x, &best.certificate.multipliers), model.cell, orders)

@@ -26,7 +26,9 @@ fn keeps(operation: &Operation, question: &Question) -> bool {
     match question.goal {
         Goal::Stretch { direction_deg, .. } => same_direction(operation.direction_deg(direction_deg), direction_deg),
         Goal::Wire { .. } | Goal::Clearance { .. } => true,
-        Goal::Strain { .. } | Goal::Ray { .. } | Goal::Area { .. } => operation.keeps_deformations(),
+        Goal::Strain { .. } | Goal::Ray { .. } | Goal::Area { .. } | Goal::Curvature { .. } => {
+            operation.keeps_deformations()
+        }
     }
 }
 

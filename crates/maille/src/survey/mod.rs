@@ -4,6 +4,7 @@ mod icosphere;
 mod image;
 mod map;
 mod request;
+pub mod roll;
 mod row;
 pub mod surface;
 

@@ -7,7 +7,7 @@ use crate::{
     bound::DualForce,
     model::Model,
     program::Contact,
-    record::{ChainRecord, ContactRecord, DualRecord, LimitRow, StateRecord, Status, pose_records},
+    record::{ChainRecord, ContactRecord, DualRecord, LimitRow, RollRecord, StateRecord, Status, pose_records},
 };
 use maille_geometry::Vec3;
 
@@ -24,7 +24,8 @@ pub(super) struct Asked<'a> {
 impl Asked<'_> {
     /// The answer, a state of `model`, as a row and a state.
     pub(crate) fn finished(&self, model: &Model, answer: &Answer, wall_s: f64) -> Finished {
-        Finished { row: self.row(model, answer, wall_s), state: self.state(model, answer) }
+        let state = state_record(self.task.direction_deg, self.task.l2, model, answer);
+        Finished { row: self.row(model, answer, wall_s), state }
     }
 
     fn row(&self, model: &Model, answer: &Answer, wall_s: f64) -> LimitRow {
@@ -96,44 +97,46 @@ impl Asked<'_> {
             wave_q2: wave.map(|wave| wave.q[1]),
         }
     }
+}
 
-    fn state(&self, model: &Model, answer: &Answer) -> StateRecord {
-        let f = answer.gradient;
-        let position = |v: Vec3| -> [f64; 3] { (v * model.unit).into() };
-        let poses = pose_records(model, &answer.state);
-        let contact = |c: &Contact| ContactRecord {
-            ring_a: c.pair.ring_a,
-            ring_b: c.pair.ring_b,
-            shift: c.pair.shift,
-            point_a: position(c.point_a),
-            point_b: position(c.point_b),
-            normal: (c.point_b - c.point_a).normalize().into(),
-            force: c.force,
-        };
-        let chain = answer.chain.as_ref().map(|chain| ChainRecord {
-            vector: chain.vector,
-            length: chain.length * model.unit,
-            rings: chain.rings.clone(),
-        });
-        let force = |dual: &DualForce| DualRecord {
-            tie: dual.kind.name().into(),
-            rings: dual.rings.clone(),
-            force: dual.force.into(),
-        };
-        StateRecord {
-            direction_deg: self.task.direction_deg,
-            l2: self.task.l2,
-            status: answer.status,
-            a1: position(answer.state.a1),
-            a2: position(answer.state.a2),
-            deformation_gradient: [[f[(0, 0)], f[(0, 1)]], [f[(1, 0)], f[(1, 1)]]],
-            poses,
-            residual: answer.residual.filter(|r| r.is_finite()),
-            note: answer.note.clone(),
-            contacts: answer.contacts.iter().map(contact).collect(),
-            chain,
-            dual: answer.dual.iter().map(force).collect(),
-            steps: answer.steps.clone(),
-        }
+/// The state of an answer, in the file's unit.
+pub(super) fn state_record(direction_deg: f64, l2: f64, model: &Model, answer: &Answer) -> StateRecord {
+    let f = answer.gradient;
+    let position = |v: Vec3| -> [f64; 3] { (v * model.unit).into() };
+    let poses = pose_records(model, &answer.state);
+    let contact = |c: &Contact| ContactRecord {
+        ring_a: c.pair.ring_a,
+        ring_b: c.pair.ring_b,
+        shift: c.pair.shift,
+        point_a: position(c.point_a),
+        point_b: position(c.point_b),
+        normal: (c.point_b - c.point_a).normalize().into(),
+        force: c.force,
+    };
+    let chain = answer.chain.as_ref().map(|chain| ChainRecord {
+        vector: chain.vector,
+        length: chain.length * model.unit,
+        rings: chain.rings.clone(),
+    });
+    let force = |dual: &DualForce| DualRecord {
+        tie: dual.kind.name().into(),
+        rings: dual.rings.clone(),
+        force: dual.force.into(),
+    };
+    StateRecord {
+        direction_deg,
+        l2,
+        status: answer.status,
+        a1: position(answer.state.a1),
+        a2: position(answer.state.a2),
+        roll: RollRecord::of(&answer.state),
+        deformation_gradient: [[f[(0, 0)], f[(0, 1)]], [f[(1, 0)], f[(1, 1)]]],
+        poses,
+        residual: answer.residual.filter(|r| r.is_finite()),
+        note: answer.note.clone(),
+        contacts: answer.contacts.iter().map(contact).collect(),
+        chain,
+        dual: answer.dual.iter().map(force).collect(),
+        steps: answer.steps.clone(),
     }
 }

@@ -111,7 +111,7 @@ impl BoundaryVertex {
             rotation: UnitQuaternion::new_normalize(Quaternion::new(w, i, j, k)),
         };
         let [a1, a2] = self.lattice.map(Vec3::from);
-        (self.cell, State { poses: self.poses.iter().map(pose).collect(), a1, a2 })
+        (self.cell, State { poses: self.poses.iter().map(pose).collect(), a1, a2, roll: None })
     }
 }
 

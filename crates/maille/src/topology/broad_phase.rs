@@ -1,5 +1,6 @@
 //! The broad phase: which elements may be near each other, at a cost that grows with their number.
 
+use super::window;
 use crate::{
     lattice::{Shift, shifts_within},
     model::Model,
@@ -90,6 +91,9 @@ impl Grid {
 /// both minor radii of each other: |x_j + s − x_i| ≤ reach_i + reach_j + 2 `thickest` + `margin`. Of an element's own images
 /// the lexicographically positive ones.
 pub(super) fn neighbours(model: &Model, state: &State, thickest: f64, margin: f64) -> Vec<Vec<(usize, Shift)>> {
+    if let Some(roll) = &state.roll {
+        return window::neighbours(model, state, roll, thickest, margin);
+    }
     let n = model.elements.len();
     let reach = |i: usize, j: usize| model.elements[i].reach + model.elements[j].reach + 2.0 * thickest + margin;
     let counts = |i: usize, j: usize, shift: Shift| i < j || (i == j && shift > [0, 0]);

@@ -1,11 +1,14 @@
 //! Which rings are near, which are linked, and in which directions chains of links bind the sheet.
 
 pub(crate) mod broad_phase;
+pub(crate) mod motion;
 pub mod near_pairs;
+mod rolled_step;
 pub mod separation;
 pub mod side_signs;
 pub mod step_bound;
 mod warnings;
+mod window;
 
 pub use crate::model::{Link, RingPair};
 use crate::{lattice::Shift, model::Model, state::State};
@@ -26,11 +29,12 @@ pub fn close_pairs(model: &Model, state: &State, margin: f64) -> Vec<RingPair> {
         let mut out = Vec::new();
         for &i in some {
             for &(j, shift) in &neighbours[i] {
-                let offset = state.poses[j].position - state.poses[i].position + state.translation(shift);
+                let image = state.image(shift);
+                let offset = image.way(&state.poses[i].position, &state.poses[j].position);
                 for ring_a in model.elements[i].rings.clone() {
                     for ring_b in model.elements[j].rings.clone() {
                         let (ra, rb) = (&model.rings[ring_a], &model.rings[ring_b]);
-                        let centers = offset + arms[ring_b] - arms[ring_a];
+                        let centers = offset + image.vector(&arms[ring_b]) - arms[ring_a];
                         let near = ra.major_radius + rb.major_radius + ra.minor_radius + rb.minor_radius + margin;
                         if centers.norm_squared() <= near * near {
                             out.push(RingPair { ring_a, ring_b, shift });

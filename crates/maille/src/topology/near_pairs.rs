@@ -42,7 +42,7 @@ pub(crate) fn near_pairs(model: &Model, state: &State, margin: f64) -> Vec<NearP
     let circles: Vec<Circle> = (0..model.rings.len()).map(|ring| state.circle(model, ring, [0, 0])).collect();
     let of = |pair: &RingPair| {
         let (a, b) = (circles[pair.ring_a], circles[pair.ring_b]);
-        let b = Circle { center: b.center + state.translation(pair.shift), ..b };
+        let b = state.image(pair.shift).circle(&b);
         let touching = model.contact_distance(pair.ring_a, pair.ring_b);
         let floor = circle_distance_lower_bound(&a, &b);
         NearPair { pair: *pair, a, b, touching, floor, minima: OnceCell::new() }

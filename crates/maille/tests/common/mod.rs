@@ -30,7 +30,7 @@ pub fn shaken(model: &Model, size: f64, seed: u64) -> State {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let mut vector = |size: f64| Vec3::from_fn(|_, _| size * rng.random_range(-1.0..1.0));
     let poses = model.start.poses.iter().map(|p| p.moved(&vector(size), &vector(size))).collect();
-    State { poses, a1: model.start.a1 + vector(size), a2: model.start.a2 + vector(size) }
+    State { poses, a1: model.start.a1 + vector(size), a2: model.start.a2 + vector(size), roll: None }
 }
 
 /// A map by the exact method.

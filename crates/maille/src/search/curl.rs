@@ -1,0 +1,347 @@
+//! How tightly a sheet can be rolled: the largest curvature of either sign along a direction.
+//!
+//! Images are turned about one axis across the direction u (`docs/theory/roll.md`). κ is the turn for each unit of length of the written
+//! sheet along u, and F = (1 + l1) u uᵀ + (1 + l2) w wᵀ + γ w uᵀ: lines of the sheet along the axis w stay along it. The height of the
+//! elements and l1 with κ are one geometry in many ways, so the first element's height is held and l1 is free in any case. l2 and γ
+//! are held at 0 or left to the sheet. Nothing bounds κ by links: where it stops rings crowd each other, and the most that is claimed is
+//! `local`.
+//!
+//! Starts are the written state, flat states that are stretched and pressed as far as they go, states of neighbouring questions, and
+//! those that are drawn. A state that is rolled along another direction is first unrolled: with κ = 0 a sheet can be rolled along any
+//! direction, and no circles have met on the way.
+
+use super::{
+    local::LocalSolution,
+    multistart::{CellStarts, Entered, LargerCells, Multistart, SearchResult, Target, verdict},
+    options::{ExtremeOptions, STRAIGHT},
+    starts::{Start, Use, perturbed, rng},
+    stop::StopRule,
+};
+use crate::{
+    answer::{Answer, CellTrend},
+    lattice::{Across, Cell, Direction},
+    model::{Model, of_cell},
+    program::{LatticeFamily, Parameter, SheetProgram},
+    record::Status,
+    solver::sqp::{SqpOptions, maximize},
+    state::{Pose, Roll, State},
+};
+use maille_geometry::Vec3;
+use nalgebra::{Rotation3, UnitQuaternion};
+use std::{
+    f64::consts::PI,
+    sync::atomic::{AtomicBool, Ordering},
+};
+
+/// What is sought.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Curl {
+    /// u, the direction that is rolled.
+    pub direction: Direction,
+    /// Sign of the curvature: 1 where the axis lies below the sheet.
+    pub sign: f64,
+    /// What is left to the sheet of l2, the width along the axis, and of the shear γ.
+    pub free: Across,
+}
+
+/// A curvature within this of the largest that links can have is theirs, not a limit.
+const AT_MOST: f64 = 1e-9;
+
+impl Curl {
+    /// Rates of the lattice with l1, l2 and γ.
+    fn rates(&self, model: &Model) -> [[Vec3; 2]; 3] {
+        let (u, w) = (self.direction.along().push(0.0), self.direction.across().push(0.0));
+        [(u, u), (w, w), (w, u)].map(|(to, of)| [model.start.a1, model.start.a2].map(|a| to * of.dot(&a)))
+    }
+
+    /// l1 and what else is free, each with its weight in what is maximised.
+    fn strains(&self, model: &Model, weights: [f64; 3]) -> Vec<Parameter> {
+        let free = [true, self.free.lateral_free, self.free.shear_free];
+        let of = |(rate, weight): ([Vec3; 2], f64)| Parameter { rate, weight, ..Parameter::default() };
+        let all = self.rates(model).into_iter().zip(weights).map(of);
+        all.zip(free).filter(|(_, free)| *free).map(|(parameter, _)| parameter).collect()
+    }
+
+    /// κ at which two linked elements are half a turn apart: they would count no longer. Infinite where links do not go along u.
+    pub(crate) fn most(&self, model: &Model) -> f64 {
+        let u = self.direction.along();
+        let length = model.links.iter().map(|link| {
+            let [from, to] = [link.pair.ring_a, link.pair.ring_b].map(|ring| model.rings[ring].element);
+            let way = model.start.poses[to].position - model.start.poses[from].position;
+            (way + model.start.translation(link.pair.shift)).xy().dot(&u).abs()
+        });
+        PI / length.fold(0.0, f64::max)
+    }
+
+    /// How far the sheet is stretched in a state that is not, or so rolled.
+    fn parameters(&self, model: &Model, state: &State) -> Vec<f64> {
+        let (u, w) = (self.direction.along(), self.direction.across());
+        let f = state.deformation_gradient(model);
+        let curvature = state.roll.map_or(0.0, |roll| self.sign * roll.curvature(&model.reference_inverse));
+        let along = u.dot(&(f * u)) - 1.0;
+        let lateral = self.free.lateral_free.then(|| w.dot(&(f * w)) - 1.0);
+        let shear = self.free.shear_free.then(|| w.dot(&(f * u)));
+        [Some(curvature), Some(along), lateral, shear].into_iter().flatten().collect()
+    }
+
+    /// A rolled state brought to κ = 0 along its own direction, with all else free, and then to the written width without shear where
+    /// these are held: flat, its lattice that of this roll with no κ.
+    fn unrolled(&self, model: &Model, state: &State, cancel: &AtomicBool) -> (Option<State>, u64) {
+        let Some(roll) = state.roll else { return (Some(state.clone()), 0) };
+        let base = [state.a1, state.a2];
+        let back =
+            Parameter { turn_rad: roll.turn_rad.map(|t| -t), weight: 1.0, most: Some(1.0), ..Parameter::default() };
+        let (u, w) = (roll.along, roll.axis());
+        let strain = |(to, of): (Vec3, Vec3)| Parameter { rate: base.map(|a| to * of.dot(&a)), ..Parameter::default() };
+        let parameters = std::iter::once(back).chain([(u, u), (w, w), (w, u)].map(strain)).collect();
+        let family = LatticeFamily { base, parameters, metric: None, roll: Some(roll) };
+        let program = SheetProgram::new(model, &family);
+        let options = SqpOptions { enough: 1.0 - 1e-9, ..SqpOptions::default() };
+        let at = program.posed(state.clone(), vec![0.0; family.parameters.len()]);
+        let end = maximize(&program, at, Vec::new(), &options, cancel);
+        let iterations = end.iterations as u64;
+        if end.point.p[0] < 1.0 - 2e-9 || end.violation > 1e-6 {
+            return (None, iterations);
+        }
+        let flat = State { roll: None, ..end.point.state };
+        let (straight, more) = self.held(model, &flat, cancel);
+        (straight, iterations + more)
+    }
+
+    /// A flat state brought to F = (1 + l1) u uᵀ + (1 + l2) w wᵀ + γ w uᵀ with what is held at 0: its lattice turned with its elements, then
+    /// moved along a straight line.
+    fn held(&self, model: &Model, state: &State, cancel: &AtomicBool) -> (Option<State>, u64) {
+        let (u, w) = (self.direction.along(), self.direction.across());
+        let f = state.deformation_gradient(model);
+        // Turned so that F w lies along w.
+        let side = f * w;
+        let angle = w.y.atan2(w.x) - side.y.atan2(side.x);
+        let turn = Rotation3::from_axis_angle(&Vec3::z_axis(), angle);
+        let pose = |pose: &Pose| Pose {
+            position: turn * pose.position,
+            rotation: UnitQuaternion::from_rotation_matrix(&turn) * pose.rotation,
+        };
+        let poses = state.poses.iter().map(pose).collect();
+        let state = State { poses, a1: turn * state.a1, a2: turn * state.a2, roll: None };
+        let f = state.deformation_gradient(model);
+        let (width, lean) = (w.dot(&(f * w)) - 1.0, w.dot(&(f * u)));
+        let off = [if self.free.lateral_free { 0.0 } else { width }, if self.free.shear_free { 0.0 } else { lean }];
+        if off.iter().all(|x| x.abs() < 1e-12) {
+            return (Some(state), 0);
+        }
+        let [_, lateral, shear] = self.rates(model);
+        let rate = [0, 1].map(|k| -(lateral[k] * off[0] + shear[k] * off[1]));
+        let approach = Parameter { rate, weight: 1.0, most: Some(1.0), ..Parameter::default() };
+        let parameters = std::iter::once(approach).chain(self.strains(model, [0.0; 3])).collect::<Vec<_>>();
+        let zero = vec![0.0; parameters.len()];
+        let family = LatticeFamily { base: [state.a1, state.a2], parameters, metric: None, roll: None };
+        let program = SheetProgram::new(model, &family);
+        let options = SqpOptions { enough: 1.0 - 1e-9, ..SqpOptions::default() };
+        let end = maximize(&program, program.posed(state, zero), Vec::new(), &options, cancel);
+        let reached = end.point.p[0] >= 1.0 - 2e-9 && end.violation <= 1e-6;
+        (reached.then_some(end.point.state), end.iterations as u64)
+    }
+
+    /// The written state stretched and pressed, flat, along each strain that is free.
+    fn flat_starts(&self, model: &Model, seed: u64, cancel: &AtomicBool) -> Vec<Start> {
+        let mut out = Vec::new();
+        for k in 0..3 {
+            for sign in [1.0, -1.0] {
+                let mut weights = [0.0; 3];
+                weights[k] = sign;
+                let parameters = self.strains(model, weights);
+                if parameters.iter().all(|parameter| parameter.weight == 0.0) {
+                    continue;
+                }
+                let base = [model.start.a1, model.start.a2];
+                let zero = vec![0.0; parameters.len()];
+                let family = LatticeFamily { base, parameters, metric: None, roll: None };
+                let program = SheetProgram::new(model, &family);
+                let mut stream = rng(seed, Use::Start, u64::from(u32::MAX) - 1 - out.len() as u64);
+                let state = perturbed(model, &model.start, STRAIGHT, &mut stream);
+                // Only where it leads to matters.
+                let options = SqpOptions { pause_at: FLAT_PAUSE, ..SqpOptions::default() };
+                let end = maximize(&program, program.posed(state, zero), Vec::new(), &options, cancel);
+                out.push(Start::written(end.point.state));
+            }
+        }
+        out
+    }
+}
+
+/// A flat state is stretched until its steps are shorter than this.
+const FLAT_PAUSE: f64 = 1e-2;
+
+impl Target for Curl {
+    /// κ first, then l1, and what else is free.
+    fn family(&self, model: &Model) -> LatticeFamily {
+        let base = [model.start.a1, model.start.a2];
+        let u = self.direction.along();
+        let curvature = Parameter {
+            turn_rad: base.map(|a| self.sign * a.xy().dot(&u)),
+            weight: 1.0,
+            most: Some(self.most(model)).filter(|most| most.is_finite()),
+            ..Parameter::default()
+        };
+        let parameters = std::iter::once(curvature).chain(self.strains(model, [0.0; 3])).collect();
+        LatticeFamily { base, parameters, metric: None, roll: Some(Roll::flat(u)) }
+    }
+
+    /// A flat state is brought to where it is rolled about: its elements around the origin.
+    fn enter(&self, model: &Model, start: Start, cancel: &AtomicBool) -> Entered {
+        let mut state = start.state;
+        let mut iterations = 0;
+        if state.roll.is_some_and(|roll| roll.along != self.direction.along().push(0.0)) {
+            let (unrolled, more) = self.unrolled(model, &state, cancel);
+            iterations += more;
+            let Some(unrolled) = unrolled else { return Entered { at: None, iterations } };
+            state = unrolled;
+        }
+        if state.roll.is_none() {
+            let own = |(pose, e): (&Pose, &crate::model::Element)| state.motion_to(e.anchor).back(&pose.position);
+            let middle = state.poses.iter().zip(&model.elements).map(own).sum::<Vec3>() / state.poses.len() as f64;
+            state.poses.iter_mut().for_each(|pose| pose.position -= middle);
+        }
+        let p = self.parameters(model, &state);
+        Entered { at: Some((state, p)), iterations }
+    }
+
+    fn start(&self, solution: &LocalSolution) -> Start {
+        Start::written(solution.state.clone())
+    }
+}
+
+/// Searches for the largest curvature on the current thread pool. The value is κ in 1/R, with its sign. The result does not depend on the
+/// number of threads.
+///
+/// `from` are states of neighbouring questions, each with its cell, rolled along any direction.
+pub(crate) fn tightest_roll(
+    models: &[Model],
+    target: Curl,
+    options: &ExtremeOptions,
+    from: &[(Cell, State)],
+    cancel: &AtomicBool,
+) -> Answer {
+    let model = &models[0];
+    let search = Multistart { target: &target, upper_bound: f64::INFINITY, seed: options.seed, cancel };
+    let stop = StopRule::of(options.effort, options.starts);
+    let straight = perturbed(model, &model.start, STRAIGHT, &mut rng(options.seed, Use::Start, u64::from(u32::MAX)));
+    let flat = target.flat_starts(model, options.seed, cancel);
+    let neighbours: CellStarts = from.iter().map(|(cell, state)| (*cell, Start::written(state.clone()))).collect();
+    let own = neighbours.iter().filter(|(cell, _)| *cell == model.cell).map(|(_, start)| start.clone());
+    let given = std::iter::once(Start::written(straight)).chain(flat).chain(own).collect();
+    let first = search.run(model, given, stop);
+    let exit = first.first.map(|first| target.sign * first);
+    let rule = LargerCells {
+        every: false,
+        own_starts: stop.of_larger_cell(false),
+        follow_waves: false,
+        where_none: false,
+        fallback: None,
+        neighbours: &neighbours,
+    };
+    let found = search.larger_cells(models, first, &rule);
+    let model = found.model(models).clone();
+    let answer = target.answered(&model, found.result, found.by_cell, cancel.load(Ordering::Relaxed));
+    Answer { first: exit, ..answer }
+}
+
+/// The best that is found from states of neighbouring questions alone, each in its cell; `None` where there is none.
+pub(crate) fn continued_roll(
+    models: &[Model],
+    target: Curl,
+    options: &ExtremeOptions,
+    from: &[(Cell, State)],
+    cancel: &AtomicBool,
+) -> Option<Answer> {
+    let search = Multistart { target: &target, upper_bound: f64::INFINITY, seed: options.seed, cancel };
+    let mut best: Option<(Model, SearchResult)> = None;
+    for (cell, state) in from {
+        let model = of_cell(models, *cell).into_owned();
+        let found = search.run(&model, vec![Start::written(state.clone())], StopRule::exactly(1));
+        if best.as_ref().is_none_or(|(_, known)| found.improves_on(known)) {
+            best = Some((model, found));
+        }
+    }
+    let (model, result) = best?;
+    let by_cell = vec![result.by_cell(model.cell)];
+    Some(target.answered(&model, result, by_cell, cancel.load(Ordering::Relaxed)))
+}
+
+impl Curl {
+    /// The answer of what a search found in the cell of `model`.
+    fn answered(&self, model: &Model, mut result: SearchResult, by_cell: Vec<CellTrend>, interrupted: bool) -> Answer {
+        let by_cell = by_cell.into_iter().map(|t| CellTrend { value: t.value.map(|value| self.sign * value), ..t });
+        let by_cell = by_cell.collect();
+        let best = result.best.take();
+        let counted = |answer: Answer| Answer { by_cell, ..result.counted(answer) };
+        let Some(best) = best else {
+            let status = if interrupted { Status::Interrupted } else { Status::NotConverged };
+            return counted(Answer::new(model, status));
+        };
+        let at_most = best.value() >= self.most(model) - AT_MOST;
+        let status = match () {
+            () if interrupted => Status::Interrupted,
+            () if at_most => Status::Uncertified,
+            () => verdict(&best, f64::INFINITY),
+        };
+        let note = at_most.then(|| "linked elements are half a turn apart: nothing else stops the roll".to_owned());
+        let value = Some(self.sign * best.value());
+        let gradient = best.state.deformation_gradient(model);
+        counted(Answer { value, gradient, note, ..Answer::new(model, status) }).with_solution(model, best)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::search::local::local_maximize;
+
+    /// The largest l1 from the written state, with the images of a flat sheet, or of a rolled one whose κ is held.
+    fn stretch(model: &Model, curl: &Curl, held: Option<f64>) -> Option<f64> {
+        let mut family = curl.family(model);
+        let curvature = family.parameters.remove(0);
+        family.parameters[0].weight = 1.0;
+        family.roll =
+            family.roll.zip(held).map(|(roll, k)| Roll { turn_rad: curvature.turn_rad.map(|t| t * k), ..roll });
+        let state = perturbed(model, &model.start, STRAIGHT, &mut rng(1, Use::Start, 0));
+        let mut program = SheetProgram::new(model, &family);
+        let x = program.posed(state, vec![0.0; family.parameters.len()]);
+        let stream = &mut rng(1, Use::Restart, 0);
+        let (found, _) = local_maximize(model, &mut program, x, (3, 0.1), stream, &AtomicBool::new(false));
+        found.filter(|found| found.certified).map(|found| found.value())
+    }
+
+    fn model(name: &str) -> Model {
+        let design = maille_io::read_design(name, maille_io::builtin(name).unwrap()).unwrap();
+        // Models of the crate that is tested, by what the design says.
+        let text = serde_json::to_string(&design).unwrap();
+        Model::compile(&serde_json::from_str(&text).unwrap(), Cell::PRIMITIVE).unwrap()
+    }
+
+    /// With κ held at 0 the limits are those of a flat sheet, and they change little with little κ.
+    #[test]
+    fn a_roll_without_curvature_is_flat() {
+        let mut compared = 0;
+        for name in ["1.1", "2", "3.1", "european-4-in-1", "japanese-4-in-1", "1.2"] {
+            let model = model(name);
+            for direction_deg in [0.0, 35.0, 90.0] {
+                for lateral_free in [false, true] {
+                    let free = Across { lateral_free, shear_free: lateral_free };
+                    let curl = Curl { direction: Direction::of_degrees(direction_deg), sign: 1.0, free };
+                    let (flat, zero) = (stretch(&model, &curl, None), stretch(&model, &curl, Some(0.0)));
+                    let Some((flat, zero)) = flat.zip(zero) else { continue };
+                    // Where there are many limits the two solves may end in different ones; most do not.
+                    if (flat - zero).abs() < 1e-5 {
+                        assert!((flat - zero).abs() < 1e-9, "{name} {direction_deg} {lateral_free}: {flat} {zero}");
+                        compared += 1;
+                    }
+                    if let Some(little) = stretch(&model, &curl, Some(1e-7)).filter(|l| (l - flat).abs() < 1e-4) {
+                        assert!((little - flat).abs() < 1e-6, "{name} {direction_deg}: {little} {flat}");
+                    }
+                }
+            }
+        }
+        assert!(compared >= 20, "{compared}");
+    }
+}
