@@ -6,7 +6,7 @@ use super::options::{
 use crate::{
     lattice::Cell,
     model::Model,
-    state::State,
+    state::{Pose, State},
     topology::{motion::Motion, step_bound::StepBound},
 };
 use maille_geometry::Vec3;
@@ -115,7 +115,7 @@ fn buckled(model: &Model, seed: u64, k: usize) -> Start {
         (shift / steps, turn / steps)
     };
     let elements: Vec<(Vec3, Vec3)> = state.poses.iter().map(part).collect();
-    let motion = || Motion { elements: elements.clone(), lattice: [Vec3::zeros(); 2], carried: false };
+    let motion = || Motion { elements: elements.clone(), ..Motion::default() };
     Start::written((0..BUCKLED_STEPS).fold(state, |state, _| moved(model, &state, motion())))
 }
 
