@@ -295,7 +295,7 @@ impl Curl {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::search::local::local_maximize;
+    use crate::search::local::{Course, local_maximize};
 
     /// The largest l1 from the written state, with the images of a flat sheet, or of a rolled one whose κ is held.
     fn stretch(model: &Model, curl: &Curl, held: Option<f64>) -> Option<f64> {
@@ -308,7 +308,8 @@ mod tests {
         let mut program = SheetProgram::new(model, &family);
         let x = program.posed(state, vec![0.0; family.parameters.len()]);
         let stream = &mut rng(1, Use::Restart, 0);
-        let (found, _) = local_maximize(model, &mut program, x, (3, 0.1), stream, &AtomicBool::new(false));
+        let course = Course { restarts: 3, first_radius: 0.1, floor: f64::NEG_INFINITY };
+        let (found, _) = local_maximize(model, &mut program, x, course, stream, &AtomicBool::new(false));
         found.filter(|found| found.certified).map(|found| found.value())
     }
 
