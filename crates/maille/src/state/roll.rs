@@ -143,7 +143,7 @@ mod tests {
     #[test]
     fn moments_are_those_of_the_integrals() {
         for turn in [-7.0, -3.1, -1.0 - 1e-12, -1.0 + 1e-12, -0.3, -1e-9, 0.0, 1e-5, 0.7, 0.999, 1.001, 2.0, 6.0f64] {
-            // Simpson's rule on 2,000 pieces.
+            // Simpson's rule on 2,000 pieces: its error is at most turn⁴ n⁻⁴/180, 8e-13.
             let n = 2000;
             let mut sums = [[0.0; 3]; 2];
             for k in 0..=n {
@@ -156,7 +156,7 @@ mod tests {
             }
             let found = moments(turn);
             for (a, b) in found.iter().flatten().zip(sums.iter().flatten()) {
-                assert!((a - b).abs() < 1e-13, "{turn}: {found:?} {sums:?}");
+                assert!((a - b).abs() < 1e-12, "{turn}: {found:?} {sums:?}");
             }
         }
     }
