@@ -100,7 +100,7 @@ fn worst(fit: &Fit) -> f64 {
 }
 
 #[test]
-#[ignore = "minutes: it prints every case, 19 of 20 are found again"]
+#[ignore = "minutes: it prints every case, 20 of 20 are found again"]
 fn hidden_radii_of_seven_designs_are_found_again() {
     let names = ["1.1", "1.2", "2", "3.1", "3.2", "4.2", "european-4-in-1"];
     let mut found = 0;

@@ -1,5 +1,5 @@
 //! Images of a state's elements: rigid motions, which in a flat sheet are translations. The formulas of a rolled sheet are in
-//! [`super::roll`].
+//! [`Roll`].
 
 use super::{
     Pose, State,
