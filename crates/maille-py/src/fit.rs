@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// What is asked of a fit, as JSON: targets are the text of a CSV file that errors call `name`; options are those of the library as JSON.
 #[pyfunction]
-#[pyo3(signature = (design, name, targets, *, shape, free, free_each, min_gap, supercell, options))]
+#[pyo3(signature = (design, name, targets, *, shape, free, free_each, min_gap, supercell, cell, options))]
 pub fn fit_request(
     design: &Design,
     name: &str,
@@ -22,9 +22,11 @@ pub fn fit_request(
     free_each: Vec<String>,
     min_gap: Option<f64>,
     supercell: [usize; 2],
+    cell: &str,
     options: &str,
 ) -> PyResult<String> {
     let options: FitOptions = serde_json::from_str(options).map_err(|e| error::other(&format!("no options: {e}")))?;
+    let options = FitOptions { cells: cell.parse().map_err(|e| error::invalid(&e))?, ..options };
     let targets =
         read_targets(name, targets).map_err(|e| error::argument("targets", e.to_string(), e.help_text().to_owned()))?;
     let specs = |texts: &[String]| {

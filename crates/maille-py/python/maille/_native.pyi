@@ -113,6 +113,7 @@ def fit_request(
     free_each: list[str],
     min_gap: float | None,
     supercell: tuple[int, int],
+    cell: str,
     options: str,
 ) -> str: ...
 def fit(

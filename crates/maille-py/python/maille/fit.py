@@ -132,7 +132,7 @@ def fit_request(
         "seed": _whole("seed", seed, 0),
         "tolerance": float(tolerance),
         "designs": _whole("designs", designs, 1),
-        "cells": cell,
+        "cells": "auto",
         "effort": _effort(effort),
     }
     n, m = supercell
@@ -145,6 +145,7 @@ def fit_request(
         free_each=list(free_each),
         min_gap=None if min_gap is None else float(min_gap),
         supercell=(_whole("supercell", n, 1), _whole("supercell", m, 1)),
+        cell=cell,
         options=json.dumps(options),
     )
 
