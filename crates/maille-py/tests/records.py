@@ -10,7 +10,7 @@ def table(file: Path) -> list[dict[str, str]]:
     with open(file, newline="") as text:
         rows = list(csv.DictReader(text))
     for row in rows:
-        del row["wall_s"]
+        row.pop("wall_s", None)
         if "record" in row:
             row["record"] = Path(row["record"]).name
     return rows

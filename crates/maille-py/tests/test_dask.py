@@ -169,6 +169,18 @@ def test_maps_have_derivatives(client, tmp_path):
     assert all(np.array_equal(mine[name], its[name]) for name in its)
 
 
+def test_a_fit_has_many_starts(client):
+    free = ["elements.standing-*.rings.major_radius=20%"]
+    found = maille.dask.fit("1.1", {0: 0.5, 90: 0.4}, starts=3, client=client, free_each=free)
+    # Along both chains l1 = 0.8 (1 + R - 2 r) - 1 with r = 0.1.
+    assert found.ended == "reached" and found.worst_miss < 1e-6
+    assert np.allclose(list(found.numbers.values()), [1.075, 0.95], atol=1e-5)
+    alone = maille.fit("1.1", {0: 0.5, 90: 0.4}, free_each=free)
+    assert np.allclose(list(alone.numbers.values()), [1.075, 0.95], atol=1e-5)
+    with pytest.raises(maille.ArgumentError):
+        maille.dask.fit("1.1", {0: 0.5}, starts=1, client=client, free=["minor_radius=2"])
+
+
 def test_what_cannot_be_used_stops_nothing_else(client, tmp_path):
     base = maille.Design.builtin("3.1")
     designs = ["1.1", base.with_minor_radius(0.6), "nowhere.toml", base.with_minor_radius(0.05)]
