@@ -236,7 +236,7 @@ mod tests {
         assert_eq!(problems("solver/newton.rs", "use super::eigen; use crate::solver::newton::run; fn run() {}"), []);
         assert!(only("solver/newton.rs", "use crate::error::Thing;").1.contains("uses no other module"));
         assert!(only("solver/newton.rs", "\nuse maille_geometry::Vec3;").1.contains("knows no ring"));
-        assert!(only("topology.rs", "use crate::solver::Thing;").1.contains("survey use it"));
+        assert!(only("topology.rs", "use crate::solver::Thing;").1.contains("fit use it"));
         assert_eq!(problems("relaxation/limit.rs", "use crate::solver::Thing;"), []);
     }
 

@@ -235,6 +235,11 @@ export interface RingSpec {
   minor_radius?: number | null;
 }
 
+export interface RollRecord {
+  along: [number, number];
+  turn_rad: [number, number];
+}
+
 export interface Save {
   file: string;
   text: string;
@@ -317,6 +322,7 @@ export interface StateRecord {
   status: Status;
   a1: [number, number, number];
   a2: [number, number, number];
+  roll?: RollRecord | null;
   deformation_gradient: [[number, number], [number, number]];
   poses: PoseRecord[];
   residual: number | null;
