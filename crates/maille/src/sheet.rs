@@ -16,10 +16,7 @@ use crate::{
         strain::{StrainMethod, StrainOptions},
     },
     state::{Pose, State},
-    survey::{
-        CellChoice, one,
-        roll::{RollLimit, RollQuestion, rolls},
-    },
+    survey::{CellChoice, one},
 };
 use maille_geometry::Vec3;
 use nalgebra::{Matrix2, Rotation3, UnitQuaternion};
@@ -94,24 +91,9 @@ impl Sheet {
             Goal::Curvature { direction_deg, free } => {
                 let curl = Curl { direction: Direction::of_degrees(direction_deg), sign: sense.sign(), free };
                 let options = ExtremeOptions { lattice_free: true, effort, starts, seed };
-                tightest_roll(&self.models, curl, &options, &[], cancel)
+                tightest_roll(&self.models, curl, &options, cancel)
             }
         })
-    }
-
-    /// How tightly it can be rolled, see [`crate::survey::roll::rolls`].
-    ///
-    /// # Errors
-    /// What [`RollQuestion::check`] refuses.
-    pub fn rolls(
-        &self,
-        question: &RollQuestion,
-        known: &[RollLimit],
-        cancel: &AtomicBool,
-        found: &(dyn Fn(&RollLimit) + Sync),
-    ) -> Result<Vec<RollLimit>, InvalidInput> {
-        question.check()?;
-        Ok(rolls(&self.models, question, known, cancel, found))
     }
 
     /// One strain: where a stretch asks the same, found as that, so that one question has one answer.

@@ -6,9 +6,7 @@
 //! are held at 0 or left to the sheet. Nothing bounds κ by links: where it stops rings crowd each other, and the most that is claimed is
 //! `local`.
 //!
-//! Starts are the written state, flat states that are stretched and pressed as far as they go, states of neighbouring questions, and
-//! those that are drawn. A state that is rolled along another direction is first unrolled: with κ = 0 a sheet can be rolled along any
-//! direction, and no circles have met on the way.
+//! Starts are the written state, flat states that are stretched and pressed as far as they go, and those that are drawn.
 
 use super::{
     local::LocalSolution,
@@ -19,15 +17,14 @@ use super::{
 };
 use crate::{
     answer::{Answer, CellTrend},
-    lattice::{Across, Cell, Direction},
-    model::{Model, of_cell},
+    lattice::{Across, Direction},
+    model::Model,
     program::{LatticeFamily, Parameter, SheetProgram},
     record::Status,
     solver::sqp::{SqpOptions, maximize},
     state::{Pose, Roll, State},
 };
 use maille_geometry::Vec3;
-use nalgebra::{Rotation3, UnitQuaternion};
 use std::{
     f64::consts::PI,
     sync::atomic::{AtomicBool, Ordering},
@@ -84,64 +81,6 @@ impl Curl {
         [Some(curvature), Some(along), lateral, shear].into_iter().flatten().collect()
     }
 
-    /// A rolled state brought to κ = 0 along its own direction, with all else free, and then to the written width without shear where
-    /// these are held: flat, its lattice that of this roll with no κ.
-    fn unrolled(&self, model: &Model, state: &State, cancel: &AtomicBool) -> (Option<State>, u64) {
-        let Some(roll) = state.roll else { return (Some(state.clone()), 0) };
-        let base = [state.a1, state.a2];
-        let back =
-            Parameter { turn_rad: roll.turn_rad.map(|t| -t), weight: 1.0, most: Some(1.0), ..Parameter::default() };
-        let (u, w) = (roll.along, roll.axis());
-        let strain = |(to, of): (Vec3, Vec3)| Parameter { rate: base.map(|a| to * of.dot(&a)), ..Parameter::default() };
-        let parameters = std::iter::once(back).chain([(u, u), (w, w), (w, u)].map(strain)).collect();
-        let family = LatticeFamily { base, parameters, metric: None, roll: Some(roll) };
-        let program = SheetProgram::new(model, &family);
-        let options = SqpOptions { enough: 1.0 - 1e-9, ..SqpOptions::default() };
-        let at = program.posed(state.clone(), vec![0.0; family.parameters.len()]);
-        let end = maximize(&program, at, Vec::new(), &options, cancel);
-        let iterations = end.iterations as u64;
-        if end.point.p[0] < 1.0 - 2e-9 || end.violation > 1e-6 {
-            return (None, iterations);
-        }
-        let flat = State { roll: None, ..end.point.state };
-        let (straight, more) = self.held(model, &flat, cancel);
-        (straight, iterations + more)
-    }
-
-    /// A flat state brought to F = (1 + l1) u uᵀ + (1 + l2) w wᵀ + γ w uᵀ with what is held at 0: its lattice turned with its elements, then
-    /// moved along a straight line.
-    fn held(&self, model: &Model, state: &State, cancel: &AtomicBool) -> (Option<State>, u64) {
-        let (u, w) = (self.direction.along(), self.direction.across());
-        let f = state.deformation_gradient(model);
-        // Turned so that F w lies along w.
-        let side = f * w;
-        let angle = w.y.atan2(w.x) - side.y.atan2(side.x);
-        let turn = Rotation3::from_axis_angle(&Vec3::z_axis(), angle);
-        let pose = |pose: &Pose| Pose {
-            position: turn * pose.position,
-            rotation: UnitQuaternion::from_rotation_matrix(&turn) * pose.rotation,
-        };
-        let poses = state.poses.iter().map(pose).collect();
-        let state = State { poses, a1: turn * state.a1, a2: turn * state.a2, roll: None };
-        let f = state.deformation_gradient(model);
-        let (width, lean) = (w.dot(&(f * w)) - 1.0, w.dot(&(f * u)));
-        let off = [if self.free.lateral_free { 0.0 } else { width }, if self.free.shear_free { 0.0 } else { lean }];
-        if off.iter().all(|x| x.abs() < 1e-12) {
-            return (Some(state), 0);
-        }
-        let [_, lateral, shear] = self.rates(model);
-        let rate = [0, 1].map(|k| -(lateral[k] * off[0] + shear[k] * off[1]));
-        let approach = Parameter { rate, weight: 1.0, most: Some(1.0), ..Parameter::default() };
-        let parameters = std::iter::once(approach).chain(self.strains(model, [0.0; 3])).collect::<Vec<_>>();
-        let zero = vec![0.0; parameters.len()];
-        let family = LatticeFamily { base: [state.a1, state.a2], parameters, metric: None, roll: None };
-        let program = SheetProgram::new(model, &family);
-        let options = SqpOptions { enough: 1.0 - 1e-9, ..SqpOptions::default() };
-        let end = maximize(&program, program.posed(state, zero), Vec::new(), &options, cancel);
-        let reached = end.point.p[0] >= 1.0 - 2e-9 && end.violation <= 1e-6;
-        (reached.then_some(end.point.state), end.iterations as u64)
-    }
-
     /// The written state stretched and pressed, flat, along each strain that is free.
     fn flat_starts(&self, model: &Model, seed: u64, cancel: &AtomicBool) -> Vec<Start> {
         let mut out = Vec::new();
@@ -188,22 +127,15 @@ impl Target for Curl {
     }
 
     /// A flat state is brought to where it is rolled about: its elements around the origin.
-    fn enter(&self, model: &Model, start: Start, cancel: &AtomicBool) -> Entered {
+    fn enter(&self, model: &Model, start: Start, _: &AtomicBool) -> Entered {
         let mut state = start.state;
-        let mut iterations = 0;
-        if state.roll.is_some_and(|roll| roll.along != self.direction.along().push(0.0)) {
-            let (unrolled, more) = self.unrolled(model, &state, cancel);
-            iterations += more;
-            let Some(unrolled) = unrolled else { return Entered { at: None, iterations } };
-            state = unrolled;
-        }
         if state.roll.is_none() {
             let own = |(pose, e): (&Pose, &crate::model::Element)| state.motion_to(e.anchor).back(&pose.position);
             let middle = state.poses.iter().zip(&model.elements).map(own).sum::<Vec3>() / state.poses.len() as f64;
             state.poses.iter_mut().for_each(|pose| pose.position -= middle);
         }
         let p = self.parameters(model, &state);
-        Entered { at: Some((state, p)), iterations }
+        Entered { at: Some((state, p)), iterations: 0 }
     }
 
     fn start(&self, solution: &LocalSolution) -> Start {
@@ -213,23 +145,13 @@ impl Target for Curl {
 
 /// Searches for the largest curvature on the current thread pool. The value is κ in 1/R, with its sign. The result does not depend on the
 /// number of threads.
-///
-/// `from` are states of neighbouring questions, each with its cell, rolled along any direction.
-pub(crate) fn tightest_roll(
-    models: &[Model],
-    target: Curl,
-    options: &ExtremeOptions,
-    from: &[(Cell, State)],
-    cancel: &AtomicBool,
-) -> Answer {
+pub(crate) fn tightest_roll(models: &[Model], target: Curl, options: &ExtremeOptions, cancel: &AtomicBool) -> Answer {
     let model = &models[0];
     let search = Multistart { target: &target, upper_bound: f64::INFINITY, seed: options.seed, cancel };
     let stop = StopRule::of(options.effort, options.starts);
     let straight = perturbed(model, &model.start, STRAIGHT, &mut rng(options.seed, Use::Start, u64::from(u32::MAX)));
     let flat = target.flat_starts(model, options.seed, cancel);
-    let neighbours: CellStarts = from.iter().map(|(cell, state)| (*cell, Start::written(state.clone()))).collect();
-    let own = neighbours.iter().filter(|(cell, _)| *cell == model.cell).map(|(_, start)| start.clone());
-    let given = std::iter::once(Start::written(straight)).chain(flat).chain(own).collect();
+    let given = std::iter::once(Start::written(straight)).chain(flat).collect();
     let first = search.run(model, given, stop);
     let exit = first.first.map(|first| target.sign * first);
     let rule = LargerCells {
@@ -238,34 +160,12 @@ pub(crate) fn tightest_roll(
         follow_waves: false,
         where_none: false,
         fallback: None,
-        neighbours: &neighbours,
+        neighbours: &CellStarts::default(),
     };
     let found = search.larger_cells(models, first, &rule);
     let model = found.model(models).clone();
     let answer = target.answered(&model, found.result, found.by_cell, cancel.load(Ordering::Relaxed));
     Answer { first: exit, ..answer }
-}
-
-/// The best that is found from states of neighbouring questions alone, each in its cell; `None` where there is none.
-pub(crate) fn continued_roll(
-    models: &[Model],
-    target: Curl,
-    options: &ExtremeOptions,
-    from: &[(Cell, State)],
-    cancel: &AtomicBool,
-) -> Option<Answer> {
-    let search = Multistart { target: &target, upper_bound: f64::INFINITY, seed: options.seed, cancel };
-    let mut best: Option<(Model, SearchResult)> = None;
-    for (cell, state) in from {
-        let model = of_cell(models, *cell).into_owned();
-        let found = search.run(&model, vec![Start::written(state.clone())], StopRule::exactly(1));
-        if best.as_ref().is_none_or(|(_, known)| found.improves_on(known)) {
-            best = Some((model, found));
-        }
-    }
-    let (model, result) = best?;
-    let by_cell = vec![result.by_cell(model.cell)];
-    Some(target.answered(&model, result, by_cell, cancel.load(Ordering::Relaxed)))
 }
 
 impl Curl {
@@ -295,7 +195,10 @@ impl Curl {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::search::local::{Course, local_maximize};
+    use crate::{
+        lattice::Cell,
+        search::local::{Course, local_maximize},
+    };
 
     /// The largest l1 from the written state, with the images of a flat sheet, or of a rolled one whose κ is held.
     fn stretch(model: &Model, curl: &Curl, held: Option<f64>) -> Option<f64> {

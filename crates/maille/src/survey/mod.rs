@@ -4,7 +4,6 @@ mod icosphere;
 mod image;
 mod map;
 mod request;
-pub mod roll;
 mod row;
 pub mod surface;
 
