@@ -112,7 +112,8 @@ pub struct Args {
     /// Cell of the limits: 1x1 is that of the design; auto goes on to larger ones for each design, which takes long
     #[arg(long, default_value = "1x1", value_parser = read::<CellChoice>)]
     cell: CellChoice,
-    /// How long to search each limit on the way: low, normal, thorough, or a time such as 1s; given/ and fitted/ are searched with normal effort
+    /// How long to search each limit on the way: low, normal, thorough, or a time such as 1s. The limits of the given design
+    /// and of the result are searched with normal effort at least
     #[arg(long, default_value = "low", value_parser = read::<Effort>)]
     effort: Effort,
     /// Seed of what is drawn

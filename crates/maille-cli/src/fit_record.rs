@@ -8,8 +8,7 @@ use crate::{
 };
 use maille::{
     design::Design,
-    fit::{Ended, Measure, Wanted},
-    lattice::Across,
+    fit::{Ended, FitOptions, Measure, Wanted},
     search::ExactOptions,
     survey::{MapQuestion, Method},
 };
@@ -79,7 +78,7 @@ impl Files<'_> {
         output::write(&self.out.join("fit.png"), &png)
     }
 
-    /// The limits of all directions and l2 of the targets; `None` where they are of none.
+    /// The limits of all directions and l2 of the targets, and every 15° between; `None` where they are of none.
     fn question(&self) -> Option<MapQuestion> {
         let stretches = || {
             self.request.targets.iter().filter_map(|target| match target.measure {
@@ -87,11 +86,13 @@ impl Files<'_> {
                 Measure::Clearance => None,
             })
         };
-        let directions_deg = distinct(stretches().map(|(direction, _)| direction)).0;
+        let wanted = stretches().map(|(direction, _)| direction);
+        let mut directions_deg = distinct(wanted.chain((0..=180).step_by(15).map(f64::from))).0;
+        directions_deg.sort_by(f64::total_cmp);
         let l2 = distinct(stretches().map(|(_, l2)| l2)).0;
-        let exact =
-            ExactOptions { seed: self.request.options.seed, across: Across::default(), ..ExactOptions::default() };
-        let cells = self.request.options.cells.clone();
+        let options: &FitOptions = &self.request.options;
+        let (seed, effort, cells) = (options.seed, options.final_effort(), options.cells.clone());
+        let exact = ExactOptions { seed, effort, ..ExactOptions::default() };
         (!l2.is_empty()).then_some(MapQuestion { method: Method::Exact(exact), cells, directions_deg, l2 })
     }
 }

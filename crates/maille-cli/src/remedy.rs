@@ -1,9 +1,7 @@
 //! How errors end the program, and what to do about those of the library, in the words of the command line.
 
 use crate::exit::{DESIGN, FAILED, RECORD, USAGE, Wrong};
-use maille_io::{
-    DesignError, fit::TargetsError, mesh::MeshError, record::RecordError, render::RenderError, study::StudyError,
-};
+use maille_io::{DesignError, TextError, mesh::MeshError, record::RecordError, render::RenderError};
 use miette::{Diagnostic, Report};
 use std::{error::Error, fmt};
 
@@ -21,10 +19,9 @@ pub fn added(report: Report) -> Report {
 /// The exit code of what went wrong.
 pub fn code(report: &Report) -> u8 {
     let of_design = report.downcast_ref::<DesignError>().map(|_| DESIGN);
-    let of_study = report.downcast_ref::<StudyError>().map(|_| USAGE);
-    let of_targets = report.downcast_ref::<TargetsError>().map(|_| USAGE);
+    let of_text = report.downcast_ref::<TextError>().map(|_| USAGE);
     let own = report.downcast_ref::<Wrong>().map(|wrong| wrong.code);
-    own.or(of_design).or(of_study).or(of_targets).or(remedy(report).map(|(code, _)| code)).unwrap_or(FAILED)
+    own.or(of_design).or(of_text).or(remedy(report).map(|(code, _)| code)).unwrap_or(FAILED)
 }
 
 /// The exit code of an error of the library, and what to do next.

@@ -8,4 +8,4 @@ mod targets;
 pub use free::{Bounds, FreeSpec, free_numbers};
 pub use record::{FIT, FitOutcome, FitRecord, FittedTarget, document, open_fit, target_rows};
 pub use request::{FitRequest, fitted_design};
-pub use targets::{TargetsError, read_targets};
+pub use targets::read_targets;

@@ -23,6 +23,7 @@ pub mod run;
 pub mod sensitivity;
 pub mod study;
 pub mod table;
+mod text_error;
 mod tile;
 mod unit;
 pub mod weave;
@@ -33,6 +34,7 @@ pub use design_toml::{
     set_parameters, write_design,
 };
 pub use quantity::Quantity;
+pub use text_error::TextError;
 pub use tile::Tile;
 
 /// The README's example is run as a test.

@@ -1,10 +1,11 @@
 //! Studies: which maps of which designs, in one TOML file.
 
 use crate::{
-    design_toml::{NumberPath, line_column, set_parameters},
+    design_toml::{NumberPath, set_parameters},
     numbers::{Numbers, parse, parse_l2},
     quantity::Quantity,
     run::Map,
+    text_error::TextError,
 };
 use maille::{
     design::Design,
@@ -14,10 +15,8 @@ use maille::{
     search::ExactOptions,
     survey::{CellChoice, MapQuestion, Method},
 };
-use miette::{Diagnostic, NamedSource, SourceSpan};
 use serde::Deserialize;
-use std::{collections::BTreeMap, ops::Range, path::PathBuf, sync::Arc};
-use thiserror::Error;
+use std::{collections::BTreeMap, ops::Range, path::PathBuf};
 use toml::Spanned;
 
 /// What `maille sweep` computes: each design, at each of its radii and spacings, over all directions and l2.
@@ -197,11 +196,9 @@ impl Study {
     /// ).unwrap();
     /// assert_eq!(study.designs[0].minor_radius, [0.05, 0.1]);
     /// ```
-    pub fn read(source_name: &str, text: &str) -> Result<Study, StudyError> {
-        Self::parsed(text).map_err(|Wrong { problem, help, span }| {
-            let source_code = Arc::new(NamedSource::new(source_name, text.to_owned()));
-            StudyError { source_code, problem, help, span: span.into() }
-        })
+    pub fn read(source_name: &str, text: &str) -> Result<Study, TextError> {
+        let wrong = |Wrong { problem, help, span }| TextError::new(source_name, text, span, problem, help);
+        Self::parsed(text).map_err(wrong)
     }
 
     fn parsed(text: &str) -> Result<Study, Wrong> {
@@ -312,31 +309,6 @@ fn whole(number: &Spanned<i64>, least: u64) -> Result<u64, Wrong> {
     u64::try_from(n).ok().filter(|n| *n >= least).ok_or_else(small)
 }
 
-/// What is wrong with a study, shown at its place.
-#[derive(Debug, Error, Diagnostic)]
-#[error("{problem}")]
-pub struct StudyError {
-    #[source_code]
-    source_code: Arc<NamedSource<String>>,
-    problem: String,
-    #[help]
-    help: String,
-    #[label]
-    span: SourceSpan,
-}
-
-impl StudyError {
-    /// Line and column of the place, from 1.
-    pub fn line_column(&self) -> (usize, usize) {
-        line_column(self.source_code.inner(), self.span.offset()).unwrap_or((1, 1))
-    }
-
-    /// What would be right.
-    pub fn help_text(&self) -> &str {
-        &self.help
-    }
-}
-
 #[derive(Debug)]
 struct Wrong {
     problem: String,
@@ -422,7 +394,7 @@ mod tests {
             let error = Study::read("s", text).unwrap_err();
             assert!(error.to_string().contains(problem), "{text}: {error}");
             if let Some(place) = place {
-                assert_eq!(&text[error.span.offset()..error.span.offset() + error.span.len()], place, "{text}");
+                assert_eq!(error.at(), place, "{text}");
                 let line = text.lines().position(|line| line.contains(place));
                 assert_eq!(Some(error.line_column().0), line.map(|k| k + 1), "{text}");
             }

@@ -1,7 +1,7 @@
 //! Errors of the crates as the classes of `maille.errors`, with their fields.
 
 use maille::error::InvalidInput;
-use maille_io::{DesignError, record::RecordError, run::MapError, study::StudyError};
+use maille_io::{DesignError, TextError, record::RecordError, run::MapError};
 use pyo3::{
     prelude::*,
     types::{PyDict, PyList},
@@ -104,7 +104,7 @@ pub fn design(problems: &[InvalidInput]) -> PyErr {
 }
 
 /// What is wrong with a study; `file` is its name.
-pub fn study(file: &str, error: &StudyError) -> PyErr {
+pub fn study(file: &str, error: &TextError) -> PyErr {
     exception("StudyError", |_, to| {
         let (line, column) = error.line_column();
         to.set_item("problem", error.to_string())?;

@@ -1,56 +1,24 @@
 //! Targets of a fit from CSV: `direction_deg`, `l2`, one of `l1`, `at_least` and `at_most`, and `weight`; or the limits of a record.
 
-use crate::nearest::nearest;
+use crate::{nearest::nearest, text_error::TextError};
 use csv::{ReaderBuilder, StringRecord, Trim};
 use maille::{
     fit::{Measure, Target, Wanted},
     record::Status,
 };
-use miette::{Diagnostic, NamedSource, SourceSpan};
-use std::sync::Arc;
-use thiserror::Error;
+use std::ops::Range;
 
 const COLUMNS: [&str; 6] = ["direction_deg", "l2", "l1", "at_least", "at_most", "weight"];
 const FORM: &str = "write a line direction_deg,l1 and below it lines such as 45,0.6; further columns are l2, at_least, at_most and weight";
-
-/// What is wrong with a file of targets, shown at its line.
-#[derive(Debug, Error, Diagnostic)]
-#[error("{problem}")]
-pub struct TargetsError {
-    #[source_code]
-    source_code: Arc<NamedSource<String>>,
-    problem: String,
-    #[help]
-    help: String,
-    #[label]
-    line: SourceSpan,
-}
-
-impl TargetsError {
-    fn new(name: &str, text: &str, at: usize, problem: String, help: impl Into<String>) -> Self {
-        let at = at.min(text.len());
-        let start = text[..at].rfind('\n').map_or(0, |k| k + 1);
-        let length = text[start..].find('\n').unwrap_or(text.len() - start);
-        TargetsError {
-            source_code: Arc::new(NamedSource::new(name, text.to_owned())),
-            problem,
-            help: help.into(),
-            line: (start, length).into(),
-        }
-    }
-
-    /// What would be right.
-    pub fn help_text(&self) -> &str {
-        &self.help
-    }
-}
 
 /// Reads targets. A file with a column `status` is the limits.csv of a record: its limits are wanted, its other columns left aside.
 ///
 /// # Errors
 /// What is wrong, with its line: a column that is not known, a number that is none, a row that wants nothing or two things.
-pub fn read_targets(name: &str, text: &str) -> Result<Vec<Target>, TargetsError> {
-    let wrong = |at: usize, problem: String, help: &str| TargetsError::new(name, text, at, problem, help);
+pub fn read_targets(name: &str, text: &str) -> Result<Vec<Target>, TextError> {
+    let wrong = |at: usize, problem: String, help: &str| {
+        TextError::new(name, text, line_at(text, at), problem, help.to_owned())
+    };
     let mut reader =
         ReaderBuilder::new().trim(Trim::All).comment(Some(b'#')).flexible(true).from_reader(text.as_bytes());
     let header = reader.headers().map_err(|e| wrong(0, format!("is no table: {e}"), FORM))?.clone();
@@ -77,6 +45,13 @@ pub fn read_targets(name: &str, text: &str) -> Result<Vec<Target>, TargetsError>
         return Err(wrong(0, "there is no target".into(), FORM));
     }
     Ok(out)
+}
+
+/// The line of a byte.
+fn line_at(text: &str, at: usize) -> Range<usize> {
+    let at = at.min(text.len());
+    let start = text[..at].rfind('\n').map_or(0, |k| k + 1);
+    start..text[start..].find('\n').map_or(text.len(), |length| start + length)
 }
 
 /// Where the header stands: behind comments and empty lines.
@@ -199,8 +174,8 @@ mod tests {
         ] {
             let error = read_targets("t.csv", text).unwrap_err();
             assert!(error.to_string().contains(problem), "{text}: {error}");
-            assert!(error.help.contains(help), "{text}: {}", error.help);
-            assert_eq!(&text[error.line.offset()..error.line.offset() + error.line.len()], line, "{text}");
+            assert!(error.help_text().contains(help), "{text}: {}", error.help_text());
+            assert_eq!(error.at(), line, "{text}");
         }
     }
 }

@@ -6,7 +6,7 @@
 //! solved near it, as limits have kinks; within a box that shrinks where the model promises too much. A design is not taken if its
 //! rings overlap as written and it does not allow that, if they are linked in another way, or if it has no certified limit for a target.
 //! There are several minima: further starts are drawn within the bounds, far from the best one and near to it. What is found is a
-//! design that was solved, no estimate. That no design of the family does better is proved only where a bound of all of them forbids a target.
+//! design that was solved, no estimate; where the search on the way was short, its limits are searched again with normal effort. That no design of the family does better is proved only where a bound of all of them forbids a target.
 //!
 //! The method, with its measurements: `docs/theory/fit.md`.
 
@@ -123,7 +123,6 @@ pub fn fit(
     let links = Sheet::in_cells(&written, options.cells.clone()).map_err(head)?.model().links.clone();
     let search = Search { family, targets, options, links, solved: Cell::new(0), cancel };
     let given = search.solve(search.shares(&first)).map_err(Refused::of_the_given)?;
-    let before = given.answers.clone();
     let again = resumed.and_then(|(numbers, _)| search.solve(search.shares(numbers)).ok());
     let (mut best, mut starts) = (again.unwrap_or_else(|| given.clone()), resumed.map_or(0, |(_, starts)| starts));
     while starts < options.starts && !search.reached(&best) && !cancel.load(Ordering::Relaxed) {
@@ -144,6 +143,7 @@ pub fn fit(
             best = found;
         }
     }
+    let (before, best) = confirmed(&search, given, best);
     let ended = match search.reached(&best) {
         true => Ended::Reached,
         false if cancel.load(Ordering::Relaxed) => Ended::Interrupted,
@@ -161,6 +161,17 @@ pub fn fit(
         starts,
         designs: search.solved.get(),
     })
+}
+
+/// The answers of the given design, and the best one, after the last search. Where that is interrupted they stay as they are.
+fn confirmed(search: &Search<'_>, given: Point, best: Point) -> (Vec<Answer>, Point) {
+    let options = FitOptions { effort: search.options.final_effort(), ..search.options.clone() };
+    if options.effort == search.options.effort {
+        return (given.answers, best);
+    }
+    let last = Search { options: &options, links: search.links.clone(), solved: Cell::new(0), ..*search };
+    let again = |point: Point| last.solve(point.shares.clone()).unwrap_or(point);
+    (again(given).answers, again(best))
 }
 
 /// How far from the best a start near it is drawn, as a share of each range.

@@ -41,7 +41,7 @@ pub struct FitOptions {
     pub designs: usize,
     /// The cells of each limit.
     pub cells: CellChoice,
-    /// How long each limit is searched.
+    /// How long each limit is searched on the way.
     pub effort: Effort,
 }
 
@@ -53,6 +53,11 @@ impl Default for FitOptions {
 }
 
 impl FitOptions {
+    /// How long the limits of the given design and of the result are searched in the end: at least with normal effort.
+    pub fn final_effort(&self) -> Effort {
+        if self.effort == Effort::Low { Effort::Normal } else { self.effort }
+    }
+
     /// Whether a fit can search so.
     pub(super) fn check(&self) -> Result<(), InvalidInput> {
         if self.starts == 0 || self.designs == 0 {
