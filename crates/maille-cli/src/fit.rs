@@ -170,7 +170,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let begun = Instant::now();
     let input = Input::read_with(name, &args.set, args.minor_radius)?;
     let out = args.out.clone().unwrap_or_else(|| usual_folder(&input.design.name));
-    let record = one(args, &input, &args.free, &targets, &out, &cancel)?;
+    let (record, interrupted) = one(args, &input, &args.free, &targets, &out, &cancel)?;
     if args.json {
         let mut document = fit::document(&record);
         document["out"] = out.display().to_string().into();
@@ -179,14 +179,14 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         fit_record::print(&record, &out, begun.elapsed());
     }
     let code = if record.outcome.ended == Ended::Reached { exit::DONE } else { exit::INCOMPLETE };
-    Ok(exit::ended(record.outcome.ended == Ended::Interrupted, code, args.quiet))
+    Ok(exit::ended(interrupted, code, args.quiet))
 }
 
 fn usual_folder(name: &str) -> PathBuf {
     Path::new("maille-out").join(file_name(name) + "-fit")
 }
 
-/// The fit of one design, in the folder `out`.
+/// The fit of one design, in the folder `out`, and whether it was interrupted.
 fn one(
     args: &Args,
     input: &Input,
@@ -194,17 +194,30 @@ fn one(
     targets: &[Target],
     out: &Path,
     cancel: &AtomicBool,
-) -> Result<FitRecord> {
+) -> Result<(FitRecord, bool)> {
     let request = request(args, input, free, targets)?;
     output::folder(out, "a fit is a folder")?;
-    let _lock = FolderLock::take(out)?;
+    let lock = FolderLock::take(out)?;
     let earlier = fit_record::earlier(out, &request, args.overwrite)?;
-    if let Some(record) = earlier.as_ref().filter(|record| record.is_final(&request)) {
-        return Ok(record.clone());
-    }
-    let record = search(args, &request, earlier.as_ref(), out, cancel)?;
+    let record = match earlier {
+        Some(record) if record.is_final(&request) => record,
+        earlier => match search(args, &request, earlier.as_ref(), out, cancel) {
+            Ok(record) => record,
+            Err(report) => {
+                lock.give_up(out);
+                return Err(report);
+            }
+        },
+    };
     record.save(out)?;
-    Ok(record)
+    if record.outcome.ended == Ended::Interrupted {
+        return Ok((record, true));
+    }
+    let pool = pool(args.threads)?;
+    let fitted = pool.install(|| fitted_design(&request, &record.outcome.numbers, cancel)).map_err(|e| refused(&e))?;
+    let files = Files { out, request: &request, record: &record, fitted: &fitted };
+    let interrupted = files.write(args.threads, args.quiet || args.json)?;
+    Ok((record, interrupted))
 }
 
 /// What is asked.
@@ -247,7 +260,7 @@ fn over(args: &Args, targets: &[Target], cancel: &AtomicBool) -> Result<ExitCode
         let input = Input::read_with(&name, &args.set, args.minor_radius);
         let found = input.and_then(|input| {
             let folder = out.join(file_name(&input.design.name));
-            let record = one(args, &input, &free, targets, &folder, cancel)?;
+            let (record, _) = one(args, &input, &free, targets, &folder, cancel)?;
             Ok((input.design.name, record))
         });
         match found {
@@ -284,7 +297,7 @@ fn targets(file: &Path) -> Result<Vec<Target>> {
     Ok(read_targets(&file.display().to_string(), &text)?)
 }
 
-/// Searches, and writes all files but fit.json in its last form.
+/// Searches; the best design yet is in fit.json meanwhile.
 fn search(
     args: &Args,
     request: &FitRequest,
@@ -322,13 +335,7 @@ fn search(
         return Err(error.into());
     }
     let found = found.map_err(|e| cannot_begin(&e))?;
-    let record = FitRecord::finished(request, &found).map_err(|e| refused(&e))?;
-    if found.ended == Ended::Interrupted {
-        return Ok(record);
-    }
-    let design = pool.install(|| fitted_design(request, &found, cancel));
-    Files { out, request, record: &record, fitted: &design }.write(args.threads, args.quiet)?;
-    Ok(record)
+    FitRecord::finished(request, &found).map_err(|e| refused(&e))
 }
 
 fn cannot_begin(problem: &InvalidInput) -> Report {

@@ -50,10 +50,11 @@ pub struct Files<'a> {
 const RECORDS: [&str; 2] = ["given", "fitted"];
 
 impl Files<'_> {
-    /// Writes the fitted design, the limits of both designs as records, and the figure.
-    pub fn write(&self, threads: Option<u16>, quiet: bool) -> Result<()> {
+    /// Writes the fitted design, the limits of both designs as records, and the figure; whether that was interrupted. Limits that are
+    /// there are not found again.
+    pub fn write(&self, threads: Option<u16>, quiet: bool) -> Result<bool> {
         output::write(&self.out.join("fitted.toml"), write_design(self.fitted).as_bytes())?;
-        let Some(question) = self.question() else { return Ok(()) };
+        let Some(question) = self.question() else { return Ok(false) };
         let given = Design { allow_initial_overlap: true, ..self.request.design.clone() };
         let inputs = [Input::of(given), Input::of(self.fitted.clone())];
         let mut open = Vec::new();
@@ -68,6 +69,9 @@ impl Files<'_> {
             open.push((name, map::open(&map, input)?));
         }
         let solved = map::solve(open, self.out, threads, quiet)?;
+        if solved.interrupted {
+            return Ok(true);
+        }
         let records = RECORDS.into_iter().zip(solved.records);
         let named: Vec<NamedRecord> = records
             .map(|(name, record)| NamedRecord { name: name.to_owned(), record, sensitivities: Vec::new() })
@@ -75,7 +79,8 @@ impl Files<'_> {
         let svg = svg(self.record, &named, Layout::Beside);
         output::write(&self.out.join("fit.svg"), svg.as_bytes())?;
         let png = svg_to_png(&svg, 2.0).into_diagnostic().wrap_err("cannot draw the plot")?;
-        output::write(&self.out.join("fit.png"), &png)
+        output::write(&self.out.join("fit.png"), &png)?;
+        Ok(false)
     }
 
     /// The limits of all directions and l2 of the targets, and every 15° between; `None` where they are of none.

@@ -30,7 +30,7 @@ fn options() -> FitOptions {
 fn solve(request: &FitRequest) -> (maille::fit::Fit, Design) {
     let cancel = AtomicBool::new(false);
     let found = request.solve(None, &|_| (), &cancel).unwrap();
-    let design = fitted_design(request, &found, &cancel);
+    let design = fitted_design(request, &found.numbers, &cancel).unwrap();
     (found, design)
 }
 

@@ -58,7 +58,7 @@ pub fn fit(
             (before..now.designs).for_each(|_| tell(Step::Done));
         };
         let found = request.solve(begin.as_deref().map(|numbers| (numbers, 0)), &now, cancel)?;
-        let design = fitted_design(&request, &found, cancel);
+        let design = fitted_design(&request, &found.numbers, cancel)?;
         Ok((FitRecord::finished(&request, &found)?, design))
     })?;
     let (record, design) = found.map_err(|e: maille::InvalidInput| error::invalid(&e))?;

@@ -1,13 +1,16 @@
 //! The server as its page meets it, and as nobody should: other origins, wrong requests, closed sockets.
 
+mod common;
+
 use axum::{
     Router,
     body::{Body, Bytes},
     http::{Method, Request, StatusCode},
 };
+use common::opened;
 use maille::record::Status;
 use maille_io::builtin;
-use maille_view::{App, Opened, api::*, router};
+use maille_view::{App, api::*, router};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde::{Serialize, de::DeserializeOwned};
@@ -23,16 +26,6 @@ use std::{
 use tower::ServiceExt;
 
 const PORT: u16 = 4711;
-
-fn opened() -> Opened {
-    Opened {
-        name: "1.1".into(),
-        file: None,
-        text: builtin("1.1").unwrap().into(),
-        parameters: BTreeMap::new(),
-        record: None,
-    }
-}
 
 fn app(folder: PathBuf) -> Arc<App> {
     Arc::new(App::new(&opened(), Some(2), folder, None).unwrap())

@@ -1,10 +1,13 @@
 //! Records, simulations and sweeps: what is listed can be opened, and nothing else.
 
+mod common;
+
 use axum::{
     Router,
     body::Body,
     http::{Method, Request, StatusCode},
 };
+use common::opened;
 use maille::{
     lattice::Cell,
     model::Model,
@@ -16,7 +19,7 @@ use maille_io::{
     record::{SheetPlan, SimulationOutcome, SimulationRecord, save_simulation},
     run::Map,
 };
-use maille_view::{App, Opened, api::*, router, solve_map};
+use maille_view::{App, api::*, router, solve_map};
 use serde::{Serialize, de::DeserializeOwned};
 use std::{
     collections::BTreeMap,
@@ -35,16 +38,6 @@ async fn ask<T: DeserializeOwned>(router: &Router, path: &str, body: Option<&imp
     let status = answer.status();
     let bytes = axum::body::to_bytes(answer.into_body(), 1 << 28).await.unwrap();
     (status, serde_json::from_slice(&bytes).unwrap_or_else(|e| panic!("{e}: {}", String::from_utf8_lossy(&bytes))))
-}
-
-fn opened() -> Opened {
-    Opened {
-        name: "1.1".into(),
-        file: None,
-        text: builtin("1.1").unwrap().into(),
-        parameters: BTreeMap::new(),
-        record: None,
-    }
 }
 
 /// A record of one limit in `folder`.

@@ -4,7 +4,7 @@ use super::free::{FreeSpec, free_numbers};
 use crate::design_toml::{NumberPath, set_parameters};
 use maille::{
     answer::Answer,
-    design::Design,
+    design::{Design, Source},
     error::InvalidInput,
     fit::{Family, Fit, FitOptions, FitProgress, FreeNumber, Measure, Target, Targets, Wanted, fit},
     lattice::Cell,
@@ -98,9 +98,11 @@ impl FitRequest {
         self.free.iter().map(|number| number.name.parse()).collect()
     }
 
-    /// The design with other values of its free numbers; `None` where they make none.
-    fn made(&self, values: &[f64]) -> Option<Design> {
-        with(&self.tolerant(), &self.paths().ok()?, values).ok()
+    /// The design with other values of its free numbers.
+    fn made(&self, values: &[f64]) -> Result<Design, InvalidInput> {
+        let none = || InvalidInput::new("numbers", "they make no design", "give those of the fit");
+        let first = |problems: Vec<InvalidInput>| problems.into_iter().next().unwrap_or_else(none);
+        with(&self.tolerant(), &self.paths()?, values).map_err(first)
     }
 
     /// The request without what does not change where a search leads: more starts go on from fewer.
@@ -126,15 +128,17 @@ fn with(design: &Design, paths: &[NumberPath], values: &[f64]) -> Result<Design,
     Ok(out)
 }
 
-/// The design of a fit as a design of its own, with its free numbers to nine digits. Where its rings overlap as written it is laid out
+/// The design of a fit that found these `numbers` as a design of its own, with the numbers to nine digits. Where its rings overlap as written it is laid out
 /// with the widest gaps that its lattice allows. It allows overlaps only where these are left.
-pub fn fitted_design(request: &FitRequest, found: &Fit, cancel: &AtomicBool) -> Design {
+///
+/// # Errors
+/// Where the numbers make no design.
+pub fn fitted_design(request: &FitRequest, numbers: &[f64], cancel: &AtomicBool) -> Result<Design, InvalidInput> {
     let given = &request.design;
     let title = format!("{}, fitted", if given.title.is_empty() { &given.name } else { &given.title });
     let name = format!("{}-fitted", given.name);
-    let made = request.made(&found.numbers.iter().map(|x| nine_digits(*x)).collect::<Vec<_>>());
-    let made = made.unwrap_or_else(|| found.design.clone());
-    let mut out = Design { name, title, varied: given.varied.clone(), ..made }.rounded();
+    let made = request.made(&numbers.iter().map(|x| nine_digits(*x)).collect::<Vec<_>>())?;
+    let mut out = Design { name, title, source: Source::Own, varied: given.varied.clone(), ..made }.rounded();
     let overlaps = |design: &Design| {
         Model::compile(&Design { allow_initial_overlap: false, ..design.clone() }, Cell::PRIMITIVE).is_err()
     };
@@ -142,7 +146,7 @@ pub fn fitted_design(request: &FitRequest, found: &Fit, cancel: &AtomicBool) -> 
         out = laid_out(&out, cancel).unwrap_or(out);
     }
     out.allow_initial_overlap = given.allow_initial_overlap || overlaps(&out);
-    out
+    Ok(out)
 }
 
 /// Rounded to nine significant digits.

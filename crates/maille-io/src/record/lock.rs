@@ -38,4 +38,14 @@ impl FolderLock {
         files::remove_leftovers(folder).map_err(|(path, e)| RecordError::io("remove", path)(e))?;
         Ok(Self { _file: file })
     }
+
+    /// Gives the right back, and removes the folder if nothing was written to it.
+    pub fn give_up(self, folder: &Path) {
+        let only_lock = |entries: fs::ReadDir| entries.flatten().all(|entry| entry.file_name() == LOCK);
+        if fs::read_dir(folder).is_ok_and(only_lock) {
+            // While the right is held: who has opened the file meanwhile is told that it is in use.
+            let _ = fs::remove_file(folder.join(LOCK));
+            let _ = fs::remove_dir(folder);
+        }
+    }
 }

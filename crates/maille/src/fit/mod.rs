@@ -144,9 +144,9 @@ pub fn fit(
         }
     }
     let (before, best) = confirmed(&search, given, best);
-    let ended = match search.reached(&best) {
-        true => Ended::Reached,
-        false if cancel.load(Ordering::Relaxed) => Ended::Interrupted,
+    let ended = match cancel.load(Ordering::Relaxed) {
+        true => Ended::Interrupted,
+        false if search.reached(&best) => Ended::Reached,
         false => Ended::Missed,
     };
     Ok(Fit {
