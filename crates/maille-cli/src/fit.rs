@@ -245,9 +245,9 @@ const USUAL: [&str; 2] = ["minor_radius=50%", "spacing=0.7:1.3"];
 
 /// Fits each design, and ranks them.
 fn over(args: &Args, targets: &[Target], cancel: &AtomicBool) -> Result<ExitCode> {
-    let named = args.free.is_empty() && args.free_each.is_empty();
     let usual = || USUAL.iter().filter_map(|text| text.parse().ok()).collect();
-    let free: Vec<FreeSpec> = if named { usual() } else { args.free.clone() };
+    let none_named = args.free.is_empty() && args.free_each.is_empty();
+    let free: Vec<FreeSpec> = if none_named { usual() } else { args.free.clone() };
     let out = args.out.clone().unwrap_or_else(|| Path::new("maille-out").join("fits"));
     let (mut ranked, mut unused) = (Vec::new(), Vec::new());
     for name in fit_over::designs(&args.over)? {

@@ -55,7 +55,7 @@ pub fn csv(fits: &[(String, FitRecord)]) -> String {
     let mut out = String::from("rank,design,ended,cost,worst_miss,designs\n");
     for (k, (name, record)) in fits.iter().enumerate() {
         let worst = record.outcome.targets.iter().map(|target| target.miss.abs()).fold(0.0, f64::max);
-        let ended = ended(record);
+        let (ended, name) = (ended(record), format!("\"{}\"", name.replace('"', "\"\"")));
         out += &format!("{},{name},{ended},{:?},{worst:?},{}\n", k + 1, cost(record), record.outcome.designs);
     }
     out

@@ -66,7 +66,7 @@ fn designs_are_ranked() {
     let rows: Vec<Vec<&str>> = table.lines().skip(1).map(|line| line.split(',').collect()).collect();
     assert_eq!(rows.len(), 2, "{table}");
     let costs: Vec<f64> = rows.iter().map(|row| row[3].parse().unwrap()).collect();
-    assert!(costs[0] <= costs[1] && rows[0][1] == "1.1" && rows[0][2] == "reached", "{table}");
+    assert!(costs[0] <= costs[1] && rows[0][1] == "\"1.1\"" && rows[0][2] == "reached", "{table}");
 }
 
 #[test]
