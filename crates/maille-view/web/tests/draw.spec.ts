@@ -5,10 +5,13 @@ import { join } from "node:path";
 import { expect, solved, test } from "./program";
 import type { Page } from "@playwright/test";
 
-/** The middle of a handle; handles are made anew with each change. */
+/** The middle of a handle. Handles are made anew with the frame after a change: that frame is awaited. */
 async function handle(page: Page, name: string): Promise<[number, number]> {
   await expect(page.locator(`.board [data-handle="${name}"]`)).toHaveCount(1);
-  return page.evaluate((wanted) => {
+  return page.evaluate(async (wanted) => {
+    const frame = () => new Promise((drawn) => requestAnimationFrame(drawn));
+    await frame();
+    await frame();
     const box = document.querySelector(`.board [data-handle="${wanted}"]`)!.getBoundingClientRect();
     return [box.x + box.width / 2, box.y + box.height / 2];
   }, name);
