@@ -82,7 +82,7 @@ pub fn characterize(
         Method::Exact(options) => {
             let exact = ExactMethod::new(models, options.clone(), cancel);
             let (operations, chains) = symmetric_chains(&models[0], method, directions_deg);
-            chains.par_iter().with_max_len(1).for_each(|chain| {
+            ends_first(&chains).par_bridge().for_each(|chain| {
                 let solved_deg = chain.representative_deg;
                 let open = |k: usize| {
                     let task = move |&direction_deg: &f64| Task { direction_deg, l2: l2[k] };
@@ -112,6 +112,15 @@ pub fn characterize(
             });
         }
     }
+}
+
+/// From both ends inwards. Directions along the axes of a weave, where a map often begins and ends, take longest: begun last they would be waited for.
+fn ends_first<T: Sync>(all: &[T]) -> impl Iterator<Item = &T> + Send {
+    let (mut rest, mut from_back) = (all.iter(), false);
+    std::iter::from_fn(move || {
+        from_back = !from_back;
+        if from_back { rest.next_back() } else { rest.next() }
+    })
 }
 
 /// A limit along a direction that a symmetry of the design maps to itself mirrored: the states with −γ are there, too.
