@@ -128,6 +128,10 @@ enum Command {
     Man(completions::ManArgs),
 }
 
+/// Quadratic programs make and drop many short lists; see docs/decisions/0027-allocator.md.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 fn main() -> ExitCode {
     // Lines of a help are commands to copy: they are not broken.
     let hook = miette::set_hook(Box::new(|_| Box::new(miette::MietteHandlerOpts::new().wrap_lines(false).build())));
