@@ -115,26 +115,19 @@ impl Symmetric {
         weight: f64,
         positions: &'p [usize],
     ) -> &'p [usize] {
-        let n = self.n;
-        if self.at.is_none() {
-            for (p, (&j, aj)) in of.iter().zip(a).enumerate() {
-                let by = weight * aj;
-                let column = &mut self.values[j * n..(j + 1) * n];
+        let mut at = positions;
+        for (p, (&j, aj)) in of.iter().zip(a).enumerate() {
+            let by = weight * aj;
+            if self.at.is_some() {
+                let (column, rest) = at.split_at(of.len() - p);
+                at = rest;
+                column.iter().zip(&a[p..]).for_each(|(&k, a)| self.values[k] += by * a);
+            } else {
+                let column = &mut self.values[j * self.n..(j + 1) * self.n];
                 of[p..].iter().zip(&a[p..]).for_each(|(&i, a)| column[i] += by * a);
             }
-            return positions;
         }
-        let mut left = positions;
-        for (p, aj) in a.iter().enumerate() {
-            let by = weight * aj;
-            let (column, rest) = left.split_at(of.len() - p);
-            // Columns are short: a slice of their range is checked once.
-            let (first, last) = (column[0], column[column.len() - 1]);
-            let values = &mut self.values[first..=last];
-            column.iter().zip(&a[p..]).for_each(|(&k, a)| values[k - first] += by * a);
-            left = rest;
-        }
-        left
+        at
     }
 
     fn diagonal_at(&self, i: usize) -> usize {

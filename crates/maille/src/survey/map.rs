@@ -114,7 +114,8 @@ pub fn characterize(
     }
 }
 
-/// From both ends inwards. Directions along the axes of a weave, where a map often begins and ends, take longest: begun last they would be waited for.
+/// From both ends inwards. A map often begins and ends with directions along the axes of the weave, which are often the slowest:
+/// begun last they would be waited for.
 fn ends_first<T: Sync>(all: &[T]) -> impl Iterator<Item = &T> + Send {
     let (mut rest, mut from_back) = (all.iter(), false);
     std::iter::from_fn(move || {
