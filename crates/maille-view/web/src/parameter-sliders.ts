@@ -49,7 +49,7 @@ export class ParameterSliders {
       const value = side.parameters[name] ?? free.find((p) => p.name === name)?.value ?? 0;
       slider.set(value, short(value, 4));
     }
-    if (this.named) this.links.replaceChildren(...changedList(side));
+    this.links.replaceChildren(...(this.named && free.length ? changedList(side) : []));
   }
 
   private slider(parameter: Parameter): Slider {

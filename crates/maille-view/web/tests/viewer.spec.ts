@@ -129,7 +129,7 @@ test("a broken design says what is wrong, at its line", async ({ page, program }
   const first = page.locator(".table-box input").nth(2);
   await first.fill("40");
   await first.press("Enter");
-  await expect(page.locator(".changed.broken")).toContainText("broken links");
+  await expect(page.locator(".editor .changed.broken")).toContainText("broken links");
   expect(await area.inputValue()).toMatch(/^#/);
   await area.fill(text.replace('name = "mine"', 'name = "yours"'));
   await page.getByRole("button", { name: "Save" }).click();
