@@ -276,6 +276,32 @@ fn bounds(model: &Model) -> (Vec<Chain>, Vec<Bound>) {
     (chains.collect(), bounds.into())
 }
 
+impl Element {
+    /// For people; `unit` with a space before it.
+    fn lines(&self, unit: &str) -> Vec<String> {
+        let mut lines = vec![format!("\"{}\"", self.name)];
+        for ring in &self.rings {
+            let ([x, y, z], offset) = (ring.normal, ring.offset);
+            let offset = match offset == [0.0; 3] {
+                true => String::new(),
+                false => format!(", offset ({:.4}, {:.4}, {:.4})", offset[0], offset[1], offset[2]),
+            };
+            let (big, small) = (ring.major_radius, ring.minor_radius);
+            lines.push(format!("  ring R = {big:.4}, r = {small:.4}{unit}, normal ({x:.4}, {y:.4}, {z:.4}){offset}"));
+        }
+        lines.push(format!("  {} interlocking neighbours, with linking numbers", self.neighbours.len()));
+        for n in &self.neighbours {
+            let cell = match n.cell {
+                [0, 0] => String::new(),
+                [p, q] => format!(" in cell ({p:+},{q:+})"),
+            };
+            let numbers: Vec<String> = n.linking_numbers.iter().map(|k| format!("{k:+}")).collect();
+            lines.push(format!("    \"{}\"{cell}: {}", n.element, numbers.join(", ")));
+        }
+        lines
+    }
+}
+
 impl Inspection {
     /// For people.
     fn text(&self) -> String {
@@ -297,25 +323,7 @@ impl Inspection {
         let [elements, rings, links] = counts.map(|(count, what)| output::counted(count, what));
         line(format!("{elements}, {rings}, {links} per cell\n"));
         for element in &self.elements {
-            line(format!("\"{}\"", element.name));
-            for ring in &element.rings {
-                let ([x, y, z], offset) = (ring.normal, ring.offset);
-                let offset = match offset == [0.0; 3] {
-                    true => String::new(),
-                    false => format!(", offset ({:.4}, {:.4}, {:.4})", offset[0], offset[1], offset[2]),
-                };
-                let (big, small) = (ring.major_radius, ring.minor_radius);
-                line(format!("  ring R = {big:.4}, r = {small:.4}{unit}, normal ({x:.4}, {y:.4}, {z:.4}){offset}"));
-            }
-            line(format!("  {} interlocking neighbours, with linking numbers", element.neighbours.len()));
-            for n in &element.neighbours {
-                let cell = match n.cell {
-                    [0, 0] => String::new(),
-                    [p, q] => format!(" in cell ({p:+},{q:+})"),
-                };
-                let numbers: Vec<String> = n.linking_numbers.iter().map(|k| format!("{k:+}")).collect();
-                line(format!("    \"{}\"{cell}: {}", n.element, numbers.join(", ")));
-            }
+            element.lines(&unit).into_iter().for_each(&mut line);
         }
         line(String::new());
         match &self.smallest_gap {

@@ -20,6 +20,7 @@ mod findings;
 mod fit;
 mod fit_over;
 mod fit_record;
+mod frames;
 mod help;
 mod input;
 mod inspect;

@@ -6,11 +6,12 @@ mod destination;
 use crate::{
     exit::{self, wrong},
     extreme::closest,
+    frames::Frame,
     numbers::positive,
     output,
     piece::PieceArgs,
     remedy,
-    source::{Frame, Source, SourceArgs, Wanted},
+    source::{Source, SourceArgs, Wanted},
     units::{Length, parse_length},
 };
 use advice::{fuse, gaps, large, size, summary};

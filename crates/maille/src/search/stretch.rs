@@ -174,13 +174,7 @@ impl<'a> ExactMethod<'a> {
             return ended(Status::Interrupted, None, &bound);
         }
         if let (None, Some(near)) = (&found.result.best, &near) {
-            let name = &self.models[0].elements[near.element].name;
-            let [p, q] = near.shift;
-            let note = format!(
-                "in this cell element `{name}` and its image at ({p}, {q}) would be {:.3} R apart, which cannot be less than {:.3} R",
-                near.distance, near.least
-            );
-            return ended(Status::L2Unreachable, Some(note), &bound);
+            return ended(Status::L2Unreachable, Some(self.near_note(near)), &bound);
         }
         let bound = self.lowered(bound, stretch, &found.result);
         let upper_bound = match bound {
@@ -207,6 +201,14 @@ impl<'a> ExactMethod<'a> {
         let reached = found.starts.into_iter().filter(|(cell, _)| best(cell));
         let own = own.best.map(|start| (Cell::PRIMITIVE, start));
         (Answer { by_cell, wave, ..answer }, reached.chain(own).collect())
+    }
+
+    fn near_note(&self, near: &NearImages) -> String {
+        let name = &self.models[0].elements[near.element].name;
+        let ([p, q], distance, least) = (near.shift, near.distance, near.least);
+        format!(
+            "in this cell element `{name}` and its image at ({p}, {q}) would be {distance:.3} R apart, which cannot be less than {least:.3} R"
+        )
     }
 
     /// Which larger cells are searched.
