@@ -17,7 +17,7 @@ const CRATES: &[&[&str]] = &[
     &["maille-geometry"],
     &["maille", "maille-verify"],
     &["maille-io", "maille-prove"],
-    &["maille-chapter6", "maille-view", "maille-fuzz"],
+    &["maille-chapter6", "maille-view", "maille-fuzz", "maille-features"],
     &["maille-cli", "maille-py"],
     &["xtask"],
 ];

@@ -5,6 +5,7 @@
 mod bench;
 mod certify;
 mod circles;
+mod features;
 mod gallery;
 mod layers;
 mod paths;
@@ -23,8 +24,9 @@ cargo xtask COMMAND
   test     every test there is, documentation examples and those of the Python package included
   view     build the viewer's page, and the program with it (target/release/maille); needs Node.js
   wheel    build the Python package, install it into a new environment below target, run its examples
-  ci       format, clippy, layers, paths, rustdoc, then test
+  ci       format, clippy, layers, features, paths, rustdoc, then test
   layers   no `use` points backward in the order of crates and modules, or in a circle
+  features what the tests build asks for one choice of features of each library
   paths    every path named in the documents exists
   gallery  write docs/gallery: pictures, plots and numbers of every built-in design, by the program
            --quick         few directions, into maille-out/gallery
@@ -55,6 +57,7 @@ fn main() -> ExitCode {
         ["wheel"] => steps::wheel(&root),
         ["ci"] => steps::ci(&root),
         ["layers"] => steps::layers(&root),
+        ["features"] => steps::features(&root),
         ["paths"] => steps::paths(&root),
         ["gallery"] => steps::failed(gallery::write(&root, false, None)),
         ["gallery", "--quick"] => steps::failed(gallery::write(&root, true, None)),

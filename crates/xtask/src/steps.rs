@@ -1,6 +1,6 @@
 //! The steps of `ci`, each announced and timed.
 
-use crate::{certify, circles, layers, paths, program, repository::Finding, view, wheel::Environment};
+use crate::{certify, circles, features, layers, paths, program, repository::Finding, view, wheel::Environment};
 use std::{
     path::Path,
     process::{Command, Stdio},
@@ -16,6 +16,7 @@ pub fn ci(root: &Path) -> Result<(), Failed> {
     timed("format", || cargo(root, &["fmt", "--all", "--check"], &[]))?;
     timed("clippy", || cargo(root, &["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"], &[]))?;
     timed("layers", || self::layers(root))?;
+    timed("features", || self::features(root))?;
     timed("paths", || self::paths(root))?;
     timed("rustdoc", || cargo(root, &["doc", "--workspace", "--no-deps"], &[("RUSTDOCFLAGS", "-D warnings")]))?;
     test(root)
@@ -74,6 +75,11 @@ pub fn layers(root: &Path) -> Result<(), Failed> {
     println!("{}", layers::order_of_crates());
     println!("{}", layers::order_of_modules());
     report([layers::check(root), circles::check(root)].concat())
+}
+
+/// The check that libraries are compiled once.
+pub fn features(root: &Path) -> Result<(), Failed> {
+    report(features::check(root))
 }
 
 /// The check of the paths named in the documents.

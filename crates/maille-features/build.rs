@@ -1,0 +1,3 @@
+//! So that cargo heeds the build dependencies.
+
+fn main() {}
