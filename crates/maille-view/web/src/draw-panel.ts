@@ -44,7 +44,10 @@ export class DrawPanel {
     this.draft = new Draft(
       side,
       (error) => this.saving.refuse(error),
-      () => this.draw(),
+      (busy) => {
+        this.node.ariaBusy = String(busy);
+        if (!busy) this.draw();
+      },
     );
     this.saving = new SaveRow(side);
     this.board = new Board(side, palette, this.selection, this.draft, (event) => this.press(event));

@@ -5,8 +5,9 @@ import { join } from "node:path";
 import { expect, solved, test } from "./program";
 import type { Page } from "@playwright/test";
 
-/** The middle of a handle. Handles are made anew with the frame after a change: that frame is awaited. */
+/** The middle of a handle. Handles are made anew with the frame after a change: the changes and that frame are awaited. */
 async function handle(page: Page, name: string): Promise<[number, number]> {
+  await expect(page.locator('.draw[aria-busy="true"]')).toHaveCount(0);
   await expect(page.locator(`.board [data-handle="${name}"]`)).toHaveCount(1);
   return page.evaluate(async (wanted) => {
     const frame = () => new Promise((drawn) => requestAnimationFrame(drawn));
