@@ -281,8 +281,9 @@ fn once(args: &Args) -> Result<ExitCode> {
     } else if !args.quiet {
         summary.print();
     }
-    // The usual l2 suit no sheet in particular: that one of them is out of reach is a result.
-    let counts = |row: &LimitRow| unanswered(row) && (args.l2.is_some() || row.status != Status::L2NotReached);
+    // The usual l2 suit no sheet in particular: that one of them is out of reach is a result. A free width has none.
+    let usual = |row: &LimitRow| args.l2.is_none() && row.lateral.as_deref() != Some("free");
+    let counts = |row: &LimitRow| unanswered(row) && !(usual(row) && row.status == Status::L2NotReached);
     Ok(exit::ended(interrupted, args.run.code(rows.iter().any(counts)), args.quiet))
 }
 

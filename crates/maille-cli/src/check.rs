@@ -125,12 +125,12 @@ fn line(name: &str, warning: &ListedProblem) -> String {
 }
 
 fn words(found: &Found) -> String {
+    let unit = found.unit.as_ref().map_or(String::new(), |u| format!(" {u}"));
     let gap = match found.smallest_gap {
-        Some(gap) if gap < 0.0 => format!(", overlap {:.6} (allowed by the file)", -gap),
-        Some(gap) => format!(", smallest gap {gap:.6}"),
+        Some(gap) if gap < 0.0 => format!(", overlap {:.6}{unit} (allowed by the file)", -gap),
+        Some(gap) => format!(", smallest gap {gap:.6}{unit}"),
         None => String::new(),
     };
-    let unit = found.unit.as_ref().map_or(String::new(), |u| format!(" {u}"));
     let warnings = match found.warnings.len() {
         0 => String::new(),
         1 => " with 1 warning".into(),
@@ -138,5 +138,5 @@ fn words(found: &Found) -> String {
     };
     let [rings, links] =
         [(found.rings, "ring"), (found.links, "link")].map(|(count, what)| output::counted(count, what));
-    format!("OK{warnings}; {rings}, {links} per cell{gap}{unit}")
+    format!("OK{warnings}; {rings}, {links} per cell{gap}")
 }

@@ -287,7 +287,10 @@ impl Found<'_> {
         }
         for size in self.what.sizes(found, self.model()) {
             let Size { major_radius, minor_radius } = size;
-            say!("  minor radius    {minor_radius:.9}{unit} at major radius {major_radius}{unit}");
+            say!(
+                "  minor radius    {minor_radius:.9}{unit} at major radius {}{unit}",
+                maille_io::numbers::nine_digits(major_radius)
+            );
             say!("  aspect ratio    {:.6} = inner diameter / wire diameter", size.aspect_ratio());
         }
         for (name, a) in [("a1", found.state.a1), ("a2", found.state.a2)].map(|(n, a)| (n, a * self.model().unit)) {

@@ -47,10 +47,13 @@ struct Extreme {
 const PROVED: [Status; 2] = [Status::L2Unreachable, Status::Unbounded];
 
 /// What a status without a limit means for what to do next.
-fn advice(status: Status) -> Option<&'static str> {
+fn advice(status: Status, lateral_free: bool) -> Option<&'static str> {
     Some(match status {
         Status::L2Unreachable => "proved that no state has this l2",
         Status::Unbounded => "proved that nothing stops the pull",
+        Status::L2NotReached if lateral_free => {
+            "nothing is proved; hold the width with --l2, or try --effort thorough with --overwrite"
+        }
         Status::L2NotReached => "nothing is proved; try l2 in smaller steps or --effort thorough, with --overwrite",
         Status::Uncertified => {
             "the certificate is incomplete; try --effort thorough with --overwrite, or a direction slightly to one side"
@@ -121,7 +124,9 @@ impl Summary {
                 let more = match (status, self.below_bound) {
                     (Status::Global, _) => ": proved to be the largest".into(),
                     (Status::Local, Some(gap)) => format!(": up to {gap:.4} below a proven bound"),
-                    (status, _) => advice(status).map(|words| format!(": {words}")).unwrap_or_default(),
+                    (status, _) => {
+                        advice(status, self.lateral_free).map(|words| format!(": {words}")).unwrap_or_default()
+                    }
                 };
                 output::say!("{count} {}{more}", status.name());
             }

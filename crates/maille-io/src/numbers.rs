@@ -11,6 +11,11 @@ pub fn counted(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
+/// Rounded to nine significant digits.
+pub fn nine_digits(x: f64) -> f64 {
+    format!("{x:.8e}").parse().unwrap_or(x)
+}
+
 /// Most numbers in one list.
 const MOST: usize = 100_000;
 

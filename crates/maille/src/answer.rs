@@ -101,7 +101,9 @@ impl CellTrend {
     /// As `1x1 -0.037600000 (8 starts, 3 limits)`.
     pub fn label(&self) -> String {
         let value = self.value.map_or("none".to_owned(), |x| format!("{x:.9}"));
-        format!("{} {value} ({} starts, {} limits)", self.cell, self.n_starts, self.n_distinct)
+        let counted = |count: u64, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
+        let (starts, limits) = (counted(self.n_starts, "start"), counted(self.n_distinct, "limit"));
+        format!("{} {value} ({starts}, {limits})", self.cell)
     }
 }
 

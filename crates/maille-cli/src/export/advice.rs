@@ -68,7 +68,8 @@ fn short(x: f64) -> String {
 pub fn gaps(scene: &Scene, source: &Source, state: &State, tile: Tile) {
     let Source { design, model, .. } = source;
     if let Some((gap, _)) = topology::smallest_gap(model, state) {
-        let gap = gap * model.unit;
+        // Rings that touch are apart by a rounding, of either sign.
+        let gap = (gap * model.unit * 1e6).round() / 1e6 + 0.0;
         let unit = design.unit.as_deref().unwrap_or("of the file's unit");
         match scene.mm == 1.0 && unit == "mm" {
             true => output::say!("smallest gap between rings: {gap:.6} mm"),

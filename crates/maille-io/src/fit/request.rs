@@ -1,7 +1,10 @@
 //! What is asked of a fit: the only request type of program, Python and Dask, as the record has it.
 
 use super::free::{FreeSpec, free_numbers};
-use crate::design_toml::{NumberPath, set_parameters};
+use crate::{
+    design_toml::{NumberPath, set_parameters},
+    numbers::nine_digits,
+};
 use maille::{
     answer::Answer,
     design::{Design, Source},
@@ -146,12 +149,12 @@ pub fn fitted_design(request: &FitRequest, numbers: &[f64], cancel: &AtomicBool)
         out = laid_out(&out, cancel).unwrap_or(out);
     }
     out.allow_initial_overlap = given.allow_initial_overlap || overlaps(&out);
+    // What no ring uses any more would be read as the wire of all.
+    if out.elements.iter().flat_map(|element| &element.rings).all(|ring| ring.minor_radius.is_some()) {
+        out.minor_radius = None;
+        out.formulas.remove("minor_radius");
+    }
     Ok(out)
-}
-
-/// Rounded to nine significant digits.
-fn nine_digits(x: f64) -> f64 {
-    format!("{x:.8e}").parse().unwrap_or(x)
 }
 
 /// With the widest gaps that the lattice allows; `None` where no state is found.

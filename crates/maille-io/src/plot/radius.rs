@@ -28,7 +28,7 @@ pub fn radius_svg(records: &[NamedRecord], quantity: Quantity, layout: Layout) -
     let alike = curves.iter().all(|curve| scale(curve.design) == scale(first)) && first.unit.is_some();
     let (factor, x_name) = match &first.unit {
         Some(unit) if alike => (first.reference_radius, format!("Minor radius r ({unit})")),
-        _ => (1.0, "Minor radius by reference radius, r/R".to_owned()),
+        _ => (1.0, "Minor radius / reference radius, r/R".to_owned()),
     };
     let labels = labels(&curves);
     let looks = look::of_records(curves.len());
@@ -117,15 +117,22 @@ fn curves(records: &[NamedRecord]) -> Vec<Curve<'_>> {
 /// What a curve is called by: name, and its word.
 type Part = (&'static str, fn(&Curve<'_>) -> String);
 
-const PARTS: [Part; 4] = [
+const PARTS: [Part; 5] = [
     ("design", |curve| curve.design.name.clone()),
     ("direction", |curve| format!("{}°", curve.direction_deg)),
     ("l₂", |curve| match curve.rows.first().and_then(|(_, row)| row.lateral.as_deref()) {
         Some("free") => "width free".into(),
         _ => format!("l₂ = {}", l2_label(curve.l2)),
     }),
+    ("numbers", |curve| varied(curve.design)),
     ("method", |curve| curve.method.to_owned()),
 ];
+
+/// What a study has varied beside the radius, in words.
+fn varied(design: &Design) -> String {
+    let words: Vec<String> = design.varied.iter().map(|(name, value)| format!("{name} {value}")).collect();
+    if words.is_empty() { "as written".to_owned() } else { words.join(", ") }
+}
 
 /// The parts in which curves differ.
 fn parts<'a>(curves: &'a [Curve<'_>]) -> impl Iterator<Item = Part> + 'a {
@@ -139,7 +146,7 @@ fn labels(curves: &[Curve<'_>]) -> Vec<String> {
         false => parts.iter().map(|(_, of)| of(curve)).collect::<Vec<_>>().join(", "),
     };
     let mut labels: Vec<String> = curves.iter().map(label).collect();
-    // Designs of one name that differ in more than the radius, such as the spacing of their rings.
+    // Designs of one name that differ otherwise.
     for k in 0..labels.len() {
         let twice = labels[..k].iter().filter(|label| **label == labels[k]).count();
         if twice > 0 {

@@ -14,7 +14,7 @@ use crate::{
         flat::{COAXIAL, SHIFTED},
     },
     solver::{
-        certificate::{Certificate, measure_curvature, measure_gaps},
+        certificate::{Certificate, certify, measure_curvature, measure_gaps},
         constraints::{Derivatives, Multiplier, violation},
         polish::polish,
         sqp::{Program, SqpOptions, maximize},
@@ -161,8 +161,13 @@ impl Rounds<'_> {
             let used_up = larger && end.iterations >= options.max_iterations;
             gain = program.value(&end.point) - before;
             let stalled = used_up && gain < STALLED_GAIN;
-            let ((polished, mut certificate), last_resort) = polish(program, &end);
+            let ((mut polished, mut certificate), last_resort) = polish(program, &end);
             self.keep(program, last_resort);
+            // A polish that goes astray loses a state without overlap.
+            if !certificate.holds() && !feasible(program, &polished) && feasible(program, &end.point) {
+                certificate = certify(program, &end.point, &end.multipliers);
+                polished = end.point.clone();
+            }
             let locked = certificate.holds();
             let mut carrying = certificate.multipliers.clone();
             let shifted = locked && program.release_flat_pairs(&polished, &mut carrying, SHIFTED);

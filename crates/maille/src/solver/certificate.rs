@@ -121,7 +121,7 @@ fn dual_residual(c: &[f64], rows: &[Row], multipliers: &[f64]) -> f64 {
 
 /// The figures at a point with the multipliers of its active rows, but for the curvature, which costs far more than the
 /// others: see [`measure_curvature`].
-pub(super) fn certify<P: Program>(program: &P, x: &P::Point, active: &[Multiplier]) -> Certificate {
+pub(crate) fn certify<P: Program>(program: &P, x: &P::Point, active: &[Multiplier]) -> Certificate {
     let rows = program.rows(x, BAND, Derivatives::First);
     let chosen: Vec<Row> = matched(&rows, &Loads::new(active)).iter().map(|(k, _)| rows[*k].clone()).collect();
     let smallest_gap = program.rows(x, 0.0, Derivatives::None).iter().map(|r| r.gap).fold(0.0, f64::min);

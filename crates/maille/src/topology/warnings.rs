@@ -57,7 +57,7 @@ fn nearest_other(model: &Model, element: usize) -> Option<f64> {
     None
 }
 
-/// Elements with fewer neighbours than others that differ from them by a translation alone.
+/// Elements with fewer neighbours than others that are their copies or mirror images.
 fn unequal(model: &Model, counts: &[usize]) -> Vec<InvalidInput> {
     let mut out = Vec::new();
     for (e, count) in counts.iter().enumerate().filter(|(_, count)| **count > 0) {
@@ -65,7 +65,9 @@ fn unequal(model: &Model, counts: &[usize]) -> Vec<InvalidInput> {
         let most = like.map(|other| counts[other]).max().unwrap_or(*count);
         if *count < most {
             let name = &model.elements[e].name;
-            let problem = format!("\"{name}\" has {count} linked neighbours, another element of its shape has {most}");
+            let problem = format!(
+                "\"{name}\" has {count} linked neighbours, another element of its shape, or its mirror image, has {most}"
+            );
             let help = "if that is not meant: check its center, and whether an element beside it is missing";
             out.push(InvalidInput::new(format!("elements[{e}].center"), problem, help));
         }
@@ -73,7 +75,7 @@ fn unequal(model: &Model, counts: &[usize]) -> Vec<InvalidInput> {
     out
 }
 
-/// Whether two elements have the same rings, turned the same way.
+/// Whether two elements have the same rings, turned the same way, or mirrored in planes of the axes.
 fn alike(model: &Model, a: usize, b: usize) -> bool {
     let rings = |e: usize| &model.rings[model.elements[e].rings.clone()];
     let close = |x: f64, y: f64| (x - y).abs() < 1e-6;
@@ -81,8 +83,8 @@ fn alike(model: &Model, a: usize, b: usize) -> bool {
         && rings(a).iter().zip(rings(b)).all(|(p, q)| {
             close(p.major_radius, q.major_radius)
                 && close(p.minor_radius, q.minor_radius)
-                && close(p.normal.dot(&q.normal).abs(), 1.0)
-                && (p.offset - q.offset).norm() < 1e-6
+                && (p.normal.abs() - q.normal.abs()).norm() < 1e-6
+                && (p.offset.abs() - q.offset.abs()).norm() < 1e-6
         })
 }
 
