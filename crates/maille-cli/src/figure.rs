@@ -123,7 +123,7 @@ fn format(file: &Path) -> Result<Format> {
         "png" => Ok(Format::Png),
         _ => Err(wrong(
             exit::USAGE,
-            format!("the ending of {} names no format of a plot", file.display()),
+            format!("the ending of {} is not a format of plots", file.display()),
             "call it .svg, .pdf or .png",
         )),
     }

@@ -100,7 +100,8 @@ fn with_short_lines(command: Command) -> Command {
     }
 }
 
-/// Where an example and its comment are too long for a line, the comment gets one of its own.
+/// Where an example and its comment are too long for a line, the comment gets one of its own. A paragraph becomes one line, which is
+/// broken at the terminal's width.
 fn short_lines(help: &str) -> String {
     let short = |line: &str| match line.strip_prefix("  maille ").and_then(|rest| rest.split_once("  ")) {
         Some((command, comment)) if line.chars().count() > 80 => {
@@ -108,7 +109,15 @@ fn short_lines(help: &str) -> String {
         }
         _ => line.to_owned(),
     };
-    help.lines().map(short).collect::<Vec<_>>().join("\n")
+    let in_paragraph = |line: &str| line.starts_with(|c: char| !c.is_whitespace());
+    let mut lines: Vec<String> = Vec::new();
+    for line in help.lines() {
+        match lines.last_mut().filter(|last| in_paragraph(last) && in_paragraph(line) && !last.ends_with(':')) {
+            Some(last) => *last += &format!(" {line}"),
+            None => lines.push(short(line)),
+        }
+    }
+    lines.join("\n")
 }
 
 #[cfg(test)]
@@ -137,6 +146,7 @@ mod tests {
         let command = format!("  maille plot {}", "record ".repeat(9).trim());
         let long = format!("Examples:\n{command}     all of them in one");
         assert_eq!(short_lines(&long), format!("Examples:\n{command}\n      all of them in one"));
+        assert_eq!(short_lines("One\ntwo.\n\nThree:\n  a\nfour"), "One two.\n\nThree:\n  a\nfour");
         let alone = "  maille plot ".to_owned() + &"record ".repeat(12);
         assert_eq!(short_lines(&alone), alone);
     }

@@ -135,9 +135,9 @@ pub fn run(args: &Args) -> Result<()> {
         let gap = topology::smallest_gap(&model, &model.start).map_or(String::new(), |(gap, _)| {
             format!(", smallest gap {:.4} {}", gap * model.unit, rings.unit.as_deref().unwrap_or_default())
         });
-        let file = out.display();
+        let (place, file) = (out.display(), output::quoted(&out.display().to_string()));
         output::say!(
-            "{file}  {}: {} and {} per cell{gap}",
+            "{place}  {}: {} and {} per cell{gap}",
             design.title,
             output::counted(model.rings.len(), "ring"),
             output::counted(model.links.len(), "link")

@@ -116,3 +116,11 @@ pub fn print_json(document: &impl serde::Serialize) -> Result<()> {
     let text = serde_json::to_string_pretty(document).into_diagnostic().wrap_err("cannot write JSON")?;
     print(format!("{text}\n").as_bytes())
 }
+
+/// A word of a command line as a shell takes it.
+pub fn quoted(text: &str) -> String {
+    match text.contains([' ', ';']) {
+        true => format!("\"{text}\""),
+        false => text.to_owned(),
+    }
+}

@@ -51,8 +51,13 @@ pub fn size_mm(tile: Tile, model: &Model, state: &State, mm: f64) -> [f64; 2] {
 /// `8x16 cells, 100.9 x 101.9 mm with the wire`.
 pub fn words(tile: Tile, model: &Model, state: &State, mm: f64) -> String {
     let [width, height] = size_mm(tile, model, state, mm);
-    let lean = state.a1.dot(&state.a2).abs() > 1e-6 * state.a1.norm() * state.a2.norm();
-    let rows = if lean && tile.0[1] > 1 { "; each row stands a little beside the one below it" } else { "" };
+    // How far a row stands beside the one below it.
+    let lean = (state.a1.dot(&state.a2) / state.a1.norm()).abs() * model.unit * mm;
+    let beside = lean * f64::from(tile.0[1] - 1);
+    let rows = match lean > 1e-6 * width && tile.0[1] > 1 {
+        true => format!("; each row stands {lean:.2} mm beside the one below it, {:.1} mm in all", width + beside),
+        false => String::new(),
+    };
     format!("{tile} cells, {width:.1} x {height:.1} mm with the wire{rows}")
 }
 

@@ -1,9 +1,6 @@
 //! Records named on the command line.
 
-use crate::{
-    exit::{self, wrong},
-    source::read_record,
-};
+use crate::exit::{self, wrong};
 use maille::survey::surface::Boundary;
 use maille_io::{
     boundary::{SURFACE, SurfaceRecord, open_surface},
@@ -40,6 +37,35 @@ pub fn surface(named: &Path) -> Result<Option<(SurfaceRecord, Boundary)>> {
     }
 }
 
+/// Whether it is the folder of a record.
+pub fn holds_record(folder: &Path) -> bool {
+    folder.join("run.json").is_file()
+}
+
+/// The record of a folder that was named.
+pub fn read_record(folder: &Path) -> Result<Record> {
+    is_record(folder)?;
+    Ok(Record::read(folder)?)
+}
+
+/// Refuses a folder without a record.
+pub fn is_record(folder: &Path) -> Result<()> {
+    if holds_record(folder) {
+        return Ok(());
+    }
+    let problem = match folder.exists() {
+        true => format!("{} holds no record of maille", folder.display()),
+        false => format!("there is no folder {}", folder.display()),
+    };
+    let help = match of_sweep(folder.to_owned()).first().filter(|first| first.as_path() != folder) {
+        Some(first) => format!("it holds the records of a study: give one of them, such as {}", first.display()),
+        None => {
+            "give the folder that `maille characterize` wrote: it holds run.json, limits.csv and states.jsonl".into()
+        }
+    };
+    Err(wrong(exit::RECORD, problem, help))
+}
+
 /// The name of a record: its folder, without a slash at the end.
 pub fn name(folder: &Path) -> String {
     folder.components().collect::<PathBuf>().display().to_string()
@@ -47,13 +73,12 @@ pub fn name(folder: &Path) -> String {
 
 /// The records of a folder that `maille sweep` writes, in the order of their names; of any other, the folder itself.
 pub fn of_sweep(folder: PathBuf) -> Vec<PathBuf> {
-    let is_record = |folder: &Path| folder.join("run.json").is_file();
-    let inside = match is_record(&folder) {
+    let inside = match holds_record(&folder) {
         true => None,
         false => std::fs::read_dir(folder.join("records")).ok(),
     };
     let mut records: Vec<PathBuf> = inside.into_iter().flatten().flatten().map(|entry| entry.path()).collect();
-    records.retain(|path| is_record(path));
+    records.retain(|path| holds_record(path));
     records.sort();
     if records.is_empty() { vec![folder] } else { records }
 }

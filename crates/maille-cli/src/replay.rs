@@ -4,9 +4,8 @@ use crate::{
     at::{At, parse_at},
     exit::{self, wrong},
     output::{counted, say},
-    records,
+    records::{self, read_record},
     remedy::DAMAGED,
-    source::read_record,
 };
 use maille::record::{LimitRow, Status};
 use maille_io::run::{ReplayError, Replayed, replay};

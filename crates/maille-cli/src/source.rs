@@ -6,7 +6,8 @@ use crate::{
     extreme::{Lattice, as_design, word as extreme_word},
     input::{Input, Setting, file_name},
     numbers::positive,
-    output::counted,
+    output::{counted, quoted},
+    records::{self, holds_record, read_record},
 };
 use maille::{
     design::Design,
@@ -93,7 +94,7 @@ impl SourceArgs {
             return Err(wrong(exit::USAGE, "--lattice is for --at roomiest and --at tightest", help));
         }
         let folder = match (&self.from, &input) {
-            (Some(folder), _) => folder.clone(),
+            (Some(folder), _) => records::folder(folder),
             (None, Some(input)) if at.is_some() || wanted.locked => usual_folder(&input.design),
             (None, Some(input)) => {
                 let design = input.design.clone();
@@ -267,10 +268,6 @@ impl SourceArgs {
 
     /// The command that computes the state asked for.
     fn characterize_line(&self, design: &Design, record: Option<&Record>, at: At, folder: &Path) -> String {
-        let quoted = |text: &str| match text.contains([' ', ';']) {
-            true => format!("\"{text}\""),
-            false => text.to_owned(),
-        };
         let mut line = format!("maille characterize {}", quoted(self.design.as_deref().unwrap_or(&design.name)));
         line += &self.set.iter().map(|set| format!(" --set {set}")).collect::<String>();
         if let Some(design) = record.map(|r| &r.run.design).filter(|_| self.design.is_none()) {
@@ -344,29 +341,6 @@ impl Source {
         let limit = matches!(record.status, Status::Global | Status::Local | Status::ThresholdReached);
         (!limit).then(|| format!("the state is \"{}\": the last of its search, no limit", record.status.name()))
     }
-}
-
-fn holds_record(folder: &Path) -> bool {
-    folder.join("run.json").is_file()
-}
-
-/// The record of a folder that was named.
-pub fn read_record(folder: &Path) -> Result<Record> {
-    is_record(folder)?;
-    Ok(Record::read(folder)?)
-}
-
-/// Refuses a folder without a record.
-pub fn is_record(folder: &Path) -> Result<()> {
-    if holds_record(folder) {
-        return Ok(());
-    }
-    let problem = match folder.exists() {
-        true => format!("{} holds no record of maille", folder.display()),
-        false => format!("there is no folder {}", folder.display()),
-    };
-    let help = "give the folder that `maille characterize` wrote: it holds run.json, limits.csv and states.jsonl";
-    Err(wrong(exit::RECORD, problem, help))
 }
 
 /// The design with overlaps of its start accepted.

@@ -112,7 +112,7 @@ impl Summary {
 
     /// Prints it for people.
     pub fn print(&self) {
-        output::say!("{:>8}  {:>20}  {:>20}  {:>7}", "l2", "least l1", "largest l1", "limits");
+        output::say!("{:>8}  {:>20}  {:>20}  {:>7}", "l2", "smallest l1", "largest l1", "limits");
         let show = |x: &Option<Extreme>| x.map_or("-".into(), |x| format!("{:.4} at {}°", x.l1, x.direction_deg));
         for of in &self.limits {
             let (least, largest) = (show(&of.least), show(&of.largest));

@@ -222,7 +222,7 @@ fn format_of(file: &Path) -> Result<Format> {
         "parquet" => Ok(Format::Parquet),
         _ => Err(wrong(
             exit::USAGE,
-            format!("the ending of {} names no format of a table", file.display()),
+            format!("the ending of {} is not a format of tables", file.display()),
             "call it .txt, .csv, .json or .parquet, or give --format",
         )),
     }

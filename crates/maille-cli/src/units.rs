@@ -54,7 +54,10 @@ pub struct Length {
 
 /// Reads `1.6mm`, `0.064in`, `5/16in` or `5/16"`.
 pub fn parse_length(text: &str) -> Result<Length, String> {
-    let wrong = || format!("\"{text}\" is not a length; give it with its unit, as 8mm, 0.3125in or 5/16in");
+    let wrong = || match text.contains(',') {
+        true => format!("\"{text}\" is not a length; decimals take a point: {}", text.replace(',', ".")),
+        false => format!("\"{text}\" is not a length; give it with its unit, such as 8mm, 0.3125in or 5/16in"),
+    };
     let text = text.trim();
     let split = text.find(|c: char| !(c.is_ascii_digit() || "./".contains(c))).ok_or_else(wrong)?;
     let (value, unit) = text.split_at(split);
@@ -86,8 +89,11 @@ pub fn parse_wire(text: &str) -> Result<Length, String> {
             "\"{text}\" may be of two tables of gauges, swg (British) or awg (American): {tables}; a diameter takes its unit, as 1.6mm"
         ));
     }
-    parse_length(text).map_err(|_| {
-        format!("\"{text}\" is not a wire; give a diameter such as 1.6mm or 0.064in, or a gauge such as 16swg or 14awg")
+    parse_length(text).map_err(|problem| match text.contains(',') {
+        true => problem.replacen("a length", "a wire", 1),
+        false => format!(
+            "\"{text}\" is not a wire; give a diameter such as 1.6mm or 0.064in, or a gauge such as 16swg or 14awg"
+        ),
     })
 }
 

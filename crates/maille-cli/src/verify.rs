@@ -6,8 +6,8 @@ use crate::{
     map, output,
     progress::Progress,
     records,
+    records::is_record,
     remedy::DAMAGED,
-    source::is_record,
     verify_proof::{self, VerifiedProof},
     verify_surface::{self, VerifiedSurface, is_surface},
 };

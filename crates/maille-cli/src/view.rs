@@ -18,7 +18,7 @@ use std::path::PathBuf;
 Examples:
   maille view                              the built-in design 1.1, and a list of the others
   maille view my-weave.toml                a design of your own; the page can save it
-  maille view my-weave.toml --set play=1.1 the same with another value for one of its parameters
+  maille view my-weave.toml --set play=1.1  the same with another value for one of its parameters
   maille view maille-out/1.1               a record: its limits, with nothing solved
   maille view maille-out/1.1-simulate      a simulation: its states and its forces
   maille view maille-out/radius            a sweep: its first record, and a list of the others

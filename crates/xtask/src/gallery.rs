@@ -122,13 +122,13 @@ impl Page {
             of_l2.iter().map(|entry| entry["asked"].as_u64()).sum::<Option<u64>>()?,
         );
         let wire = match inspected["wire"]["metres_per_square_metre"].as_f64() {
-            Some(metres) => format!("wire {wire:.1} {unit} a cell, {metres:.0} m a square metre"),
-            None => format!("wire {wire:.2} a cell"),
+            Some(metres) => format!("wire {wire:.1} {unit} per cell, {metres:.0} m per square metre"),
+            None => format!("wire {wire:.2} per cell"),
         };
         let gap = format!("{gap:.4} {unit}");
         let section = format!(
             "\n## {name} {title}\n\n\
-            {rings} rings and {links} links a cell; smallest gap {}; {wire}.\n\n\
+            {rings} rings and {links} links per cell; smallest gap {}; {wire}.\n\n\
             | start | limits |\n| --- | --- |\n\
             | ![{name}, a patch of the sheet]({name}.png) | ![{name}, largest stretch in each direction]({name}-polar.png) |\n",
             gap.trim_end(),
@@ -152,7 +152,7 @@ fn document(pages: &[Page], pulls: &str) -> String {
         how many limits attain their proven bound: none of these can be larger. All are of a single cell (`--cell 1x1`);\n\
         in a larger one, those that do not attain their bound can be larger. See\n\
         [reading plots](../guide/reading-plots.md) and [certificates](../guide/certificates.md).\n\n\
-        | design | rings | links | smallest gap / R | wire / R | least l1 | largest l1 | attained |\n\
+        | design | rings | links | smallest gap / R | wire / R | smallest l1 | largest l1 | attained |\n\
         | --- | --- | --- | --- | --- | --- | --- | --- |\n"
     );
     out.extend(pages.iter().map(|page| &*page.line));
@@ -183,7 +183,7 @@ mod tests {
         assert!(text.contains(
             "| [4.2](#42-flat-rings-joined) | 5 | 8 | 0.2500 | 20.00 | 0.4400 at 0° | 0.7740 at 45° | 70 of 74 |"
         ));
-        assert!(text.contains("smallest gap 0.5000 mm; wire 40.0 mm a cell, 321 m a square metre."), "{text}");
+        assert!(text.contains("smallest gap 0.5000 mm; wire 40.0 mm per cell, 321 m per square metre."), "{text}");
         let without = serde_json::json!({ "limits": [entry(0.0, Value::Null)], "statuses": {} });
         assert!(Page::of(&inspected, &without).unwrap().line.contains("| none found | 0.7740 at 45° | 0 of 37 |"));
         assert!(Page::of(&inspected, &serde_json::json!({})).is_none());

@@ -116,8 +116,8 @@ fn known_ending(out: &Path) -> Result<()> {
         .filter_map(|f| f.to_possible_value())
         .map(|v| v.get_name().to_owned())
         .collect();
-    let help = format!("the formats are {}; meshes are triangles, no solids of a CAD program", known.join(", "));
-    Err(wrong(exit::USAGE, format!("{} ends in .{ending}, which is no format of an export", out.display()), help))
+    let help = format!("the formats are {}; meshes are made of triangles and are not CAD solids", known.join(", "));
+    Err(wrong(exit::USAGE, format!("{} ends in .{ending}, which is not a format of `maille export`", out.display()), help))
 }
 
 /// `prefix` with `ending` added to its name.

@@ -58,8 +58,8 @@ keep their places to the first).
 Elements of several rings are several closed bodies that overlap where they are joined. Slicers unite the \
 overlapping bodies of one object, so print such designs as 3mf with --objects element (the default) or sheet.
 
-Frames of a simulation are states that it found. Others are interpolated: lattice and positions on straight lines, rotations at constant rate. That is a picture of \
-the change, no motion that the rings could make: they may overlap in between.")]
+Frames of a simulation are states that it found. Others are interpolated: lattice and positions on straight lines, rotations at constant rate. That shows the \
+change and is not a motion that the rings could make: they may overlap in between.")]
 pub struct Args {
     #[command(flatten)]
     source: SourceArgs,

@@ -56,13 +56,30 @@ impl Place<'_> {
         none.then(|| (format!("`{}` has no value", self.key()), format!("write a value after {}", self.before)))
     }
 
-    /// `minor_radius = 0,1`.
+    /// `minor_radius = 0,1`, or `major_radius = 6,0` in a ring.
     fn decimal_comma(&self) -> Guess {
+        if self.message.contains("inline table") {
+            return self.decimal_comma_inline();
+        }
         let value = self.before.split('=').nth(1).unwrap_or_default().trim();
         let decimals: String = self.rest.strip_prefix(',')?.chars().take_while(char::is_ascii_digit).collect();
         let key = self.key();
         (value.ends_with(|c: char| c.is_ascii_digit()) && !decimals.is_empty()).then(|| {
             (format!("`{key}` is {value},{decimals}"), format!("decimals take a point: {key} = {value}.{decimals}"))
+        })
+    }
+
+    fn decimal_comma_inline(&self) -> Guess {
+        let line = format!("{}{}", self.before, self.rest);
+        let digits = |text: &str| text.chars().take_while(char::is_ascii_digit).collect::<String>();
+        let (keys, values) = (line.split('='), line.split('=').skip(1));
+        keys.zip(values).find_map(|(key, value)| {
+            let key = key.rsplit([',', '{', ' ']).find(|word| !word.is_empty())?;
+            let whole = digits(value.trim_start());
+            let decimals = digits(value.trim_start().strip_prefix(&whole)?.strip_prefix(',')?);
+            (!whole.is_empty() && !decimals.is_empty()).then(|| {
+                (format!("`{key}` is {whole},{decimals}"), format!("decimals take a point: {key} = {whole}.{decimals}"))
+            })
         })
     }
 
@@ -72,12 +89,7 @@ impl Place<'_> {
         let head = self.before.trim_end_matches(|c: char| c.is_ascii_digit() || ".+-".contains(c));
         let number = &self.before[head.len()..];
         let digit = number.ends_with(|c: char| c.is_ascii_digit() || c == '.');
-        (digit && !unit.is_empty()).then(|| {
-            (
-                format!("{number}{unit} is not a number"),
-                format!("write {number} alone; the unit of all lengths has a line of its own: unit = \"mm\""),
-            )
-        })
+        (digit && !unit.is_empty()).then(|| with_unit(number, &unit))
     }
 
     /// A text without straight quotes, or numbers without a comma between them.
@@ -93,6 +105,15 @@ impl Place<'_> {
                 format!("{}{}{after}", self.before, numbers.join(", ")),
             ));
         }
+        let number: String = self.marked.chars().take_while(|c| c.is_ascii_digit() || ".+-".contains(*c)).collect();
+        let unit = self.marked[number.len()..].trim();
+        if number.parse::<f64>().is_ok() && !unit.is_empty() && unit.chars().all(char::is_alphabetic) {
+            return Some(with_unit(&number, unit));
+        }
+        if !number.is_empty() && unit.starts_with(';') {
+            let problem = format!("a semicolon follows {number}");
+            return Some((problem, "numbers of a list are separated by commas: [1.0, 2.0, 3.0]".into()));
+        }
         let typographic = |c: char| "“”„‟‘’‚«»".contains(c);
         if self.rest.starts_with(typographic) {
             let word = self.marked.trim_matches(typographic);
@@ -104,6 +125,13 @@ impl Place<'_> {
         let word: String = self.rest.chars().take_while(|c| !c.is_whitespace() && !",]}#".contains(*c)).collect();
         Some((format!("`{word}` is not a value"), format!("a text takes quotes: {} \"{word}\"", self.before)))
     }
+}
+
+fn with_unit(number: &str, unit: &str) -> (String, String) {
+    (
+        format!("{number}{unit} is not a number"),
+        format!("write {number} alone; the unit of all lengths has a line of its own: unit = \"mm\""),
+    )
 }
 
 fn general_help(message: &str) -> &'static str {

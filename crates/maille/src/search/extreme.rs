@@ -86,7 +86,8 @@ impl Extreme {
             Extreme::ClosestCell { .. } => ("closest", "closest cell", 1.0),
         };
         out.title = format!("{}, {words}", if out.title.is_empty() { &out.name } else { &out.title });
-        out.name = format!("{}-{word}", out.name);
+        // A name without spaces, which files and folders are called by.
+        out.name = format!("{}-{word}", out.name.split_whitespace().collect::<Vec<_>>().join("-"));
         out.minor_radius = out.minor_radius.map(|r| r * factor);
         let rings = out.elements.iter_mut().flat_map(|element| &mut element.rings);
         rings.for_each(|ring| ring.minor_radius = ring.minor_radius.map(|r| r * factor));
