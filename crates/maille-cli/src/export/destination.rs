@@ -117,7 +117,11 @@ fn known_ending(out: &Path) -> Result<()> {
         .map(|v| v.get_name().to_owned())
         .collect();
     let help = format!("the formats are {}; meshes are made of triangles and are not CAD solids", known.join(", "));
-    Err(wrong(exit::USAGE, format!("{} ends in .{ending}, which is not a format of `maille export`", out.display()), help))
+    Err(wrong(
+        exit::USAGE,
+        format!("{} ends in .{ending}, which is not a format of `maille export`", out.display()),
+        help,
+    ))
 }
 
 /// `prefix` with `ending` added to its name.

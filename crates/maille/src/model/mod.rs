@@ -144,7 +144,10 @@ impl State {
         let pose = &self.poses[r.element];
         let center = pose.position + pose.rotation * r.offset;
         let normal = Unit::new_normalize(pose.rotation * r.normal.into_inner());
-        self.image(shift).circle(&Circle::new(center, normal, r.major_radius))
+        match self.roll {
+            None => Circle::new(center + self.translation(shift), normal, r.major_radius),
+            Some(_) => self.image(shift).circle(&Circle::new(center, normal, r.major_radius)),
+        }
     }
 
     /// The neutral surface of a rolled state; `None` where nothing turns.

@@ -75,7 +75,16 @@ impl State {
     /// The motion to the place in the lattice with these coordinates.
     pub(crate) fn motion_to(&self, at: [f64; 2]) -> Image {
         let a = self.lattice_vector(at);
-        let Some(roll) = &self.roll else { return Image { turn: None, translation: a } };
+        match &self.roll {
+            None => Image { turn: None, translation: a },
+            Some(roll) => Self::screw(roll, at, a),
+        }
+    }
+
+    /// The motion of a rolled sheet to the place with these coordinates, at `a` in its lattice. Apart, so that the translations of a
+    /// flat sheet stay short code.
+    #[inline(never)]
+    fn screw(roll: &Roll, at: [f64; 2], a: Vec3) -> Image {
         let turn_rad = roll.turn(at);
         let [[_, _, _], [d0, d1, _]] = moments(turn_rad);
         let beside = -(roll.along * (turn_rad * (d0 - d1)) + Vec3::z() * d0);
