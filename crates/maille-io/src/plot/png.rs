@@ -1,9 +1,13 @@
 //! SVG to PNG, with the fonts that come with the program, and PNG of 256 colours.
 
+use super::canvas::title_of;
 use color_quant::NeuQuant;
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree, fontdb::Database};
-use std::sync::{Arc, OnceLock};
+use std::{
+    io::Cursor,
+    sync::{Arc, OnceLock},
+};
 use thiserror::Error;
 
 const REGULAR: &[u8] = include_bytes!("../../fonts/DejaVuSans-subset.ttf");
@@ -43,7 +47,23 @@ pub fn svg_to_png(svg: &str, scale: f32) -> Result<Vec<u8>, PlotError> {
     let pixmap = (scale > 0.0).then(|| Pixmap::new(pixels(width), pixels(height))).flatten();
     let mut pixmap = pixmap.ok_or(PlotError::Size { width, height, scale })?;
     resvg::render(&tree, Transform::from_scale(scale, scale), &mut pixmap.as_mut());
-    pixmap.encode_png().map_err(|e| PlotError::Encode(e.to_string()))
+    let png = pixmap.encode_png().map_err(|e| PlotError::Encode(e.to_string()))?;
+    Ok(with_title(png, &title_of(svg)))
+}
+
+/// The PNG with its title as a text, behind its header.
+fn with_title(mut png: Vec<u8>, title: &str) -> Vec<u8> {
+    const HEADER: usize = 33;
+    // Keyword, no compression, no language and no translated keyword.
+    let data = [b"Title\0\0\0\0\0", title.as_bytes()].concat();
+    let named = [b"iTXt", &data[..]].concat();
+    let mut crc = flate2::Crc::new();
+    crc.update(&named);
+    let chunk = [&(data.len() as u32).to_be_bytes()[..], &named, &crc.sum().to_be_bytes()].concat();
+    if !title.is_empty() {
+        png.splice(HEADER..HEADER, chunk);
+    }
+    png
 }
 
 /// The SVG with its texts set in the embedded fonts.
@@ -98,8 +118,31 @@ pub fn with_palette(png: &[u8]) -> Result<Vec<u8>, PlotError> {
     if rgba.chunks_exact(4).any(|pixel| pixel[3] < u8::MAX) {
         encoder.set_trns(colours.chunks_exact(4).map(|c| c[3]).collect::<Vec<u8>>());
     }
+    let texts = png::Decoder::new(Cursor::new(png)).read_info().map_err(|e| fail(&e))?.info().utf8_text.clone();
+    for text in texts {
+        let words = text.get_text().map_err(|e| fail(&e))?;
+        encoder.add_itxt_chunk(text.keyword, words).map_err(|e| fail(&e))?;
+    }
     let mut writer = encoder.write_header().map_err(|e| fail(&e))?;
     writer.write_image_data(&indices).map_err(|e| fail(&e))?;
     writer.finish().map_err(|e| fail(&e))?;
     Ok(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_has_the_title_of_its_svg() {
+        let size = "width=\"8\" height=\"6\" viewBox=\"0 0 8 6\"";
+        let svg = format!("<svg xmlns=\"http://www.w3.org/2000/svg\" {size}>\n<title>1.1 &amp; l₂</title>\n</svg>");
+        let png = svg_to_png(&svg, 2.0).unwrap();
+        for png in [with_palette(&png).unwrap(), png] {
+            let reader = png::Decoder::new(Cursor::new(png)).read_info().unwrap();
+            let texts = &reader.info().utf8_text;
+            assert_eq!((texts.len(), reader.info().width), (1, 16));
+            assert_eq!((texts[0].keyword.as_str(), texts[0].get_text().unwrap()), ("Title", "1.1 & l₂".to_owned()));
+        }
+    }
 }
