@@ -194,7 +194,12 @@ fn check_warns_of_what_is_odd() {
             "nothing is linked to \"far\"; the nearest ring of another element is 482.8",
         ),
         ("one", WEAVE.to_owned(), 5, "in one direction only, 0.0°"),
-        ("dropped", dropped, 22, "\"flat-2\" has 2 linked neighbours, another element of its shape has 4"),
+        (
+            "dropped",
+            dropped,
+            22,
+            "\"flat-2\" has 2 linked neighbours, another element of its shape, or its mirror image, has 4",
+        ),
     ] {
         fs::write(folder.join(format!("{name}.toml")), &text).unwrap();
         let found = json(folder, &format!("check {name}.toml --json"));

@@ -68,12 +68,13 @@ fn short(x: f64) -> String {
 pub fn gaps(scene: &Scene, source: &Source, state: &State, tile: Tile) {
     let Source { design, model, .. } = source;
     if let Some((gap, _)) = topology::smallest_gap(model, state) {
+        let gap = gap * model.unit;
         // Rings that touch are apart by a rounding, of either sign.
-        let gap = (gap * model.unit * 1e6).round() / 1e6 + 0.0;
+        let six = |x: f64| format!("{:.6}", (x * 1e6).round() / 1e6 + 0.0);
         let unit = design.unit.as_deref().unwrap_or("of the file's unit");
         match scene.mm == 1.0 && unit == "mm" {
-            true => output::say!("smallest gap between rings: {gap:.6} mm"),
-            false => output::say!("smallest gap between rings: {gap:.6} {unit}, here {:.6} mm", gap * scene.mm),
+            true => output::say!("smallest gap between rings: {} mm", six(gap)),
+            false => output::say!("smallest gap between rings: {} {unit}, here {} mm", six(gap), six(gap * scene.mm)),
         }
     }
     match mesh::smallest_clearance(scene, model, state, tile) {

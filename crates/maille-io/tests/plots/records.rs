@@ -143,7 +143,7 @@ fn limits_are_drawn_against_the_radius() {
     let records = [0.2, 0.05, 0.15].map(|radius| of_radius(radius, 0.445));
     let svg = radius_svg(&records, Quantity::L1, Layout::Beside).unwrap();
     for words in
-        [">0°<", ">45°<", "Minor radius by reference radius", ">proven bound<", ">not proved (local)<", ">no limit<"]
+        [">0°<", ">45°<", "Minor radius / reference radius", ">proven bound<", ">not proved (local)<", ">no limit<"]
     {
         assert!(svg.contains(words), "{words} is not in {svg}");
     }
