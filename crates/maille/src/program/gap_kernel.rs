@@ -77,6 +77,17 @@ impl Jet {
         Jet { value, grad: grad * first, hess: hess * first + grad * grad.transpose() * second }
     }
 
+    /// Adds [`Self::of`], in one pass.
+    pub(crate) fn add_of(&mut self, [value, first, second]: [f64; 3], grad: &Grad, hess: &Hess) {
+        self.value += value;
+        self.grad += grad * first;
+        for q in 0..9 {
+            for p in 0..9 {
+                self.hess[(p, q)] += hess[(p, q)] * first + grad[p] * grad[q] * second;
+            }
+        }
+    }
+
     /// Adds the multiple `factor` of `other`.
     pub(crate) fn add(&mut self, factor: f64, other: &Jet) {
         self.value += factor * other.value;

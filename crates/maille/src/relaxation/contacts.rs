@@ -180,7 +180,7 @@ fn minima_jet(options: &ContactOptions, overlap: &Overlap) -> Jet {
         for jet in std::iter::once(root).chain(samples) {
             let (grad, hess) = jet.distance_derivatives(&motion);
             let law = options.law.at(jet.distance, overlap.contact_distance, options.alpha);
-            sum.add(1.0, &Jet::of(law, &grad, &hess));
+            sum.add_of(law, &grad, &hess);
         }
     }
     sum

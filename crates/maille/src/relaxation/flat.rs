@@ -103,7 +103,7 @@ impl FlatPair {
             for angle in self.angles(view).filter(|angle| self.views[view].distance(*angle) < self.touching) {
                 let point = self.views[view].jet(angle);
                 let (grad, hess) = point.distance_derivatives_fixed();
-                sum.add(1.0, &Jet::of(law.at(point.distance, self.touching, alpha), &grad, &hess));
+                sum.add_of(law.at(point.distance, self.touching, alpha), &grad, &hess);
             }
             sum
         });

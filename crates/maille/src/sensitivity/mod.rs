@@ -20,7 +20,6 @@ mod multipliers;
 mod numbers;
 mod point;
 mod slope;
-mod straight;
 
 pub use numbers::{DesignVector, RingVector};
 pub use slope::{OneSided, Slope};
@@ -28,14 +27,13 @@ pub use slope::{OneSided, Slope};
 use self::{
     multipliers::{Least, Multipliers},
     point::Point,
-    straight::straightened,
 };
 use crate::{
     answer::Answer,
     error::InvalidInput,
     lattice::Shift,
     model::{Model, RingPair},
-    program::{Posed, SheetProgram, key::pair_of_key},
+    program::{SheetProgram, key::pair_of_key},
     question::{Goal, Question, Sense},
     search::family::family_at,
     solver::{constraints::Row, sqp::Program},
@@ -91,12 +89,11 @@ impl Sensitivity {
         let rows = program
             .closed_points(&at, &answer.contacts)
             .ok_or_else(|| foreign("one of its contacts is open in this model"))?;
-        let forces: Vec<f64> = answer.contacts.iter().map(|contact| contact.force).collect();
-        let recorded = Multipliers::new(rows, program.objective().len(), forces);
-        if recorded.residual(&program.objective()) > BALANCED {
+        let c = program.objective();
+        let multipliers = Multipliers::new(rows, c.len(), answer.contacts.iter().map(|contact| contact.force));
+        if multipliers.residual(&c) > BALANCED {
             return Err(foreign("its forces do not balance in this question and model"));
         }
-        let (at, multipliers) = straight(&program, at, recorded);
         let wire = matches!(question.goal, Goal::Wire { .. });
         let kinematics = Kinematics {
             model,
@@ -227,17 +224,6 @@ impl Sensitivity {
             rings + (0..2).map(|k| point.lattice[k].dot(&change.lattice[k])).sum::<f64>()
         };
         self.points.iter().map(rate).collect()
-    }
-}
-
-/// The state with all chains straight that could carry, and the same forces there, where they balance.
-fn straight(program: &SheetProgram<'_>, at: Posed, recorded: Multipliers) -> (Posed, Multipliers) {
-    let Some(straight) = straightened(program, &at, &recorded.rows, &recorded.first) else { return (at, recorded) };
-    let c = program.objective();
-    let there = program.closed_points(&straight, &[]).map(|rows| recorded.moved_to(rows));
-    match there.flatten().filter(|there| there.residual(&c) <= BALANCED) {
-        Some(there) => (straight, there),
-        None => (at, recorded),
     }
 }
 

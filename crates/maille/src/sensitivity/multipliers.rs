@@ -9,10 +9,7 @@ use crate::solver::{
     symmetric::Symmetric,
 };
 use nalgebra::DMatrix;
-use std::{
-    f64::consts::{PI, TAU},
-    sync::OnceLock,
-};
+use std::sync::OnceLock;
 
 /// Singular values below this share of the largest are 0.
 const DEPENDENT: f64 = 1e-8;
@@ -24,9 +21,6 @@ const SLACK: f64 = 1e-10;
 const BOX: f64 = 1e2;
 /// The linear program is solved to this, relative to its size.
 const SOLVED: f64 = 1e-7;
-
-/// A closed point of a state nearby is the same if it is nearer than this on the ring.
-const SAME_RAD: f64 = 0.01;
 
 /// The multipliers of a locked state.
 pub(super) struct Multipliers {
@@ -54,21 +48,6 @@ impl Multipliers {
         let mut first = vec![0.0; rows.len()];
         first.iter_mut().zip(forces).for_each(|(mu, force)| *mu = force);
         Multipliers { first, rows, unknowns, basis: OnceLock::new() }
-    }
-
-    /// The first ones on `rows`, the closed ones of a state nearby. `None` where a force has no row there.
-    pub fn moved_to(&self, rows: Vec<Row>) -> Option<Self> {
-        let mut first = vec![0.0; rows.len()];
-        for (row, force) in self.rows.iter().zip(&self.first).filter(|(_, force)| **force != 0.0) {
-            let apart = |other: &Row| (other.angle - row.angle + PI).rem_euclid(TAU) - PI;
-            let of_pair = (0..rows.len()).filter(|&k| rows[k].key == row.key);
-            let nearest = of_pair.min_by(|&a, &b| apart(&rows[a]).abs().total_cmp(&apart(&rows[b]).abs()))?;
-            if apart(&rows[nearest]).abs() > SAME_RAD {
-                return None;
-            }
-            first[nearest] += force;
-        }
-        Some(Multipliers { first, rows, unknowns: self.unknowns, basis: OnceLock::new() })
     }
 
     fn basis(&self) -> &[Vec<f64>] {

@@ -65,12 +65,6 @@ pub(crate) fn polish<P: Program>(
     (best, last_resort)
 }
 
-/// `x` moved by Newton's method until the rows `active` are closed and their multipliers balance, or as near as it comes.
-pub(crate) fn balanced<P: Program>(program: &P, mut x: P::Point, mut active: Vec<Multiplier>) -> P::Point {
-    newton(program, &mut x, &mut active, &mut { LEAST_BUDGET });
-    x
-}
-
 /// Newton on the rows `active`, with rows taken in and let go until gaps and multipliers have their signs.
 fn polished<P: Program>(
     program: &P,
