@@ -14,8 +14,8 @@ use maille::record::LimitRow;
 /// Below this l1 the ratio of the logarithms says nothing.
 const LEAST_L1: f64 = 1e-4;
 
-/// A range of l2 narrower than this is what the search leaves open, and is drawn as one value.
-const ONE_WIDTH: f64 = 1e-3;
+/// Widths that differ by less are one: the ends are sought with l1 relaxed by 1e-6, which alone parts them by some thousandths.
+const ONE_WIDTH: f64 = 3e-3;
 /// A sheet that is narrower than this share of its written width is called folded.
 const FOLDED: f64 = 0.5;
 
