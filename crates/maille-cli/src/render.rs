@@ -9,6 +9,7 @@ use crate::{
     source::{Source, SourceArgs, Wanted},
     units,
 };
+use maille::lattice::Direction;
 use maille_io::{
     Tile,
     plot::with_palette,
@@ -306,10 +307,7 @@ fn draw(args: &Args, subjects: &[Subject<'_>], options: &RenderOptions) -> Resul
 /// What limit a picture shows.
 fn caption(source: &Source) -> Option<Caption> {
     let (state, _) = source.locked.as_ref()?;
-    let (sin, cos) = state.direction_deg.to_radians().sin_cos();
-    let f = state.deformation_gradient;
-    let strain = |[x, y]: [f64; 2]| x * (f[0][0] * x + f[0][1] * y) + y * (f[1][0] * x + f[1][1] * y) - 1.0;
-    let (l1, l2) = (strain([cos, sin]), strain([-sin, cos]));
+    let [l1, l2] = Direction::of_degrees(state.direction_deg).stretches(&state.deformation_gradient);
     let text = format!("{}, pulled along {}°, l₂ = {l2:.4}, l₁ = {l1:.4}", source.design.name, state.direction_deg);
     Some(Caption { text: text.replace("= -", "= −"), pull_deg: Some(state.direction_deg) })
 }

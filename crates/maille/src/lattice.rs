@@ -305,6 +305,12 @@ impl Direction {
         Vector2::new(-self.along.y, self.along.x)
     }
 
+    /// l1 and l2 of a deformation gradient, given by rows: D·F D − 1 and D⊥·F D⊥ − 1.
+    pub fn stretches(self, [[a, b], [c, d]]: &[[f64; 2]; 2]) -> [f64; 2] {
+        let f = Matrix2::new(*a, *b, *c, *d);
+        [self.along(), self.across()].map(|v| v.dot(&(f * v)) - 1.0)
+    }
+
     /// The direction of D⊥.
     pub(crate) fn left(self) -> Direction {
         Direction::of_degrees(self.degrees + 90.0)

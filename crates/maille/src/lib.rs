@@ -30,7 +30,7 @@
 //! | [`design`], [`model`], [`state`], [`lattice`] | the file's content; compiled to indices and units of R; poses and lattice vectors; cells |
 //! | [`question`], [`sheet`], [`answer`] | what is asked, to whom, and what came of it |
 //! | [`search`] | the exact method: many starts, local maximisation, certificate, larger cells |
-//! | `program` | what is maximised: gaps between rings as inequalities, with their derivatives |
+//! | `program` | one strain to maximise, under the gaps between rings as inequalities, with derivatives |
 //! | `bound` | proofs that no state lies beyond a value |
 //! | `solver` | solvers that know nothing of rings: sequential quadratic programming, Newton's method, certificates |
 //! | [`relaxation`] | the thesis's energy method, and finite sheets under weight and pulls |

@@ -6,6 +6,7 @@ use super::{
     options::{Background, Caption},
     scene::Scene,
 };
+use maille::lattice::Direction;
 use maille_geometry::Vec3;
 use std::fmt::Write;
 
@@ -145,8 +146,8 @@ impl Overlay<'_> {
         let (ink, size, margin) = (self.ink(), letters(self.size), margin(self.size));
         text(out, [margin, margin + 0.8 * size], size, ink, "start", &caption.text);
         let Some(degrees) = caption.pull_deg else { return };
-        let (sin, cos) = degrees.to_radians().sin_cos();
-        let [from, to] = [Vec3::zeros(), Vec3::new(cos, sin, 0.0)].map(|p| self.camera.project(&p));
+        let pull = Direction::of_degrees(degrees).along();
+        let [from, to] = [Vec3::zeros(), pull.push(0.0)].map(|p| self.camera.project(&p));
         let along = [to[0] - from[0], to[1] - from[1]];
         let length = along[0].hypot(along[1]);
         // Seen along the pull, it has no direction in the picture.

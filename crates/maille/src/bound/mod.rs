@@ -1,6 +1,6 @@
 //! Bounds of every attainable limit: what a certified limit is compared with.
 //!
-//! Both rest on the links alone and are proofs: no state of any cell of the sheet, reached on any path that
+//! They rest on the links alone and are proofs: no state of any cell of the sheet, reached on any path that
 //! keeps the links, has a larger l1. A limit that attains its bound is therefore global.
 //!
 //! | bound | idea | cost |

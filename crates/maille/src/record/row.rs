@@ -276,7 +276,7 @@ columns! {
     max_overlap: Option<f64>, Length, "deepest overlap of two rings at the limit, 0 if none";
     min_gap: Option<f64>, Length, "smallest gap of two rings at the limit, negative where they overlap";
     iterations: u64, One, "quadratic programs (exact) or Newton iterations (energy)";
-    runs: u64, One, "starts (exact) or minimisations (energy)";
+    runs: u64, One, "local maximisations (exact) or minimisations (energy)";
     wall_s: f64, Second, "wall time of the row";
     bound_l1: Option<f64>, One, "proven upper bound: no state has a larger l1";
     bound_kind: Option<String>, None, "where the bound comes from: chain or link";
@@ -287,7 +287,7 @@ columns! {
     min_curvature: Option<f64>, One, "smallest curvature on the motions that keep the loaded contacts";
     zero_modes: Option<u64>, One, "number of motions without curvature, such as rings that rattle";
     links_ok: Option<bool>, None, "whether the links are those of the start";
-    n_starts: Option<u64>, One, "number of starts that were solved";
+    n_starts: Option<u64>, One, "number of local maximisations, repeated ones included";
     n_distinct: Option<u64>, One, "number of distinct certified limits that the starts found";
     own_image_force: Option<f64>, One, "largest force between an element and its own image, for a unit pull";
     l1_uncertified: Option<f64>, One, "best feasible l1 where the certificate is incomplete";

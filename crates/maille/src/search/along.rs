@@ -112,7 +112,7 @@ impl ExactMethod<'_> {
         }
         let model = of_cell(self.models, cell);
         let search = self.search(at, f64::INFINITY, cancel);
-        let here = search.run(&model, vec![start.clone()], StopRule::exactly(0));
+        let here = search.run(&model, vec![start.clone()], StopRule::given_only());
         let old = &mut solved.answer;
         (old.runs, old.iterations) = (old.runs + here.runs, old.iterations + here.iterations);
         old.n_starts = old.n_starts.map(|starts| starts + here.runs);

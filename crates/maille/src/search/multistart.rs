@@ -1,7 +1,7 @@
 //! The one search behind every exact answer: local maximisation from many starts, in one cell and then in larger ones.
 //!
 //! What is maximised is the first parameter of a family of lattices, see [`Target`]. Starts are solved until the proven upper
-//! bound is attained; where none is known, all of them, side by side. A result depends on the starts and the seed alone,
+//! bound is attained or [`StopRule`] says that they were enough: one at a time where there is a bound, else some side by side. A result depends on the starts and the seed alone,
 //! not on the number of threads.
 
 use super::{
@@ -109,7 +109,8 @@ impl CellSearch {
 
 /// Which larger cells are searched, and from where.
 pub(super) struct LargerCells<'a> {
-    /// All of them, each from as many starts of its own; otherwise only while the solution presses an element on its own image. Waves are followed into others in either case.
+    /// All of them; otherwise only where the first cell's solution presses an element on its own image. Unstable waves are followed into
+    /// others in either case.
     pub every: bool,
     /// Starts of a larger cell of its own.
     pub own_starts: u64,
@@ -258,7 +259,7 @@ impl<T: Target> Multistart<'_, T> {
                 continue;
             }
             let model = of_cell(models, cell).into_owned();
-            let here = self.run(&model, rule.of(cell).collect(), StopRule::exactly(0));
+            let here = self.run(&model, rule.of(cell).collect(), StopRule::given_only());
             found.by_cell.push(here.by_cell(cell));
             if here.improves_on(&found.result) {
                 found.further = Some(model);

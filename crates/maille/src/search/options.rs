@@ -13,8 +13,8 @@ use serde::{Deserialize, Serialize};
 /// What a user chooses of the exact method.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ExactOptions {
-    /// How long a limit is searched whose bound is not attained: from the neighbouring limit's state, with the width free from
-    /// those of held widths, then from states that are drawn.
+    /// How many starts are tried where the bound is not attained: the neighbouring limit's state, with the width free those of held
+    /// widths, then states that are drawn.
     #[serde(default)]
     pub effort: Effort,
     /// So many starts in place of an effort.

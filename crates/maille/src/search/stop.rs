@@ -27,7 +27,12 @@ pub(super) struct StopRule {
 }
 
 impl StopRule {
-    /// This many starts.
+    /// The starts that are given, and no drawn ones.
+    pub(super) fn given_only() -> Self {
+        Self::exactly(0)
+    }
+
+    /// This many starts, those that are given counted; all of these are solved.
     pub(super) fn exactly(starts: u64) -> Self {
         StopRule { least: starts, most: starts, chance: 0.0, seconds: f64::INFINITY }
     }

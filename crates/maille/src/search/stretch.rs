@@ -306,7 +306,7 @@ impl<'a> ExactMethod<'a> {
                     break;
                 }
                 let Bound::Finite { l1, .. } = self.chain.limit(held.direction, held.l2) else { break };
-                let here = self.search(&held, l1, search.cancel).run(&self.models[0], from, StopRule::exactly(0));
+                let here = self.search(&held, l1, search.cancel).run(&self.models[0], from, StopRule::given_only());
                 (runs, iterations) = (runs + here.runs, iterations + here.iterations);
                 let Some(best) = &here.best else { break };
                 let start = held.start(best);
@@ -332,7 +332,7 @@ impl<'a> ExactMethod<'a> {
             (found.runs, found.iterations) = (found.runs + here.runs, found.iterations + here.iterations);
             let better = here.best.filter(|solution| solution.value() > best.value() + SAME_VALUE);
             let Some(from) = better.map(|solution| held.start(&solution)) else { return };
-            let again = search.run(model, vec![from], StopRule::exactly(0));
+            let again = search.run(model, vec![from], StopRule::given_only());
             let improves = again.improves_on(found);
             found.merge(again);
             if !improves {

@@ -134,7 +134,7 @@ impl<T: Target> Multistart<'_, T> {
                     break;
                 }
                 let larger = models[0].in_cell(cell);
-                let mut here = self.run(&larger, waves.starts(&larger, wave, &from), StopRule::exactly(0));
+                let mut here = self.run(&larger, waves.starts(&larger, wave, &from), StopRule::given_only());
                 if here.improves_on(&found.result) {
                     // Where a wave leads further, other states of its cell may, too.
                     here.merge(self.run(&larger, Vec::new(), StopRule::exactly(rule.own_starts)));

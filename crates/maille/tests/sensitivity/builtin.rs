@@ -58,9 +58,7 @@ designs! {
     european_4_in_1: "european-4-in-1", 0 other contacts, 0 no limit;
     #[ignore = "minutes"]
     european_6_in_1: "european-6-in-1", 0 other contacts, 0 no limit;
-    #[ignore = "minutes"]
     japanese_4_in_1: "japanese-4-in-1", 0 other contacts, 0 no limit;
-    #[ignore = "minutes"]
     japanese_6_in_1: "japanese-6-in-1", 0 other contacts, 0 no limit;
     #[ignore = "minutes"]
     japanese_8_in_2: "japanese-8-in-2", 0 other contacts, 0 no limit;
@@ -68,19 +66,15 @@ designs! {
     japanese_12_in_2: "japanese-12-in-2", 0 other contacts, 0 no limit;
     #[ignore = "minutes"]
     kings_mail: "kings-mail", 0 other contacts, 0 no limit;
-    #[ignore = "minutes"]
     design_1_1_chapter6: "1.1-chapter6", 0 other contacts, 0 no limit;
-    #[ignore = "minutes"]
     design_1_2_chapter6: "1.2-chapter6", 0 other contacts, 0 no limit;
     #[ignore = "minutes"]
     design_2_chapter6: "2-chapter6", 0 other contacts, 0 no limit;
     #[ignore = "minutes"]
     design_3_1_chapter6: "3.1-chapter6", 0 other contacts, 0 no limit;
-    #[ignore = "minutes"]
     design_3_2_chapter6: "3.2-chapter6", 0 other contacts, 0 no limit;
     #[ignore = "minutes"]
     design_3_4_chapter6: "3.4-chapter6", 0 other contacts, 0 no limit;
-    #[ignore = "minutes"]
     design_4_1_chapter6: "4.1-chapter6", 0 other contacts, 0 no limit;
     #[ignore = "minutes"]
     design_4_3_chapter6: "4.3-chapter6", 0 other contacts, 0 no limit;
