@@ -11,6 +11,7 @@ use crate::{
 };
 use clap::builder::TypedValueParser;
 use maille::{
+    answer::FreeRanges,
     question::{Goal, Question, Sense, Strain},
     record::Status,
     survey::CellChoice,
@@ -126,9 +127,6 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     Ok(exit::of_answer(found.status))
 }
 
-/// A free strain with a wider range than this has no value of its own: what the slack of a millionth alone can make is its root.
-const UNIQUE: f64 = 2e-3;
-
 fn print(answer: &StrainAnswer<'_>, wall_s: f64) {
     let found = answer.found;
     let most = answer.question.sense.name();
@@ -157,7 +155,7 @@ fn print(answer: &StrainAnswer<'_>, wall_s: f64) {
         let value = round(answer.strain(strain), 1e9);
         match answer.range(strain).map(|range| range.map(|x| round(x, 1e6))) {
             // One of many states, which says nothing of the others.
-            Some([least, largest]) if largest - least > UNIQUE => {
+            Some([least, largest]) if largest - least > FreeRanges::ONE_VALUE => {
                 say!("  {}   {:>15}  free: {least:.6} to {largest:.6}", strain.name(), "");
             }
             _ => say!("  {}   {value:>15.9}  {}", strain.name(), answer.role(strain)),

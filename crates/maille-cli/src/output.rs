@@ -117,10 +117,27 @@ pub fn print_json(document: &impl serde::Serialize) -> Result<()> {
     print(format!("{text}\n").as_bytes())
 }
 
-/// A word of a command line as a shell takes it.
+/// A word of a command line, in quotes where a shell would read it otherwise.
 pub fn quoted(text: &str) -> String {
-    match text.contains([' ', ';']) {
-        true => format!("\"{text}\""),
-        false => text.to_owned(),
+    let plain = |c: char| c.is_alphanumeric() || "._/=+-,:@%".contains(c);
+    if text.chars().all(plain) {
+        return text.to_owned();
+    }
+    match text.contains(['"', '$', '`', '\\', '!']) {
+        true => format!("'{}'", text.replace('\'', "'\\''")),
+        false => format!("\"{text}\""),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_are_quoted_where_a_shell_asks_for_it() {
+        let words = [("a-1.toml", "a-1.toml"), ("a b", "\"a b\""), ("a&b", "\"a&b\""), ("$a's", "'$a'\\''s'")];
+        for (word, quotes) in words {
+            assert_eq!(quoted(word), quotes);
+        }
     }
 }

@@ -54,8 +54,11 @@ pub fn words(tile: Tile, model: &Model, state: &State, mm: f64) -> String {
     // How far a row stands beside the one below it.
     let lean = (state.a1.dot(&state.a2) / state.a1.norm()).abs() * model.unit * mm;
     let beside = lean * f64::from(tile.0[1] - 1);
-    let rows = match lean > 1e-6 * width && tile.0[1] > 1 {
-        true => format!("; each row stands {lean:.2} mm beside the one below it, {:.1} mm in all", width + beside),
+    let rows = match beside >= 0.05 {
+        true => format!(
+            "; each row stands {lean:.2} mm beside the one below it, so that the piece is {:.1} mm wide in all",
+            width + beside
+        ),
         false => String::new(),
     };
     format!("{tile} cells, {width:.1} x {height:.1} mm with the wire{rows}")

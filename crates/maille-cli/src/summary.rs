@@ -134,7 +134,8 @@ impl Summary {
         let not_found: usize = self.limits.iter().map(|of| of.asked - of.found).sum();
         let proved: usize = PROVED.iter().filter_map(|status| self.statuses.get(status.name())).sum();
         if not_found > proved {
-            output::say!("`maille table {} --where l1=none` shows the rows without a limit", self.record.display());
+            let record = output::quoted(&self.record.display().to_string());
+            output::say!("`maille table {record} --where l1=none` shows the rows without a limit");
         }
         if let Some(chance) = self.better_chance {
             let percent = 100.0 * chance;

@@ -147,7 +147,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         say!("{limits} in {}, {now} of them now, in {seconds:.1} s", counted(used.len(), "record"));
         say!("all rows are in {}", out.join("limits.csv").display());
         if unanswered > 0 {
-            let (limits, folder) = (counted(unanswered, "limit"), out.display());
+            let (limits, folder) = (counted(unanswered, "limit"), output::quoted(&out.display().to_string()));
             say!(
                 "{limits} not found: `maille table {folder} --where l1=none` shows which, docs/guide/certificates.md what to try"
             );

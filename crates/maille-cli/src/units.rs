@@ -55,7 +55,7 @@ pub struct Length {
 /// Reads `1.6mm`, `0.064in`, `5/16in` or `5/16"`.
 pub fn parse_length(text: &str) -> Result<Length, String> {
     let wrong = || match text.contains(',') {
-        true => format!("\"{text}\" is not a length; decimals take a point: {}", text.replace(',', ".")),
+        true => format!("\"{text}\" is not a length; decimals take a point, and lengths a unit, such as 1.6mm"),
         false => format!("\"{text}\" is not a length; give it with its unit, such as 8mm, 0.3125in or 5/16in"),
     };
     let text = text.trim();
@@ -105,7 +105,9 @@ fn gauge_number(lower: &str) -> Option<usize> {
 
 /// Reads `400x600mm`, `40x60cm` or `16x24in`; gives both in millimetres.
 pub fn parse_size(text: &str) -> Result<[f64; 2], String> {
-    let wrong = || format!("\"{text}\" is not a size; give width and height with their unit, as 400x600mm or 16x24in");
+    let point = if text.contains(',') { "; decimals take a point" } else { "" };
+    let wrong =
+        || format!("\"{text}\" is not a size; give width and height with their unit, as 400x600mm or 16x24in{point}");
     let (width, height) = text.trim().split_once(['x', '×']).ok_or_else(wrong)?;
     let [width, height] = [width, height].map(str::trim);
     let unit = height.trim_start_matches(|c: char| c.is_ascii_digit() || "./".contains(c));

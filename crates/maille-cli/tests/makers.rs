@@ -198,7 +198,7 @@ fn check_warns_of_what_is_odd() {
             "dropped",
             dropped,
             22,
-            "\"flat-2\" has 2 linked neighbours, another element of its shape, or its mirror image, has 4",
+            "\"flat-2\" has 2 linked neighbours, another element of the same or the mirrored shape has 4",
         ),
     ] {
         fs::write(folder.join(format!("{name}.toml")), &text).unwrap();
@@ -223,7 +223,7 @@ fn rings_that_overlap_are_placed_by_the_cure_that_is_said() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let text = format!("{WEAVE}{ALONG_Y}").replace("name = \"w\"", "name = \"w\"\nallow_initial_overlap = false");
-    let text = text.replace("minor_radius = 0.6", "minor_radius = 1.1");
+    let text = text.replace("minor_radius = 0.6", "minor_radius = 1.1").replace("name = \"w\"", "name = \"my w\"");
     fs::write(folder.join("w.toml"), &text).unwrap();
     let refused = maille(folder, "check w.toml");
     assert_eq!((refused.code, refused.err.matches("overlap by").count()), (Some(3), 1), "{}", refused.err);
@@ -233,7 +233,7 @@ fn rings_that_overlap_are_placed_by_the_cure_that_is_said() {
     assert!(done(folder, "check new.toml").out.contains("OK;"));
     let saved = fs::read_to_string(folder.join("new.toml")).unwrap();
     assert!(!saved.contains("allow_initial_overlap"), "{saved}");
-    assert!(saved.contains("name = \"w-roomiest\"") && saved.contains("title = \"w, widest gaps\""), "{saved}");
+    assert!(saved.contains("name = \"my-w-roomiest\"") && saved.contains("title = \"my w, widest gaps\""), "{saved}");
     // Of 6: 13 decimals of lengths and 14 of normals, and no -0 or 3e-16.
     let digits = |word: &str| word.split_once('.').map_or(0, |(_, decimals)| decimals.len());
     let numbers = saved.split(|c: char| !(c.is_ascii_digit() || ".-e".contains(c)));

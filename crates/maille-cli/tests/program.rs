@@ -167,6 +167,14 @@ fn an_l2_that_nobody_asked_for_may_be_out_of_reach() {
     assert!(String::from_utf8_lossy(&said).contains("1 l2-not-reached"));
     let asked = maille(folder, "characterize shirt.toml --cell 1x1 --directions 90 --l2 0.25 --out asked", b"");
     assert_eq!(asked.status.code(), Some(5));
+    // A free width is no l2 of the usual list. Along 30° the search finds a state, and no certificate.
+    let line = "characterize european-4-in-1 --lateral free --directions 30 --cell 1x1 --starts 1 --out free";
+    let free = maille(folder, line, b"");
+    assert_eq!(free.status.code(), Some(5));
+    assert!(String::from_utf8_lossy(&free.stdout).contains("1 uncertified"), "{free:?}");
+    let table = String::from_utf8(done(folder, "table free --columns l1_uncertified --format csv", b"")).unwrap();
+    let l1: f64 = table.lines().nth(1).unwrap().parse().unwrap();
+    assert!((l1 - 0.063837).abs() < 1e-5, "{table}");
 }
 
 #[test]

@@ -116,6 +116,12 @@ pub struct FreeRanges {
     pub shear: [f64; 2],
 }
 
+impl FreeRanges {
+    /// A range narrower than this is one value: its ends are sought with the limit relaxed by 1e-6, which alone parts them by some
+    /// thousandths.
+    pub const ONE_VALUE: f64 = 3e-3;
+}
+
 impl Answer {
     /// An answer with the status, and with the start for its state.
     #[doc(hidden)]

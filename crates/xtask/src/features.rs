@@ -17,7 +17,7 @@ pub fn check(root: &Path) -> Vec<Finding> {
         let libraries = libraries(root, "normal,build", build)?;
         let problem = |library: &String| {
             let problem =
-                format!("the tests have no `{library}`, cargo tree {} has: add its features", build.join(" "));
+                format!("cargo tree {} has `{library}`, the tests do not: add its features here", build.join(" "));
             Finding::new(CHOICE, 0, problem)
         };
         Ok(libraries.difference(all).filter(|library| !library.starts_with(TOP)).map(problem).collect())

@@ -26,7 +26,7 @@ cargo xtask COMMAND
   wheel    build the Python package, install it into a new environment below target, run its examples
   ci       format, clippy, layers, features, paths, rustdoc, then test
   layers   no `use` points backward in the order of crates and modules, or in a circle
-  features what the tests build asks for one choice of features of each library
+  features all builds of the tests ask for the same features of each library
   paths    every path named in the documents exists
   gallery  write docs/gallery: pictures, plots and numbers of every built-in design, by the program
            --quick         few directions, into maille-out/gallery

@@ -53,7 +53,7 @@ Formats:
   vtk  for ParaView: NAME.vtp (rings), NAME-poses.vtp, NAME-contacts.vtp; NAME.pvd for frames
 
 Meshes stand on the bed: their smallest x, y and z are 0 (glb: y is up; vtk keeps the coordinates of the state; frames \
-keep their places to the first).
+keep their places relative to the first).
 
 Elements of several rings are several closed bodies that overlap where they are joined. Slicers unite the \
 overlapping bodies of one object, so print such designs as 3mf with --objects element (the default) or sheet.

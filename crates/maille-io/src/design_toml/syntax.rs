@@ -13,7 +13,7 @@ pub(super) fn describe(message: &str, text: &str, span: &Range<usize>) -> (Strin
         marked: text.get(span.clone()).unwrap_or_default(),
     };
     let guess = at.duplicate().or_else(|| at.no_value()).or_else(|| at.decimal_comma());
-    let guess = guess.or_else(|| at.unit()).or_else(|| at.unquoted());
+    let guess = guess.or_else(|| at.semicolon()).or_else(|| at.unit()).or_else(|| at.unquoted());
     let (problem, help) = guess.unwrap_or_else(|| (message.to_owned(), general_help(message).to_owned()));
     (format!("not valid TOML: {problem}"), help)
 }
@@ -58,7 +58,7 @@ impl Place<'_> {
 
     /// `minor_radius = 0,1`, or `major_radius = 6,0` in a ring.
     fn decimal_comma(&self) -> Guess {
-        if self.message.contains("inline table") {
+        if self.before.contains('{') {
             return self.decimal_comma_inline();
         }
         let value = self.before.split('=').nth(1).unwrap_or_default().trim();
@@ -81,6 +81,18 @@ impl Place<'_> {
                 (format!("`{key}` is {whole},{decimals}"), format!("decimals take a point: {key} = {whole}.{decimals}"))
             })
         })
+    }
+
+    /// `minor_radius = 0.6;` or `a1 = [15.0; 0.0; 0.0]`.
+    fn semicolon(&self) -> Guess {
+        let line = format!("{}{}", self.before, self.rest);
+        let (left, _) = line.split_once(';').filter(|(left, _)| !left.contains(['#', '"', '\'']))?;
+        let number = left.rsplit(|c: char| !(c.is_ascii_digit() || ".+-".contains(c))).next()?;
+        let help = match left.contains('[') {
+            true => "numbers of a list are separated by commas: [1.0, 2.0, 3.0]",
+            false => "leave it out: a line ends without one",
+        };
+        (!number.is_empty()).then(|| (format!("a semicolon follows {number}"), help.into()))
     }
 
     /// `minor_radius = 1.6mm`.
@@ -109,10 +121,6 @@ impl Place<'_> {
         let unit = self.marked[number.len()..].trim();
         if number.parse::<f64>().is_ok() && !unit.is_empty() && unit.chars().all(char::is_alphabetic) {
             return Some(with_unit(&number, unit));
-        }
-        if !number.is_empty() && unit.starts_with(';') {
-            let problem = format!("a semicolon follows {number}");
-            return Some((problem, "numbers of a list are separated by commas: [1.0, 2.0, 3.0]".into()));
         }
         let typographic = |c: char| "“”„‟‘’‚«»".contains(c);
         if self.rest.starts_with(typographic) {

@@ -51,9 +51,10 @@ pub fn svg_to_png(svg: &str, scale: f32) -> Result<Vec<u8>, PlotError> {
     Ok(with_title(png, &title_of(svg)))
 }
 
-/// The PNG with its title as a text, behind its header.
+/// The PNG with its title as a text, after its header.
 fn with_title(mut png: Vec<u8>, title: &str) -> Vec<u8> {
-    const HEADER: usize = 33;
+    /// The signature, and the chunk IHDR.
+    const HEADER: usize = 8 + 25;
     // Keyword, no compression, no language and no translated keyword.
     let data = [b"Title\0\0\0\0\0", title.as_bytes()].concat();
     let named = [b"iTXt", &data[..]].concat();

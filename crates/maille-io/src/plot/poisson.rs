@@ -9,13 +9,11 @@ use super::frame::{Frame, Layout};
 use super::look::{self, Look};
 use super::scale::Axis;
 use crate::record::NamedRecord;
-use maille::record::LimitRow;
+use maille::{answer::FreeRanges, record::LimitRow};
 
 /// Below this l1 the ratio of the logarithms says nothing.
 const LEAST_L1: f64 = 1e-4;
 
-/// Widths that differ by less are one: the ends are sought with l1 relaxed by 1e-6, which alone parts them by some thousandths.
-const ONE_WIDTH: f64 = 3e-3;
 /// A sheet that is narrower than this share of its written width is called folded.
 const FOLDED: f64 = 0.5;
 
@@ -23,7 +21,7 @@ const FOLDED: f64 = 0.5;
 fn ratios(row: &LimitRow) -> Option<[f64; 2]> {
     let (l1, least, most) = (row.l1?, row.l2_min?, row.l2_max?);
     let free = row.lateral.as_deref() == Some("free") && l1 > LEAST_L1 && least > -1.0;
-    let ends = if most - least < ONE_WIDTH { [0.5 * (least + most); 2] } else { [most, least] };
+    let ends = if most - least < FreeRanges::ONE_VALUE { [0.5 * (least + most); 2] } else { [most, least] };
     free.then(|| ends.map(|l2| -l2.ln_1p() / l1.ln_1p()))
 }
 

@@ -157,6 +157,15 @@ fn limits_are_drawn_against_the_radius() {
     let far = radius_svg(&far, Quantity::L1, Layout::Beside).unwrap();
     assert!(lines(&far).len() == 2 && far.contains(">proven bound, cut off at the edge<"), "{far}");
     assert!(radius_svg(&records[..1], Quantity::L1, Layout::Beside).is_none());
+    // What a study varies beside the radius tells curves apart.
+    let mut spaced = records.to_vec();
+    spaced.extend([0.05, 0.15].map(|radius| {
+        let mut of = of_radius(radius, 0.445);
+        of.record.run.design = of.record.run.design.spaced(0.95);
+        of
+    }));
+    let svg = radius_svg(&spaced, Quantity::L1, Layout::Beside).unwrap();
+    assert!(svg.contains(">0°, as written<") && svg.contains(">0°, spacing 0.95<"), "{svg}");
     svg_to_png(&svg, 1.0).unwrap();
 }
 

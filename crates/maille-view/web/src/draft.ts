@@ -16,20 +16,24 @@ interface Step {
 export class Draft {
   private waiting: Step[] = [];
   private past: string[] = [];
-  /** Whether changes are under way. */
-  busy = false;
+  private working = false;
 
   constructor(
     private side: Side,
     private refuse: (error: unknown) => void,
     /** Called when changes begin, and when all that was asked for has been done. */
-    private working: (busy: boolean) => void = () => {},
+    private onBusy: (busy: boolean) => void = () => {},
   ) {}
 
   /** Remembers the design as it is now. */
   remember(): void {
     if (this.past.at(-1) !== this.side.text) this.past.push(this.side.text);
     if (this.past.length > MOST) this.past.shift();
+  }
+
+  /** Whether changes are under way. */
+  get busy(): boolean {
+    return this.working;
   }
 
   get canUndo(): boolean {
@@ -67,12 +71,12 @@ export class Draft {
   private add(step: Step): void {
     if (step.key && this.waiting.at(-1)?.key === step.key) this.waiting.pop();
     this.waiting.push(step);
-    if (!this.busy) void this.work();
+    if (!this.working) void this.work();
   }
 
   private async work(): Promise<void> {
-    this.busy = true;
-    this.working(true);
+    this.working = true;
+    this.onBusy(true);
     for (let step = this.waiting.shift(); step; step = this.waiting.shift()) {
       try {
         await this.side.change({ text: await step.run(), minorRadius: null, spacing: null, parameters: {} });
@@ -80,7 +84,7 @@ export class Draft {
         this.refuse(error);
       }
     }
-    this.busy = false;
-    this.working(false);
+    this.working = false;
+    this.onBusy(false);
   }
 }

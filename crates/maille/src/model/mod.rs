@@ -145,6 +145,7 @@ impl State {
         let center = pose.position + pose.rotation * r.offset;
         let normal = Unit::new_normalize(pose.rotation * r.normal.into_inner());
         match self.roll {
+            // The energy method asks for each circle at each point: no motion is made where a translation is enough.
             None => Circle::new(center + self.translation(shift), normal, r.major_radius),
             Some(_) => self.image(shift).circle(&Circle::new(center, normal, r.major_radius)),
         }

@@ -163,9 +163,12 @@ impl Rounds<'_> {
             let stalled = used_up && gain < STALLED_GAIN;
             let ((mut polished, mut certificate), last_resort) = polish(program, &end);
             self.keep(program, last_resort);
-            // A polish that goes astray loses a state without overlap.
+            // A polish that goes astray ends with overlaps: then the state before it is kept, which has none.
             if !certificate.holds() && !feasible(program, &polished) && feasible(program, &end.point) {
                 certificate = certify(program, &end.point, &end.multipliers);
+                if certificate.holds_to_first_order() {
+                    measure_curvature(program, &end.point, &mut certificate);
+                }
                 polished = end.point.clone();
             }
             let locked = certificate.holds();

@@ -55,7 +55,7 @@ impl Certificate {
     }
 
     /// Whether all but the curvature holds.
-    pub(super) fn holds_to_first_order(&self) -> bool {
+    pub(crate) fn holds_to_first_order(&self) -> bool {
         self.smallest_gap >= -GAP_TOLERANCE && self.is_critical()
     }
 

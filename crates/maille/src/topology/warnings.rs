@@ -66,7 +66,7 @@ fn unequal(model: &Model, counts: &[usize]) -> Vec<InvalidInput> {
         if *count < most {
             let name = &model.elements[e].name;
             let problem = format!(
-                "\"{name}\" has {count} linked neighbours, another element of its shape, or its mirror image, has {most}"
+                "\"{name}\" has {count} linked neighbours, another element of the same or the mirrored shape has {most}"
             );
             let help = "if that is not meant: check its center, and whether an element beside it is missing";
             out.push(InvalidInput::new(format!("elements[{e}].center"), problem, help));
@@ -75,7 +75,7 @@ fn unequal(model: &Model, counts: &[usize]) -> Vec<InvalidInput> {
     out
 }
 
-/// Whether two elements have the same rings, turned the same way, or mirrored in planes of the axes.
+/// Whether two elements have the same rings, turned the same way, each perhaps mirrored in planes of the axes.
 fn alike(model: &Model, a: usize, b: usize) -> bool {
     let rings = |e: usize| &model.rings[model.elements[e].rings.clone()];
     let close = |x: f64, y: f64| (x - y).abs() < 1e-6;
