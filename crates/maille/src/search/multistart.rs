@@ -1,8 +1,8 @@
 //! The one search behind every exact answer: local maximisation from many starts, in one cell and then in larger ones.
 //!
 //! What is maximised is the first parameter of a family of lattices, see [`Target`]. Starts are solved until the proven upper
-//! bound is attained or [`StopRule`] says that they were enough: one at a time where there is a bound, else some side by side. A result depends on the starts and the seed alone,
-//! not on the number of threads.
+//! bound is attained or [`StopRule`] says that they were enough: one at a time where there is a
+//! bound, else some side by side. A result depends on the starts and the seed alone, not on the number of threads.
 
 use super::{
     local::{Course, LocalSolution, local_maximize},
