@@ -232,6 +232,25 @@ def test_a_task_that_raises_to_the_end_is_a_chain_error(client):
     assert isinstance(given["maille-b"], ChainError) and "ZeroDivisionError" in str(given["maille-b"])
 
 
+def test_a_result_that_is_lost_before_it_is_fetched_is_computed_again(client):
+    before = executed(client)
+    calls = {f"maille-lost-{k}": (k, 1) for k in range(4)}
+    found = results(client, operator.add, calls, retries=0)
+    given = dict([next(found)])
+    while executed(client) - before < len(calls) or any(client.processing().values()):
+        time.sleep(0.01)
+    pids = client.run(os.getpid)
+    held = [address for address, keys in client.has_what().items() if any(key in calls for key in keys)]
+    assert held
+    for address in held:
+        os.kill(pids[address], signal.SIGKILL)
+    while set(held) & set(client.scheduler_info()["workers"]):
+        time.sleep(0.01)
+    given.update(found)
+    assert given == {f"maille-lost-{k}": k + 1 for k in range(4)}
+    client.wait_for_workers(2)
+
+
 def test_errors_travel():
     with pytest.raises(maille.DesignError) as raised:
         maille.Design.builtin("3.1").with_minor_radius(0.6).check()

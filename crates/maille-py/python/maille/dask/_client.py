@@ -35,14 +35,14 @@ def results(
     cluster: Any = client
     futures = {key: cluster.submit(function, *call, key=key, retries=retries) for key, call in calls.items()}
     try:
-        # Results are fetched while earlier ones are dealt with.
-        for future, value in engine.as_completed(list(futures.values()), with_results=True, raise_errors=False):
+        for future in engine.as_completed(list(futures.values())):
             del futures[future.key]
-            if future.status == "finished":
-                yield future.key, value
-            else:
-                error = future.exception()
-                yield future.key, ChainError(f"{type(error).__name__}: {error}".splitlines()[0])
+            # A result whose worker is lost before it is fetched is computed again, and waited for.
+            try:
+                value = future.result()
+            except Exception as error:
+                value = ChainError(f"{type(error).__name__}: {error}".splitlines()[0])
+            yield future.key, value
             future.release()
     finally:
         cluster.cancel(list(futures.values()), force=True)
