@@ -4,7 +4,7 @@
     cargo run --release -p maille-io --example random_designs -- --seed 22 --count 60 --doubled 0 DESIGNS
     python3 validation/effort.py PROGRAM DESIGNS [--efforts normal thorough] [--cell 1x1] [--rows effort.csv]
 
-Three directions and three l2 of each design. Prints how many rows the second effort raises, and by how much. With --rows
+An effort `10x` gives each limit ten times the time that the other effort took on the design's average limit. Three directions and three l2 of each design. Prints how many rows the second effort raises, and by how much. With --rows
 each design's limits are added to that file when both efforts are done; a later run skips the designs that it has, so that
 a long comparison can be stopped and continued.
 """
@@ -33,8 +33,16 @@ def limits(program: str, design: Path, effort: str, cell: str, limit_s: float | 
             raise SystemExit(f"{' '.join(command)} ended with {code}")
         with (out / "limits.csv").open() as file:
             rows = list(csv.DictReader(file))
-    named = {"design": design.stem, "cell": cell, "effort": effort}
+    named = {"design": design.stem, "cell": cell}
     return [{column: named.get(column, row.get(column, "")) for column in COLUMNS} for row in rows]
+
+
+def timed(effort: str, rows: list[dict[str, str]]) -> str:
+    """The effort for the program: `10x` as a time."""
+    if not effort.endswith("x"):
+        return effort
+    seconds = float(effort[:-1]) * sum(float(row["wall_s"]) for row in rows) / len(rows)
+    return f"{max(seconds, 0.001):.3f}s"
 
 
 def compare(efforts: list[str], rows: list[dict[str, str]]) -> None:
@@ -76,11 +84,11 @@ def main() -> None:
             continue
         found = []
         for effort in args.efforts:
-            here = limits(args.program, design, effort, args.cell, args.limit_s)
+            here = limits(args.program, design, timed(effort, found), args.cell, args.limit_s)
             if here is None:
                 print(f"{design.stem}: {effort} effort took more than {args.limit_s} s, left out", flush=True)
                 break
-            found += here
+            found += [{**row, "effort": effort} for row in here]
         else:
             rows += found
             if args.rows:

@@ -7,7 +7,7 @@ use maille::question::{Effort, Question};
 #[derive(clap::Args, Clone, Copy)]
 pub struct SearchArgs {
     /// How long to search where no proven bound is attained: low, normal, thorough, or a time for each cell, such as 30s. The search stops when
-    /// the chance that another start finds more is estimated at 10, 5 or 0.5 %
+    /// the chance that another start finds more is estimated at 10, 2 or 0.5 %
     #[arg(long, default_value_t, value_parser = read::<Effort>)]
     pub effort: Effort,
     /// A number of starts, instead of an effort

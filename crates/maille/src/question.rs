@@ -35,7 +35,7 @@ pub struct Question {
 pub enum Effort {
     /// 4 to 8 starts.
     Low,
-    /// 8 to 40 starts, until the chance that another one finds more is estimated at 5 % or less.
+    /// 8 to 64 starts, until the chance that another one finds more is estimated at 2 % or less.
     #[default]
     Normal,
     /// 32 to 400 starts, until that chance is estimated at 0.5 % or less.

@@ -14,6 +14,9 @@ const SMALLEST: f64 = 1e-9;
 /// A step is taken where the misses fall by this share of what the model promises; the box grows where they fall by `GOOD`.
 const TAKEN: f64 = 1e-3;
 const GOOD: f64 = 0.75;
+/// A start is given up where so many designs in a row lower the misses by less than this share, all together.
+const STALLED: usize = 10;
+const STALLED_GAIN: f64 = 0.01;
 /// Tangents count of designs within so many boxes.
 const NEAR: f64 = 8.0;
 
@@ -23,8 +26,14 @@ pub(super) fn descend(search: &Search<'_>, begin: Point, tell: &mut dyn FnMut(&P
     // Designs that the model led to from the current one in vain.
     let mut rejected: Vec<Solved> = Vec::new();
     let mut reach = REACH;
+    let mut costs = vec![at.point.cost];
     for _ in 1..search.options.designs {
         tell(&at.point);
+        let earlier = costs.len().checked_sub(STALLED).map(|k| costs[k]);
+        if earlier.is_some_and(|cost| at.point.cost > (1.0 - STALLED_GAIN) * cost) {
+            break;
+        }
+        costs.push(at.point.cost);
         if search.reached(&at.point) || search.cancel.load(Ordering::Relaxed) || reach < SMALLEST {
             break;
         }

@@ -86,6 +86,11 @@ impl Family<'_> {
         self.numbers.iter().enumerate().map(rate).collect()
     }
 
+    /// Whether all free numbers are radii.
+    pub(super) fn of_radii(&self) -> bool {
+        self.numbers.iter().all(|number| number.kind != NumberKind::Other)
+    }
+
     /// The design whose links reach furthest, where all free numbers are radii.
     pub(super) fn loosest(&self) -> Option<Design> {
         let end = |number: &FreeNumber| match number.kind {

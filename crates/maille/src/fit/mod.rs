@@ -5,16 +5,20 @@
 //! number at no further solve (`sensitivity`). A step is that of a model: the tangents of the limits at the current design and at those that were
 //! solved near it, as limits have kinks; within a box that shrinks where the model promises too much. A design is not taken if its
 //! rings overlap as written and it does not allow that, if they are linked in another way, or if it has no certified limit for a target.
-//! There are several minima: further starts are drawn within the bounds, far from the best one and near to it. What is found is a
+//! There are several minima: further starts are drawn within the bounds, by turns far from the best one and near to it; where all free numbers
+//! are radii, the former are those whose proven bounds are what is wanted. What is found is a
 //! design that was solved, no estimate; where the search on the way was short, its limits are searched again with normal effort. That no design of the family does better is proved only where a bound of all of them forbids a target.
 //!
 //! The method, with its measurements: `docs/theory/fit.md`.
 
+mod bounds;
 mod descent;
 mod family;
 mod forbid;
 mod options;
+mod place;
 mod search;
+mod starts;
 mod step;
 mod target;
 
@@ -22,13 +26,16 @@ pub use family::{Family, FreeNumber, Make, NumberKind};
 pub use options::{FitOptions, Norm};
 pub use target::{Measure, Target, Targets, Wanted};
 
-use crate::{answer::Answer, design::Design, error::InvalidInput, sheet::Sheet};
+use crate::{
+    answer::Answer, design::Design, error::InvalidInput, lattice::Cell as LatticeCell, model::Model,
+    sensitivity::permutations, sheet::Sheet,
+};
 use descent::descend;
 use forbid::family_bounds;
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use place::solved_in_place;
 use search::{Point, Refused, Search, head};
 use serde::{Deserialize, Serialize};
+use starts::start;
 use std::{
     cell::Cell,
     sync::atomic::{AtomicBool, Ordering},
@@ -121,13 +128,27 @@ pub fn fit(
     let first: Vec<f64> = family.numbers.iter().map(|n| n.value).collect();
     let written = (family.make)(&first).map_err(head)?;
     let links = Sheet::in_cells(&written, options.cells.clone()).map_err(head)?.model().links.clone();
-    let search = Search { family, targets, options, links, solved: Cell::new(0), cancel };
+    let model = Model::compile(&written, LatticeCell::PRIMITIVE).map_err(head)?;
+    let symmetries = family.rates(&first).map(|rates| permutations(&model, &rates)).unwrap_or_default();
+    let solved = Cell::new(0);
+    let search = Search {
+        family,
+        targets,
+        options,
+        links: &links,
+        model: &model,
+        place: None,
+        symmetries: &symmetries,
+        by_bounds: false,
+        solved: &solved,
+        cancel,
+    };
     let given = search.solve(search.shares(&first)).map_err(Refused::of_the_given)?;
-    let again = resumed.and_then(|(numbers, _)| search.solve(search.shares(numbers)).ok());
+    let again = resumed.and_then(|(numbers, _)| solved_in_place(&search, &given, search.shares(numbers)));
     let (mut best, mut starts) = (again.unwrap_or_else(|| given.clone()), resumed.map_or(0, |(_, starts)| starts));
     while starts < options.starts && !search.reached(&best) && !cancel.load(Ordering::Relaxed) {
         starts += 1;
-        let begin = if starts == 1 { Some(best.clone()) } else { drawn(&search, &best, starts) };
+        let begin = if starts == 1 { Some(best.clone()) } else { start(&search, &given, &best, starts) };
         let mut tell = |point: &Point| {
             let better = if point.cost < best.cost { point } else { &best };
             progress(FitProgress {
@@ -137,7 +158,7 @@ pub fn fit(
                 numbers: search.values(&better.shares),
             });
         };
-        if let Some(found) = begin.map(|begin| descend(&search, begin, &mut tell))
+        if let Some(found) = begin.map(|begin| descend(&search.at(&begin.design.clone()), begin, &mut tell))
             && found.cost < best.cost
         {
             best = found;
@@ -154,9 +175,9 @@ pub fn fit(
         numbers: search.values(&best.shares),
         factor: targets.factor(&best.values),
         bounds: family_bounds(&search),
+        answers: best.answers().to_vec(),
         misses: best.misses,
         design: best.design,
-        answers: best.answers,
         before,
         starts,
         designs: search.solved.get(),
@@ -167,44 +188,9 @@ pub fn fit(
 fn confirmed(search: &Search<'_>, given: Point, best: Point) -> (Vec<Answer>, Point) {
     let options = FitOptions { effort: search.options.final_effort(), ..search.options.clone() };
     if options.effort == search.options.effort {
-        return (given.answers, best);
+        return (given.answers().to_vec(), best);
     }
-    let last = Search { options: &options, links: search.links.clone(), solved: Cell::new(0), ..*search };
-    let again = |point: Point| last.solve(point.shares.clone()).unwrap_or(point);
-    (again(given).answers, again(best))
-}
-
-/// How far from the best a start near it is drawn, as a share of each range.
-const NEAR: f64 = 0.1;
-/// How many starts are drawn until one has all limits.
-const DRAWS: usize = 20;
-/// How often the last of them is halved towards the best design.
-const HALVINGS: i32 = 5;
-
-/// A start: every second one anywhere in the bounds, the others near the best design. Each start has random numbers of its own. If none that was
-/// drawn has all limits, the last one is drawn towards the best design.
-fn drawn(search: &Search<'_>, best: &Point, number: usize) -> Option<Point> {
-    let mut random = ChaCha8Rng::seed_from_u64(search.options.seed);
-    random.set_stream(number as u64);
-    let near = number % 2 == 1;
-    let mut draw = || -> Vec<f64> {
-        let share = |x: &f64| match near {
-            true => (x + NEAR * random.random_range(-1.0..1.0)).clamp(0.0, 1.0),
-            false => random.random_range(0.0..1.0),
-        };
-        best.shares.iter().map(share).collect()
-    };
-    let mut last = Vec::new();
-    for _ in 0..DRAWS {
-        last = draw();
-        match search.solve(last.clone()) {
-            Ok(point) => return Some(point),
-            Err(Refused::Interrupted) => return None,
-            Err(_) => {}
-        }
-    }
-    (1..=HALVINGS).find_map(|k| {
-        let towards = |(b, x): (&f64, &f64)| b + (x - b) * 0.5f64.powi(k);
-        search.solve(best.shares.iter().zip(&last).map(towards).collect()).ok()
-    })
+    let last = Search { options: &options, solved: &Cell::new(0), ..*search };
+    let again = |point: Point| last.at(&point.design).solve(point.shares.clone()).unwrap_or(point);
+    (again(given).answers().to_vec(), again(best))
 }

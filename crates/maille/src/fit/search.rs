@@ -1,12 +1,21 @@
 //! One design of the family: solved for all targets, with its derivatives, or refused.
 
 use super::{
+    bounds::{Bounds, with_radii},
     family::{Family, FreeNumber},
     options::FitOptions,
+    place,
     target::{Measure, Target, Targets},
 };
 use crate::{
-    answer::Answer, design::Design, error::InvalidInput, model::Link, question::Question, record::Status, sensitivity,
+    answer::Answer,
+    design::Design,
+    error::InvalidInput,
+    lattice::Direction,
+    model::{Link, Model},
+    question::Question,
+    record::Status,
+    sensitivity::{self, DesignVector},
     sheet::Sheet,
 };
 use nalgebra::{DMatrix, DVector};
@@ -19,9 +28,7 @@ pub(super) struct Point {
     /// Each number as a share of its range.
     pub shares: Vec<f64>,
     pub design: Design,
-    pub sheet: Sheet,
-    pub answers: Vec<Answer>,
-    /// What was measured.
+    pub measured: Measured,
     pub values: Vec<f64>,
     pub deviations: Vec<f64>,
     pub misses: Vec<f64>,
@@ -29,7 +36,24 @@ pub(super) struct Point {
     pub cost: f64,
 }
 
+/// What the values of a design are.
+#[derive(Clone)]
+pub(super) enum Measured {
+    /// Its limits.
+    Limits { sheet: Sheet, answers: Vec<Answer> },
+    /// The bounds of its limits, with their derivatives.
+    Bounds(Vec<DesignVector>),
+}
+
 impl Point {
+    /// The answers of limits.
+    pub fn answers(&self) -> &[Answer] {
+        match &self.measured {
+            Measured::Limits { answers, .. } => answers,
+            Measured::Bounds(_) => &[],
+        }
+    }
+
     pub fn worst_miss(&self) -> f64 {
         self.misses.iter().copied().map(f64::abs).fold(0.0, f64::max)
     }
@@ -50,13 +74,22 @@ pub(super) enum Refused {
 }
 
 /// What all starts share.
+#[derive(Clone, Copy)]
 pub(super) struct Search<'a> {
     pub family: &'a Family<'a>,
     pub targets: &'a Targets,
     pub options: &'a FitOptions,
     /// Links of the given design.
-    pub links: Vec<Link>,
-    pub solved: Cell<usize>,
+    pub links: &'a [Link],
+    /// The given design in its own cell.
+    pub model: &'a Model,
+    /// Where the elements are, if not where the family writes them: only for numbers that are all radii.
+    pub place: Option<&'a Design>,
+    /// Which free number goes to which by each symmetry of the given design.
+    pub symmetries: &'a [Vec<usize>],
+    /// Whether bounds stand for limits.
+    pub by_bounds: bool,
+    pub solved: &'a Cell<usize>,
     pub cancel: &'a AtomicBool,
 }
 
@@ -67,6 +100,10 @@ pub(super) fn head(problems: Vec<InvalidInput>) -> InvalidInput {
 }
 
 impl Refused {
+    fn first(problems: Vec<InvalidInput>) -> Self {
+        Refused::Design(head(problems))
+    }
+
     /// The error where the given design itself cannot be used.
     pub fn of_the_given(self) -> InvalidInput {
         match self {
@@ -87,6 +124,11 @@ impl Refused {
 }
 
 impl Search<'_> {
+    /// The same with the elements where `design` has them, where only radii are free.
+    pub fn at<'b>(&'b self, design: &'b Design) -> Search<'b> {
+        Search { place: self.family.of_radii().then_some(design), ..*self }
+    }
+
     /// Numbers as shares of their ranges.
     pub fn shares(&self, values: &[f64]) -> Vec<f64> {
         self.family.numbers.iter().zip(values).map(|(n, x)| ((x - n.min) / (n.max - n.min)).clamp(0.0, 1.0)).collect()
@@ -101,16 +143,31 @@ impl Search<'_> {
         self.family.numbers.iter().zip(shares).map(value).collect()
     }
 
-    /// The design with these shares, solved for all targets.
+    /// The design with these shares, measured for all targets.
     pub fn solve(&self, shares: Vec<f64>) -> Result<Point, Refused> {
         self.solved.set(self.solved.get() + 1);
-        let first = |problems| Refused::Design(head(problems));
-        let design = (self.family.make)(&self.values(&shares)).map_err(first)?;
-        let sheet = Sheet::in_cells(&design, self.options.cells.clone()).map_err(first)?;
-        if sheet.model().links != self.links {
-            let problem = "its rings are linked in another way than those of the given design";
-            return Err(Refused::Design(InvalidInput::new("design", problem, "give narrower bounds")));
+        let made = (self.family.make)(&self.values(&shares)).map_err(Refused::first)?;
+        let design = if let Some(place) = self.place { place::at(made, place) } else { made };
+        let (values, measured) = if self.by_bounds { self.bounds(&design)? } else { self.limits(&design)? };
+        let deviations = self.targets.deviations(&values).ok_or(Refused::Shape)?;
+        let misses: Vec<f64> =
+            self.targets.iter().zip(&deviations).map(|(target, deviation)| target.wanted.miss(*deviation)).collect();
+        let weighted = self.targets.iter().zip(&misses).map(|(target, miss)| target.weight * miss);
+        let cost = self.options.norm.of(&DVector::from_iterator(misses.len(), weighted));
+        Ok(Point { shares, design, measured, values, deviations, misses, cost })
+    }
+
+    fn same_links(&self, model: &Model) -> Result<(), Refused> {
+        if model.links == self.links {
+            return Ok(());
         }
+        let problem = "its rings are linked in another way than those of the given design";
+        Err(Refused::Design(InvalidInput::new("design", problem, "give narrower bounds")))
+    }
+
+    fn limits(&self, design: &Design) -> Result<(Vec<f64>, Measured), Refused> {
+        let sheet = Sheet::in_cells(design, self.options.cells.clone()).map_err(Refused::first)?;
+        self.same_links(sheet.model())?;
         let questions: Vec<Question> = self.targets.iter().map(|target| self.question(target)).collect();
         let answers = questions.par_iter().map(|question| sheet.answer_until(question, self.cancel));
         let answers = answers.collect::<Result<Vec<_>, _>>().map_err(Refused::Design)?;
@@ -122,12 +179,26 @@ impl Search<'_> {
                 (None, status) => return Err(Refused::Limit(*target, status)),
             }
         }
-        let deviations = self.targets.deviations(&values).ok_or(Refused::Shape)?;
-        let misses: Vec<f64> =
-            self.targets.iter().zip(&deviations).map(|(target, deviation)| target.wanted.miss(*deviation)).collect();
-        let weighted = self.targets.iter().zip(&misses).map(|(target, miss)| target.weight * miss);
-        let cost = self.options.norm.of(&DVector::from_iterator(misses.len(), weighted));
-        Ok(Point { shares, design, sheet, answers, values, deviations, misses, cost })
+        Ok((values, Measured::Limits { sheet, answers }))
+    }
+
+    /// Bounds follow from links and radii: where the design's elements are written does not matter.
+    fn bounds(&self, design: &Design) -> Result<(Vec<f64>, Measured), Refused> {
+        let model = with_radii(self.model, design);
+        let bounds = Bounds::new(&model);
+        let of = |target: &Target| {
+            let Measure::Stretch { direction_deg, l2 } = target.measure else {
+                return Err(Refused::Limit(*target, Status::Unbounded));
+            };
+            let direction = Direction::of_degrees(direction_deg);
+            let bound = bounds.by_links(direction, l2);
+            let l1 = bound.l1().ok_or(Refused::Limit(*target, Status::L2Unreachable))?;
+            Ok((l1, bounds.slopes(&bound, direction)))
+        };
+        let targets: Vec<Target> = self.targets.iter().copied().collect();
+        let found = targets.par_iter().map(of).collect::<Result<Vec<_>, _>>()?;
+        let (values, slopes) = found.into_iter().unzip();
+        Ok((values, Measured::Bounds(slopes)))
     }
 
     fn question(&self, target: &Target) -> Question {
@@ -140,18 +211,32 @@ impl Search<'_> {
     /// Where the design or an answer has none.
     pub fn with_slopes(&self, point: Point) -> Result<Solved, InvalidInput> {
         let rates = self.family.rates(&self.values(&point.shares))?;
-        let mut slopes = DMatrix::zeros(point.answers.len(), rates.len());
-        for (k, (answer, target)) in point.answers.iter().zip(self.targets.iter()).enumerate() {
-            let model = point.sheet.model_of(answer);
-            let mut along = sensitivity::gradient(&model, &self.question(target), answer, &rates)?;
-            // The derivative of a clearance is one of a length in the design's unit.
-            if target.measure == Measure::Clearance {
-                along.iter_mut().for_each(|x| *x /= model.unit);
-            }
+        let mut slopes = DMatrix::zeros(point.values.len(), rates.len());
+        for (k, target) in self.targets.iter().enumerate() {
+            let along = match &point.measured {
+                Measured::Limits { sheet, answers } => self.slopes_of_limit(target, sheet, &answers[k], &rates)?,
+                Measured::Bounds(slopes) => rates.iter().map(|rate| slopes[k].dot(rate)).collect(),
+            };
             slopes.row_mut(k).copy_from_slice(&along);
         }
         let slopes = self.targets.deviation_slopes(&point.values, &slopes);
         Ok(Solved { point, slopes })
+    }
+
+    fn slopes_of_limit(
+        &self,
+        target: &Target,
+        sheet: &Sheet,
+        answer: &Answer,
+        rates: &[DesignVector],
+    ) -> Result<Vec<f64>, InvalidInput> {
+        let model = sheet.model_of(answer);
+        let mut along = sensitivity::gradient(&model, &self.question(target), answer, rates)?;
+        // The derivative of a clearance is one of a length in the design's unit.
+        if target.measure == Measure::Clearance {
+            along.iter_mut().for_each(|x| *x /= model.unit);
+        }
+        Ok(along)
     }
 
     pub fn reached(&self, point: &Point) -> bool {

@@ -43,7 +43,7 @@ impl StopRule {
         match (starts, effort) {
             (Some(starts), _) => Self::exactly(starts as u64),
             (None, Effort::Low) => rule(4, 8, 0.1),
-            (None, Effort::Normal) => rule(8, 40, 0.05),
+            (None, Effort::Normal) => rule(8, 64, 0.02),
             (None, Effort::Thorough) => rule(32, 400, 0.005),
             (None, Effort::Seconds(seconds)) => StopRule { seconds, ..rule(1, u64::from(u32::MAX), 0.0) },
         }
@@ -92,9 +92,9 @@ mod tests {
     fn a_rule_stops_between_its_numbers() {
         let normal = StopRule::of(Effort::Normal, None);
         assert_eq!(normal.left(0, 1.0, 0.0), 8);
-        assert_eq!(normal.left(8, better_chance(8, &[8]), 0.0), 32);
-        assert_eq!(normal.left(9, better_chance(9, &[9]), 0.0), 0);
-        assert_eq!(normal.left(40, 1.0, 0.0), 0);
+        assert_eq!(normal.left(23, better_chance(23, &[23]), 0.0), 41);
+        assert_eq!(normal.left(24, better_chance(24, &[24]), 0.0), 0);
+        assert_eq!(normal.left(64, 1.0, 0.0), 0);
         let four = StopRule::of(Effort::Thorough, Some(4));
         assert_eq!((four.left(3, 0.0, 1e9), four.left(4, 1.0, 0.0)), (1, 0));
         assert_eq!([four, normal].map(|rule| [false, true].map(|folds| rule.of_larger_cell(folds))), [[3, 4], [3, 4]]);

@@ -56,6 +56,15 @@ pub(super) fn changes(
     out
 }
 
+/// For each symmetry of a design, `design` being compiled in its own cell, which of `changes` each of them becomes; symmetries that
+/// make something else of one are left out.
+pub(crate) fn permutations(design: &Model, changes: &[DesignVector]) -> Vec<Vec<usize>> {
+    let operations = all_operations(design);
+    let images = operations.iter().filter_map(|operation| Image::new(operation, design, design));
+    let place = |there: DesignVector| changes.iter().position(|other| other.is_close_to(&there, SAME));
+    images.filter_map(|image| changes.iter().map(|change| place(change.image(&image))).collect()).collect()
+}
+
 /// Whether a state goes to itself, as far as its closed points tell.
 fn maps_to_itself(image: &Image<'_>, points: &[Point]) -> bool {
     let turned = |(ring, rates): &(usize, RingVector)| {

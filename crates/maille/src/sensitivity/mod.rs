@@ -21,6 +21,7 @@ mod numbers;
 mod point;
 mod slope;
 
+pub(crate) use images::permutations;
 pub use numbers::{DesignVector, RingVector};
 pub use slope::{OneSided, Slope};
 

@@ -1,0 +1,143 @@
+//! Where the descents after the first begin.
+
+use super::{
+    descent::descend,
+    family::NumberKind,
+    options::FitOptions,
+    place::solved_in_place,
+    search::{Point, Refused, Search},
+    target::Measure,
+};
+use crate::sensitivity::RingVector;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use std::{cell::Cell, sync::atomic::Ordering};
+
+/// How far from the best a start near it is drawn, as a share of each range.
+const NEAR: f64 = 0.1;
+/// How many starts are drawn until one has all limits.
+const DRAWS: usize = 20;
+/// How often the last of them is halved towards the best design.
+const HALVINGS: i32 = 5;
+/// Descents on bounds: so many from anywhere, then the others from the best of them.
+const DRAWN_BY_BOUNDS: usize = 10;
+const BY_BOUNDS: usize = 150;
+/// Designs of one of them, at most.
+const DESIGNS_BY_BOUNDS: usize = 25;
+/// Shares of the numbers that are drawn anew before a descent from the best, in turn.
+const REDRAWN: [f64; 3] = [0.1, 0.3, 0.5];
+/// A number is drawn about one of these shares of its range, within this.
+const LEVELS: [f64; 3] = [0.05, 0.5, 0.95];
+const SPREAD: f64 = 0.05;
+/// So many of the best by bounds are tried until one has all limits.
+const TRIED_BY_BOUNDS: usize = 3;
+
+/// Start number `number`, from 2: every second one anywhere in the ranges, the others near the best design. Each start has random
+/// numbers of its own. Where bounds say something, the former is a design whose bounds are what is wanted.
+pub(super) fn start(search: &Search<'_>, given: &Point, best: &Point, number: usize) -> Option<Point> {
+    let mut random = ChaCha8Rng::seed_from_u64(search.options.seed);
+    random.set_stream(number as u64);
+    let near = number % 2 == 1;
+    let of_bounds = if near { None } else { by_bounds(search, given, &mut random) };
+    of_bounds.or_else(|| drawn(search, best, near, &mut random))
+}
+
+/// A start that was drawn. If none that was drawn has all limits, the last one is drawn towards the best design.
+fn drawn(search: &Search<'_>, best: &Point, near: bool, random: &mut ChaCha8Rng) -> Option<Point> {
+    let mut draw = || -> Vec<f64> {
+        if !near {
+            return symmetric(search, random);
+        }
+        best.shares.iter().map(|x| (x + NEAR * random.random_range(-1.0..1.0)).clamp(0.0, 1.0)).collect()
+    };
+    let mut last = Vec::new();
+    for _ in 0..DRAWS {
+        last = draw();
+        match search.solve(last.clone()) {
+            Ok(point) => return Some(point),
+            Err(Refused::Interrupted) => return None,
+            Err(_) => {}
+        }
+    }
+    (1..=HALVINGS).find_map(|k| {
+        let towards = |(b, x): (&f64, &f64)| b + (x - b) * 0.5f64.powi(k);
+        search.solve(best.shares.iter().zip(&last).map(towards).collect()).ok()
+    })
+}
+
+/// Shares from anywhere in the ranges. Numbers that a symmetry of the given design maps to each other are alike, the symmetry being
+/// drawn anew each time: many wanted profiles are symmetric.
+fn symmetric(search: &Search<'_>, random: &mut ChaCha8Rng) -> Vec<f64> {
+    let mut draw = |_| LEVELS[random.random_range(0..LEVELS.len())] + random.random_range(-SPREAD..SPREAD);
+    let mut shares: Vec<f64> = search.family.numbers.iter().map(&mut draw).collect();
+    let symmetry = random.random_range(0..=search.symmetries.len());
+    let Some(image) = search.symmetries.get(symmetry) else { return shares };
+    let mut known = vec![false; shares.len()];
+    for first in 0..shares.len() {
+        let mut at = first;
+        while !known[at] {
+            known[at] = true;
+            shares[at] = shares[first];
+            at = image[at];
+        }
+    }
+    shares
+}
+
+/// A design whose bounds are what is wanted, as nearly as many descents find one, measured by its limits. A bound takes a small
+/// part of the time of its limit, and is often attained. After the first descents, each begins at the best design yet with some of its
+/// numbers drawn anew: from anywhere, nearly all end in the same poor minimum.
+fn by_bounds(search: &Search<'_>, given: &Point, random: &mut ChaCha8Rng) -> Option<Point> {
+    let stretches = search.targets.iter().all(|target| matches!(target.measure, Measure::Stretch { .. }));
+    if !search.family.of_radii() || !stretches {
+        return None;
+    }
+    let (options, solved) = (FitOptions { designs: DESIGNS_BY_BOUNDS, ..search.options.clone() }, Cell::new(0));
+    let bounds = Search { options: &options, by_bounds: true, solved: &solved, ..*search };
+    let mut found: Vec<Point> = Vec::new();
+    for k in 0..BY_BOUNDS {
+        if search.cancel.load(Ordering::Relaxed) {
+            return None;
+        }
+        let mut shares = symmetric(search, random);
+        if let (true, Some(best)) = (k >= DRAWN_BY_BOUNDS, found.first()) {
+            let redrawn =
+                |(x, best): (f64, &f64)| if random.random_range(0.0..1.0) < REDRAWN[k % 3] { x } else { *best };
+            shares = shares.into_iter().zip(&best.shares).map(redrawn).collect();
+        }
+        let Ok(begin) = bounds.solve(shares) else { continue };
+        let end = descend(&bounds, begin, &mut |_| ());
+        let after = found.partition_point(|other| other.cost <= end.cost);
+        found.insert(after, end);
+        if bounds.reached(&found[0]) {
+            break;
+        }
+    }
+    found
+        .into_iter()
+        .take(TRIED_BY_BOUNDS)
+        .find_map(|point| solved_in_place(search, given, thinned(search, point.shares)))
+}
+
+/// Shares with wires as thin as they go where R − r stays: bounds by links stay, and rings have more room to attain them.
+fn thinned(search: &Search<'_>, mut shares: Vec<f64>) -> Vec<f64> {
+    let Ok(rates) = search.family.rates(&search.values(&shares)) else { return shares };
+    let of = |k: usize, kind: NumberKind| -> Option<Vec<usize>> {
+        let rings = rates[k].rings.iter().enumerate();
+        let moved =
+            |ring: &RingVector| if kind == NumberKind::MajorRadius { ring.major_radius } else { ring.minor_radius };
+        let rings = rings.filter(|(_, ring)| moved(ring) != 0.0).map(|(i, _)| i).collect();
+        (search.family.numbers[k].kind == kind).then_some(rings)
+    };
+    let numbers = &search.family.numbers;
+    for minor in 0..shares.len() {
+        let Some(rings) = of(minor, NumberKind::MinorRadius) else { continue };
+        let same = |major: &usize| of(*major, NumberKind::MajorRadius).is_some_and(|others| others == rings);
+        let Some(major) = (0..shares.len()).find(same) else { continue };
+        let [across, along] = [minor, major].map(|k| numbers[k].max - numbers[k].min);
+        let thinner = f64::min(shares[minor] * across, shares[major] * along);
+        shares[minor] -= thinner / across;
+        shares[major] -= thinner / along;
+    }
+    shares
+}
