@@ -9,7 +9,7 @@ use maille::{
     answer::Answer,
     design::{Design, Source},
     error::InvalidInput,
-    fit::{Family, Fit, FitOptions, FitProgress, FreeNumber, Measure, Target, Targets, Wanted, fit},
+    fit::{Family, Fit, FitOptions, FitProgress, FreeNumber, Measure, Target, Targets, Wanted, fit, linked_alike},
     lattice::Cell,
     model::Model,
     search::extreme::Extreme,
@@ -101,11 +101,13 @@ impl FitRequest {
         self.free.iter().map(|number| number.name.parse()).collect()
     }
 
-    /// The design with other values of its free numbers.
-    fn made(&self, values: &[f64]) -> Result<Design, InvalidInput> {
+    /// The design with other values of its free numbers, its rings linked as those of the given one.
+    fn made(&self, values: &[f64], cancel: &AtomicBool) -> Result<Design, InvalidInput> {
         let none = || InvalidInput::new("numbers", "they make no design", "give those of the fit");
-        let first = |problems: Vec<InvalidInput>| problems.into_iter().next().unwrap_or_else(none);
-        with(&self.tolerant(), &self.paths()?, values).map_err(first)
+        let (begin, paths) = (self.tolerant(), self.paths()?);
+        let make = |values: &[f64]| with(&begin, &paths, values);
+        let family = Family { numbers: self.free.clone(), make: &make };
+        linked_alike(&family, values, cancel).ok_or_else(none)
     }
 
     /// The request without what does not change where a search leads: more starts go on from fewer.
@@ -140,7 +142,7 @@ pub fn fitted_design(request: &FitRequest, numbers: &[f64], cancel: &AtomicBool)
     let given = &request.design;
     let title = format!("{}, fitted", if given.title.is_empty() { &given.name } else { &given.title });
     let name = format!("{}-fitted", given.name);
-    let made = request.made(&numbers.iter().map(|x| nine_digits(*x)).collect::<Vec<_>>())?;
+    let made = request.made(&numbers.iter().map(|x| nine_digits(*x)).collect::<Vec<_>>(), cancel)?;
     let mut out = Design { name, title, source: Source::Own, varied: given.varied.clone(), ..made }.rounded();
     let overlaps = |design: &Design| {
         Model::compile(&Design { allow_initial_overlap: false, ..design.clone() }, Cell::PRIMITIVE).is_err()

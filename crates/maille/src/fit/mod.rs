@@ -24,6 +24,7 @@ mod target;
 
 pub use family::{Family, FreeNumber, Make, NumberKind};
 pub use options::{FitOptions, Norm};
+pub use place::linked_alike;
 pub use target::{Measure, Target, Targets, Wanted};
 
 use crate::{

@@ -4,7 +4,10 @@
 //! rings that pass through the same short one, say. So the given design is changed in steps, and after each its elements move
 //! to where the gaps are widest. A limit does not depend on where they are written.
 
-use super::search::{Point, Search};
+use super::{
+    family::Family,
+    search::{Point, Search},
+};
 use crate::{
     design::Design,
     lattice::Cell,
@@ -14,6 +17,7 @@ use crate::{
         extreme::{Extreme, extreme},
     },
 };
+use std::sync::atomic::AtomicBool;
 
 /// Steps from the given design to another one: the largest and the smallest, of the whole way.
 const LARGEST_STEP: f64 = 0.25;
@@ -35,18 +39,34 @@ pub(super) fn solved_in_place(search: &Search<'_>, given: &Point, shares: Vec<f6
     if !search.family.of_radii() {
         return search.solve(shares).ok();
     }
-    let place = placed(search, given, &shares)?;
+    let place =
+        steps(search.family, search.model, [&search.values(&given.shares), &search.values(&shares)], search.cancel)?;
     search.at(&place).solve(shares).ok()
 }
 
-/// The design with these shares, linked as the given one; `None` where the steps do not get there.
-fn placed(search: &Search<'_>, given: &Point, shares: &[f64]) -> Option<Design> {
-    let (mut reached, mut step, mut design) = (0.0, LARGEST_STEP, given.design.clone());
+/// The design of a family with these numbers, linked as the one with its first numbers: as the family writes it or, where that is
+/// linked in another way and only radii are free, with its elements moved. `None` where neither is found.
+pub fn linked_alike(family: &Family<'_>, values: &[f64], cancel: &AtomicBool) -> Option<Design> {
+    let first: Vec<f64> = family.numbers.iter().map(|number| number.value).collect();
+    let given = Model::compile(&(family.make)(&first).ok()?, Cell::PRIMITIVE).ok()?;
+    let written = (family.make)(values).ok()?;
+    if Model::compile(&written, Cell::PRIMITIVE).is_ok_and(|model| model.links == given.links) {
+        return Some(written);
+    }
+    family.of_radii().then(|| steps(family, &given, [&first, values], cancel))?
+}
+
+/// The design with the numbers `to`, its elements moved so that it is linked as `model`, the design with the numbers `from`; `None` where
+/// the steps do not get there.
+fn steps(family: &Family<'_>, model: &Model, [from, to]: [&[f64]; 2], cancel: &AtomicBool) -> Option<Design> {
+    let (mut reached, mut step, mut design) = (0.0, LARGEST_STEP, (family.make)(from).ok()?);
     while reached < 1.0 {
         let next = f64::min(reached + step, 1.0);
-        let between = given.shares.iter().zip(shares).map(|(from, to)| from + next * (to - from)).collect::<Vec<_>>();
-        let moved = (search.family.make)(&search.values(&between)).ok().map(|moved| at(moved, &design));
-        match moved.and_then(|moved| roomiest(search, moved)) {
+        // The end exactly.
+        let value = |(from, to): (&f64, &f64)| if next == 1.0 { *to } else { from + next * (to - from) };
+        let between: Vec<f64> = from.iter().zip(to).map(value).collect();
+        let moved = (family.make)(&between).ok().map(|moved| at(moved, &design));
+        match moved.and_then(|moved| roomiest(model, moved, cancel)) {
             Some(moved) => (reached, step, design) = (next, f64::min(2.0 * step, LARGEST_STEP), moved),
             None if step <= SMALLEST_STEP => return None,
             None => step *= 0.5,
@@ -55,9 +75,9 @@ fn placed(search: &Search<'_>, given: &Point, shares: &[f64]) -> Option<Design> 
     Some(design)
 }
 
-/// The design with its elements where the gaps are widest, as far as one search finds; `None` where it is linked in another way.
-fn roomiest(search: &Search<'_>, design: Design) -> Option<Design> {
-    let model = Model::compile(&design, Cell::PRIMITIVE).ok().filter(|model| model.links == search.model.links)?;
+/// The design with its elements where the gaps are widest, as far as one search finds; `None` where it is not linked as `given`.
+fn roomiest(given: &Model, design: Design, cancel: &AtomicBool) -> Option<Design> {
+    let model = Model::compile(&design, Cell::PRIMITIVE).ok().filter(|model| model.links == given.links)?;
     let options = ExtremeOptions { lattice_free: false, starts: Some(1), ..ExtremeOptions::default() };
-    Some(extreme(&model, Extreme::LargestClearance, &options, search.cancel).state.design(&design, &model))
+    Some(extreme(&model, Extreme::LargestClearance, &options, cancel).state.design(&design, &model))
 }

@@ -20,17 +20,17 @@ const DRAWS: usize = 20;
 /// How often the last of them is halved towards the best design.
 const HALVINGS: i32 = 5;
 /// Descents on bounds: so many from anywhere, then the others from the best of them.
-const DRAWN_BY_BOUNDS: usize = 10;
-const BY_BOUNDS: usize = 150;
+const DRAWN_BY_BOUNDS: usize = 100;
+const BY_BOUNDS: usize = 160;
 /// Designs of one of them, at most.
 const DESIGNS_BY_BOUNDS: usize = 25;
 /// Shares of the numbers that are drawn anew before a descent from the best, in turn.
-const REDRAWN: [f64; 3] = [0.1, 0.3, 0.5];
+const REDRAWN: [f64; 3] = [0.1, 0.2, 0.3];
 /// A number is drawn about one of these shares of its range, within this.
 const LEVELS: [f64; 3] = [0.05, 0.5, 0.95];
 const SPREAD: f64 = 0.05;
-/// So many of the best by bounds are tried until one has all limits.
-const TRIED_BY_BOUNDS: usize = 3;
+/// So many designs whose bounds are what is wanted are measured by their limits, at most.
+const MEASURED: usize = 3;
 
 /// Start number `number`, from 2: every second one anywhere in the ranges, the others near the best design. Each start has random
 /// numbers of its own. Where bounds say something, the former is a design whose bounds are what is wanted.
@@ -94,29 +94,32 @@ fn by_bounds(search: &Search<'_>, given: &Point, random: &mut ChaCha8Rng) -> Opt
     }
     let (options, solved) = (FitOptions { designs: DESIGNS_BY_BOUNDS, ..search.options.clone() }, Cell::new(0));
     let bounds = Search { options: &options, by_bounds: true, solved: &solved, ..*search };
-    let mut found: Vec<Point> = Vec::new();
+    let measured = |point: &Point| solved_in_place(search, given, thinned(search, point.shares.clone()));
+    let (mut found, mut best): (Vec<Point>, Option<Point>) = (Vec::new(), None);
+    let mut measurements = 0;
     for k in 0..BY_BOUNDS {
-        if search.cancel.load(Ordering::Relaxed) {
-            return None;
+        if search.cancel.load(Ordering::Relaxed) || measurements == MEASURED {
+            break;
         }
         let mut shares = symmetric(search, random);
         if let (true, Some(best)) = (k >= DRAWN_BY_BOUNDS, found.first()) {
-            let redrawn =
-                |(x, best): (f64, &f64)| if random.random_range(0.0..1.0) < REDRAWN[k % 3] { x } else { *best };
+            let share = REDRAWN[k % REDRAWN.len()];
+            let redrawn = |(x, best): (f64, &f64)| if random.random_range(0.0..1.0) < share { x } else { *best };
             shares = shares.into_iter().zip(&best.shares).map(redrawn).collect();
         }
         let Ok(begin) = bounds.solve(shares) else { continue };
         let end = descend(&bounds, begin, &mut |_| ());
+        if bounds.reached(&end) {
+            measurements += 1;
+            best = best.into_iter().chain(measured(&end)).min_by(|a, b| a.cost.total_cmp(&b.cost));
+            if best.as_ref().is_some_and(|best| search.reached(best)) {
+                return best;
+            }
+        }
         let after = found.partition_point(|other| other.cost <= end.cost);
         found.insert(after, end);
-        if bounds.reached(&found[0]) {
-            break;
-        }
     }
-    found
-        .into_iter()
-        .take(TRIED_BY_BOUNDS)
-        .find_map(|point| solved_in_place(search, given, thinned(search, point.shares)))
+    best.or_else(|| found.iter().take(MEASURED).find_map(measured))
 }
 
 /// Shares with wires as thin as they go where R − r stays: bounds by links stay, and rings have more room to attain them.
