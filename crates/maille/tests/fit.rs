@@ -1,8 +1,11 @@
 //! Fits: hidden numbers are found again, bounds are kept, and what is missed or cannot begin is told.
 
 use maille::{
-    CellChoice, Design, Sheet,
-    fit::{Ended, Family, Fit, FitOptions, FreeNumber, Measure, NumberKind, Target, Targets, Wanted, fit},
+    CellChoice, Design, Sheet, Status,
+    fit::{
+        Ended, Family, Fit, FitOptions, FreeNumber, Measure, Norm, NumberKind, Target, Targets, Wanted, fit,
+        linked_alike,
+    },
 };
 use maille_io::{builtin, design_toml::NumberPath, read_design};
 use rand::{RngExt, SeedableRng};
@@ -183,4 +186,64 @@ fn a_fit_that_cannot_begin_says_why() {
     assert!(problem(vec![usual], [1.0, 1.0], false).contains("is not below"));
     let too_wide = Target { measure: Measure::Stretch { direction_deg: 0.0, l2: 5.0 }, ..usual };
     assert!(problem(vec![too_wide], WIDE, false).contains("at l2 5"));
+}
+
+/// 2 x 2 cells of 3.1 with thick rings: R and r of each, within 30 %.
+fn thick_rings() -> (Design, Vec<NumberPath>, Vec<FreeNumber>) {
+    let base = Design { allow_initial_overlap: true, ..design("3.1").with_minor_radius(0.15).repeated(2, 2) };
+    let both = |name: &str| ["major_radius", "minor_radius"].map(|what| format!("elements.{name}.rings.0.{what}"));
+    let names: Vec<String> = base.elements.iter().flat_map(|element| both(&element.name)).collect();
+    let number = |name: &String| {
+        let minor = name.ends_with("minor_radius");
+        let (kind, value) = if minor { (NumberKind::MinorRadius, 0.15) } else { (NumberKind::MajorRadius, 1.0) };
+        FreeNumber { name: name.clone(), value, min: 0.7 * value, max: 1.3 * value, kind }
+    };
+    let numbers = names.iter().map(number).collect();
+    (base, names.iter().map(|name| name.parse().unwrap()).collect(), numbers)
+}
+
+/// Long rings that pass through one short ring from several sides would cross where they are written.
+#[test]
+fn rings_that_would_cross_are_moved() {
+    let (base, paths, numbers) = thick_rings();
+    let make = |values: &[f64]| with(&base, &paths, values);
+    let long = ["standing-0-1-0", "standing-120-1-0"];
+    let is = |name: &str, these: &[&str]| these.iter().any(|element| name.contains(element));
+    let value = |number: &FreeNumber| match (is(&number.name, &long), number.kind) {
+        (true, NumberKind::MajorRadius) => 1.3,
+        (true, _) => 0.105,
+        (false, _) if number.name.contains("flat") => number.value * 0.8,
+        _ => number.value,
+    };
+    let values: Vec<f64> = numbers.iter().map(value).collect();
+    let links = |design: &Design| Sheet::in_cells(design, own_cell()).ok().map(|sheet| sheet.model().links.clone());
+    let given = links(&base).unwrap();
+    assert_ne!(links(&make(&values).unwrap()), Some(given.clone()));
+    let family = Family { numbers, make: &make };
+    let moved = linked_alike(&family, &values, &AtomicBool::new(false)).unwrap();
+    assert_eq!(links(&moved), Some(given));
+    let ring = moved.elements.iter().find(|element| element.name == long[0]).unwrap().rings[0].clone();
+    assert_eq!((ring.major_radius, ring.minor_radius), (1.3, Some(0.105)));
+}
+
+/// From equal rings to limits that are alike within 5 % of their mean, by way of the bounds.
+#[test]
+#[ignore = "minutes"]
+fn a_round_profile_is_found() {
+    let (base, paths, numbers) = thick_rings();
+    let make = |values: &[f64]| with(&base, &paths, values);
+    let family = Family { numbers, make: &make };
+    let all = DIRECTIONS_DEG[..12].iter().map(|direction| target(*direction, Wanted::Value(1.0))).collect();
+    let options = FitOptions {
+        norm: Norm::Minimax,
+        tolerance: 0.05,
+        effort: maille::Effort::Low,
+        cells: own_cell(),
+        ..FitOptions::default()
+    };
+    let found = fit(&family, &Targets::new(all, true).unwrap(), &options, None, &|_| (), &AtomicBool::new(false));
+    let found = found.unwrap();
+    println!("{:?}, {} starts, {} designs: {:?}", found.ended, found.starts, found.designs, found.misses);
+    assert_eq!(found.ended, Ended::Reached);
+    assert!(found.answers.iter().all(|answer| answer.status == Status::Global));
 }

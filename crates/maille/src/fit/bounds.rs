@@ -111,3 +111,65 @@ impl<'a> Bounds<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        bound::{BoundKind, LinkSolution},
+        lattice::Cell,
+    };
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    /// Against central differences, at random radii: by chains, links and strand pairs, with elements of one ring and of several.
+    #[test]
+    fn slopes_of_bounds_are_their_derivatives() {
+        let mut random = ChaCha8Rng::seed_from_u64(3);
+        for name in ["1.1", "3.1", "4.2", "5.1", "european-4-in-1"] {
+            let built_in = maille_io::read_design(name, maille_io::builtin(name).unwrap()).unwrap();
+            let design: Design = serde_json::from_str(&serde_json::to_string(&built_in).unwrap()).unwrap();
+            let mut model = Model::compile(&design, Cell::PRIMITIVE).unwrap();
+            model.rings.iter_mut().for_each(|ring| ring.major_radius *= random.random_range(0.97..1.03));
+            model.rings.iter_mut().for_each(|ring| ring.minor_radius *= random.random_range(0.8..1.0));
+            for (direction_deg, l2) in [(10.0, 0.0), (33.0, -0.05), (75.0, 0.02)] {
+                let direction = Direction::of_degrees(direction_deg);
+                for by_links in [false, true] {
+                    compare(&model, direction, l2, by_links, &format!("{name} {direction_deg}\u{b0} {by_links}"));
+                }
+            }
+        }
+    }
+
+    /// The bound by all links at once, also where one chain alone gives it, or that by chains.
+    fn bound(model: &Model, direction: Direction, l2: f64, by_links: bool) -> (Bounds<'_>, Bound) {
+        let bounds = Bounds::new(model);
+        let bound = match by_links {
+            false => bounds.by_chains(direction, l2),
+            true => {
+                let LinkSolution { l1, dual, .. } = bounds.link.limit(direction, l2);
+                Bound::Finite { l1, kind: BoundKind::Link, chain: None, dual }
+            }
+        };
+        (bounds, bound)
+    }
+
+    fn compare(model: &Model, direction: Direction, l2: f64, by_links: bool, label: &str) {
+        let (bounds, here) = bound(model, direction, l2, by_links);
+        let slopes = bounds.slopes(&here, direction);
+        for ring in 0..model.rings.len() {
+            let beside = |major: f64, minor: f64| {
+                let mut beside = model.clone();
+                beside.rings[ring].major_radius += major;
+                beside.rings[ring].minor_radius += minor;
+                bound(&beside, direction, l2, by_links).1.l1().unwrap()
+            };
+            let h = 1e-5;
+            let numeric = [beside(h, 0.0) - beside(-h, 0.0), beside(0.0, h) - beside(0.0, -h)];
+            let own = [slopes.rings[ring].major_radius, slopes.rings[ring].minor_radius];
+            for (numeric, own) in numeric.iter().map(|x| x / (2.0 * h)).zip(own.map(|x| x * model.unit)) {
+                assert!((numeric - own).abs() < 1e-3, "{label} ring {ring}: {numeric} {own}");
+            }
+        }
+    }
+}

@@ -33,10 +33,9 @@ use crate::{
 };
 use descent::descend;
 use forbid::family_bounds;
-use place::solved_in_place;
 use search::{Point, Refused, Search, head};
 use serde::{Deserialize, Serialize};
-use starts::start;
+use starts::{solved_in_place, start};
 use std::{
     cell::Cell,
     sync::atomic::{AtomicBool, Ordering},

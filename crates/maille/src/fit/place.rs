@@ -4,10 +4,7 @@
 //! rings that pass through the same short one, say. So the given design is changed in steps, and after each its elements move
 //! to where the gaps are widest. A limit does not depend on where they are written.
 
-use super::{
-    family::Family,
-    search::{Point, Search},
-};
+use super::family::Family;
 use crate::{
     design::Design,
     lattice::Cell,
@@ -34,16 +31,6 @@ pub(super) fn at(mut design: Design, place: &Design) -> Design {
     design
 }
 
-/// The design with these shares, measured: where only radii are free, with its elements where steps from the given design lead.
-pub(super) fn solved_in_place(search: &Search<'_>, given: &Point, shares: Vec<f64>) -> Option<Point> {
-    if !search.family.of_radii() {
-        return search.solve(shares).ok();
-    }
-    let place =
-        steps(search.family, search.model, [&search.values(&given.shares), &search.values(&shares)], search.cancel)?;
-    search.at(&place).solve(shares).ok()
-}
-
 /// The design of a family with these numbers, linked as the one with its first numbers: as the family writes it or, where that is
 /// linked in another way and only radii are free, with its elements moved. `None` where neither is found.
 pub fn linked_alike(family: &Family<'_>, values: &[f64], cancel: &AtomicBool) -> Option<Design> {
@@ -58,7 +45,12 @@ pub fn linked_alike(family: &Family<'_>, values: &[f64], cancel: &AtomicBool) ->
 
 /// The design with the numbers `to`, its elements moved so that it is linked as `model`, the design with the numbers `from`; `None` where
 /// the steps do not get there.
-fn steps(family: &Family<'_>, model: &Model, [from, to]: [&[f64]; 2], cancel: &AtomicBool) -> Option<Design> {
+pub(super) fn steps(
+    family: &Family<'_>,
+    model: &Model,
+    [from, to]: [&[f64]; 2],
+    cancel: &AtomicBool,
+) -> Option<Design> {
     let (mut reached, mut step, mut design) = (0.0, LARGEST_STEP, (family.make)(from).ok()?);
     while reached < 1.0 {
         let next = f64::min(reached + step, 1.0);

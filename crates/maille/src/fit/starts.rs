@@ -4,7 +4,7 @@ use super::{
     descent::descend,
     family::NumberKind,
     options::FitOptions,
-    place::solved_in_place,
+    place::steps,
     search::{Point, Refused, Search},
     target::Measure,
 };
@@ -120,6 +120,16 @@ fn by_bounds(search: &Search<'_>, given: &Point, random: &mut ChaCha8Rng) -> Opt
         found.insert(after, end);
     }
     best.or_else(|| found.iter().take(MEASURED).find_map(measured))
+}
+
+/// The design with these shares, measured: where only radii are free, with its elements where steps from the given design lead.
+pub(super) fn solved_in_place(search: &Search<'_>, given: &Point, shares: Vec<f64>) -> Option<Point> {
+    if !search.family.of_radii() {
+        return search.solve(shares).ok();
+    }
+    let place =
+        steps(search.family, search.model, [&search.values(&given.shares), &search.values(&shares)], search.cancel)?;
+    search.at(&place).solve(shares).ok()
 }
 
 /// Shares with wires as thin as they go where R − r stays: bounds by links stay, and rings have more room to attain them.
