@@ -22,6 +22,9 @@ const HALVINGS: i32 = 5;
 /// Descents on bounds: so many from anywhere, then the others from the best of them.
 const DRAWN_BY_BOUNDS: usize = 100;
 const BY_BOUNDS: usize = 160;
+/// A bound takes a time like the cube of the number of elements. For more than these there are fewer descents, and from `MOST_ELEMENTS` on none.
+const ELEMENTS: usize = 16;
+const MOST_ELEMENTS: usize = 40;
 /// Designs of one of them, at most.
 const DESIGNS_BY_BOUNDS: usize = 25;
 /// Shares of the numbers that are drawn anew before a descent from the best, in turn.
@@ -89,20 +92,22 @@ fn symmetric(search: &Search<'_>, random: &mut ChaCha8Rng) -> Vec<f64> {
 /// numbers drawn anew: from anywhere, nearly all end in the same poor minimum.
 fn by_bounds(search: &Search<'_>, given: &Point, random: &mut ChaCha8Rng) -> Option<Point> {
     let stretches = search.targets.iter().all(|target| matches!(target.measure, Measure::Stretch { .. }));
-    if !search.family.of_radii() || !stretches {
+    let elements = search.model.elements.len();
+    if !search.family.of_radii() || !stretches || elements >= MOST_ELEMENTS {
         return None;
     }
+    let fewer = |descents: usize| descents * ELEMENTS.pow(3) / elements.max(ELEMENTS).pow(3);
     let (options, solved) = (FitOptions { designs: DESIGNS_BY_BOUNDS, ..search.options.clone() }, Cell::new(0));
     let bounds = Search { options: &options, by_bounds: true, solved: &solved, ..*search };
     let measured = |point: &Point| solved_in_place(search, given, thinned(search, point.shares.clone()));
     let (mut found, mut best): (Vec<Point>, Option<Point>) = (Vec::new(), None);
     let mut measurements = 0;
-    for k in 0..BY_BOUNDS {
+    for k in 0..fewer(BY_BOUNDS) {
         if search.cancel.load(Ordering::Relaxed) || measurements == MEASURED {
             break;
         }
         let mut shares = symmetric(search, random);
-        if let (true, Some(best)) = (k >= DRAWN_BY_BOUNDS, found.first()) {
+        if let (true, Some(best)) = (k >= fewer(DRAWN_BY_BOUNDS), found.first()) {
             let share = REDRAWN[k % REDRAWN.len()];
             let redrawn = |(x, best): (f64, &f64)| if random.random_range(0.0..1.0) < share { x } else { *best };
             shares = shares.into_iter().zip(&best.shares).map(redrawn).collect();
