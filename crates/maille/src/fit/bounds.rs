@@ -90,7 +90,7 @@ impl<'a> Bounds<'a> {
         match (tie.kind, rings.as_slice()) {
             (TieKind::Link, &[a, b]) => self.add_link(out, [a, b], share),
             (TieKind::StrandPair, &[a, a2, b]) => self.add_strands(out, [a, a2], b, share),
-            // No two rings of a family with free radii need have one size.
+            // Crossing pairs are for rings of one size: they have no derivative by a single radius.
             _ => {}
         }
     }
