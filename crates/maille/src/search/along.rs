@@ -1,8 +1,8 @@
-//! The limits along one direction: each is solved from its neighbour's states, outwards from l2 = 0. Least limits are also handed
-//! back inwards: a fold that is found only at a strong lateral compression can go furthest at a weaker one, too.
+//! The limits along one direction: each is solved from its neighbour's states, outwards from l2 = 0. Then neighbours hand states to
+//! each other until none goes further: one that is found only at a strong lateral strain can go furthest at a weaker one, too.
 
 use super::{
-    multistart::{CellStarts, SearchResult, Target},
+    multistart::{CellStarts, LargerCells},
     options::{ExactOptions, SAME_VALUE},
     starts::Start,
     stop::StopRule,
@@ -21,11 +21,14 @@ use std::{
 
 /// A limit that is solved, with what its neighbours begin with.
 struct Solved {
+    at: Stretch,
     /// Its place among those that are asked for.
     place: usize,
     answer: Answer,
     starts: CellStarts,
     wall_s: f64,
+    /// Whether its states are still to be tried at the neighbour of smaller l2, and at that of larger.
+    to_hand: [bool; 2],
 }
 
 /// The states of a limit take the place of those of the limit beside it, cell by cell.
@@ -40,8 +43,8 @@ fn sought(status: Status) -> bool {
 }
 
 impl ExactMethod<'_> {
-    /// The limits along one direction, in the order of `l2`. Solved outwards from l2 = 0, each from its neighbour's states; least
-    /// limits then inwards again, each from its outer neighbour's states alone.
+    /// The limits along one direction, in the order of `l2`. Solved outwards from l2 = 0, each from its neighbour's states; then
+    /// states are handed on between neighbours.
     ///
     /// Where an element presses on its own image, or a lateral compression is not reached, and of every least l1, larger cells
     /// are solved, too, from the smaller cell's state, and unstable waves are followed; the best limit counts, and the answer says which cell gave it.
@@ -65,7 +68,7 @@ impl ExactMethod<'_> {
             let (_, at_zero) = self.limit(&stretch(0.0), &[], cancel);
             sides = [at_zero.clone(), at_zero];
         }
-        let mut held: Vec<(Stretch, Solved)> = Vec::new();
+        let mut solved: Vec<Solved> = Vec::new();
         for place in order {
             begins(place);
             let at = stretch(l2[place]);
@@ -74,75 +77,107 @@ impl ExactMethod<'_> {
                 take_over(side, &starts);
             }
             let wall_s = began.elapsed().as_secs_f64();
+            // Outer neighbours begin with them anyway.
+            solved.push(Solved { at, place, answer, starts, wall_s, to_hand: [at.l2 > 0.0, at.l2 < 0.0] });
             began = Instant::now();
-            if compression {
-                held.push((at, Solved { place, answer, starts, wall_s }));
-            } else {
-                finished(place, answer, wall_s);
-            }
         }
-        self.hand_back(&mut held, cancel);
+        solved.sort_by(|a, b| a.at.l2.total_cmp(&b.at.l2));
+        self.hand_on(&mut solved, cancel);
         let stopped = cancel.load(Ordering::Relaxed);
-        for (_, Solved { place, answer, wall_s, .. }) in held {
-            // What was not handed back is not what a whole run finds.
-            let unfinished = stopped && sought(answer.status);
-            finished(place, if unfinished { self.without_state(Status::Interrupted) } else { answer }, wall_s);
+        for Solved { place, mut answer, wall_s, .. } in solved {
+            if stopped && sought(answer.status) {
+                // What was not handed on is not what a whole run finds.
+                answer = self.without_state(Status::Interrupted);
+            }
+            if !compression && answer.by_cell.len() == 1 {
+                answer.by_cell.clear();
+            }
+            finished(place, answer, wall_s);
         }
     }
 
-    /// Tries the states of each limit at the one before it, from the outermost inwards on both sides; `solved` is in the order of |l2|.
-    fn hand_back(&self, solved: &mut [(Stretch, Solved)], cancel: &AtomicBool) {
-        for belongs in [|l2: f64| l2 <= 0.0, |l2: f64| l2 >= 0.0] {
-            let mut outer: CellStarts = Vec::new();
-            for (at, inner) in solved.iter_mut().rev().filter(|(at, _)| belongs(at.l2)) {
-                let began = Instant::now();
-                for (cell, start) in &outer {
-                    self.tried_again(at, inner, *cell, start, cancel);
+    /// Tries the states of each limit at its neighbours, to and fro, until none goes further; `solved` is in the order of l2.
+    fn hand_on(&self, solved: &mut [Solved], cancel: &AtomicBool) {
+        let pairs = |n: usize| (1..n).rev().map(|k| (k, k - 1, 0)).chain((1..n).map(|k| (k - 1, k, 1)));
+        let mut handed = true;
+        while std::mem::take(&mut handed) {
+            for (from, to, side) in pairs(solved.len()) {
+                if !std::mem::take(&mut solved[from].to_hand[side]) {
+                    continue;
                 }
-                take_over(&mut outer, &inner.starts);
-                inner.wall_s += began.elapsed().as_secs_f64();
+                handed = true;
+                let began = Instant::now();
+                for (cell, start) in solved[from].starts.clone() {
+                    // What a smaller cell found is in the first one's starts.
+                    let smaller = cell.copies() < self.models[0].cell.copies();
+                    if !smaller && sought(solved[to].answer.status) && !cancel.load(Ordering::Relaxed) {
+                        self.tried_again(&mut solved[to], cell, start, cancel);
+                    }
+                }
+                solved[to].wall_s += began.elapsed().as_secs_f64();
             }
         }
     }
 
-    /// A limit tried once more from one state; the better one is kept.
-    fn tried_again(&self, at: &Stretch, solved: &mut Solved, cell: Cell, start: &Start, cancel: &AtomicBool) {
-        if !sought(solved.answer.status) || cancel.load(Ordering::Relaxed) {
-            return;
-        }
-        let model = of_cell(self.models, cell);
-        let search = self.search(at, f64::INFINITY, cancel);
-        let here = search.run(&model, vec![start.clone()], StopRule::given_only());
+    /// A limit tried once more from one state; the better one is kept. Where that is new, larger cells are tried from it, too.
+    fn tried_again(&self, solved: &mut Solved, cell: Cell, start: Start, cancel: &AtomicBool) {
+        let at = solved.at;
+        let one;
+        let models = if cell == self.models[0].cell {
+            self.models
+        } else {
+            one = [of_cell(self.models, cell).into_owned()];
+            &one
+        };
         let old = &mut solved.answer;
-        (old.runs, old.iterations) = (old.runs + here.runs, old.iterations + here.iterations);
-        old.n_starts = old.n_starts.map(|starts| starts + here.runs);
-        let Some(best) = here.best.as_ref().filter(|best| best.certified) else { return };
-        let (value, from) = (at.sign * best.value(), at.start(best));
-        let less = |than: Option<f64>| than.is_none_or(|than| value < than - SAME_VALUE);
-        match old.by_cell.iter_mut().find(|trend| trend.cell == cell) {
-            Some(trend) if less(trend.value) => {
-                trend.value = Some(value);
-                trend.n_distinct += 1;
-            }
-            Some(_) => (),
-            None => old.by_cell.push(CellTrend { cell, value: Some(value), n_starts: here.runs, n_distinct: 1 }),
-        }
-        if old.status == Status::Local && !less(old.value) {
+        let search = self.search(&at, old.bound.unwrap_or(f64::INFINITY), cancel);
+        let here = search.run(&models[0], vec![start], StopRule::given_only());
+        let known =
+            old.value.filter(|_| old.status == Status::Local).map_or(f64::NEG_INFINITY, |value| at.sign * value);
+        let best = here.best.as_ref().filter(|best| best.certified);
+        if best.is_none_or(|best| best.value() <= known + SAME_VALUE) {
+            (old.runs, old.iterations) = (old.runs + here.runs, old.iterations + here.iterations);
+            old.n_starts = old.n_starts.map(|starts| starts + here.runs);
+            add_trend(&mut old.by_cell, at.trend(here.by_cell(cell)), at.sign);
             return;
         }
-        take_over(&mut solved.starts, &[(cell, from)]);
-        let wave = search.waves(&model, best).curvature();
-        // The ranges of what is free are counted by themselves.
-        let better = self.judge(&model, at, f64::INFINITY, SearchResult { iterations: 0, ..here }, cancel);
+        let rule = LargerCells { every: false, own_starts: 0, where_none: false, ..self.larger(&at, None, &[]) };
+        let found = search.larger_cells(models, here, &rule);
+        for &trend in &found.by_cell {
+            add_trend(&mut old.by_cell, at.trend(trend), at.sign);
+        }
+        let (model, wave) = (found.model(models).clone(), found.wave);
+        take_over(&mut solved.starts, &found.starts);
+        solved.to_hand = [true; 2];
+        let judged = self.judge(&model, &at, search.upper_bound, found.result, cancel);
         solved.answer = Answer {
-            n_starts: old.n_starts,
+            n_starts: old.n_starts.map(|starts| starts + judged.runs),
             n_distinct: old.n_distinct.map(|distinct| distinct + 1),
-            better_chance: old.better_chance,
-            runs: old.runs,
-            iterations: old.iterations + better.iterations,
+            better_chance: old.better_chance.filter(|_| judged.status == Status::Local),
+            runs: old.runs + judged.runs,
+            iterations: old.iterations + judged.iterations,
             by_cell: std::mem::take(&mut old.by_cell),
             wave,
-            ..better
+            bound: old.bound,
+            bound_kind: old.bound_kind,
+            chain: old.chain.take(),
+            dual: std::mem::take(&mut old.dual),
+            note: judged.note.or_else(|| old.note.take().filter(|_| old.status == Status::Local)),
+            ..judged
         };
+    }
+}
+
+/// Adds what a cell found to what all cells did: the better value stays.
+fn add_trend(known: &mut Vec<CellTrend>, found: CellTrend, sign: f64) {
+    let Some(old) = known.iter_mut().find(|trend| trend.cell == found.cell) else {
+        known.push(found);
+        return;
+    };
+    old.n_starts += found.n_starts;
+    let better = |value: f64| old.value.is_none_or(|than| sign * (value - than) > SAME_VALUE);
+    if let Some(value) = found.value.filter(|value| better(*value)) {
+        old.value = Some(value);
+        old.n_distinct += 1;
     }
 }

@@ -64,6 +64,11 @@ impl Stretch {
     pub(crate) fn lattices(&self, model: &Model) -> StretchLattices {
         StretchLattices::new(model, self.direction, self.across, self.sign)
     }
+
+    /// What a cell found, as l1: what was maximised is −l1 where the least is sought.
+    pub(super) fn trend(&self, found: CellTrend) -> CellTrend {
+        CellTrend { value: found.value.map(|value| self.sign * value), ..found }
+    }
 }
 
 impl Target for Stretch {
@@ -122,7 +127,7 @@ impl<'a> ExactMethod<'a> {
         ExactMethod { models, options, chain, link, image: OnceLock::new(), overlapping, own }
     }
 
-    /// One limit; with the states of the cells at it, from which the next one goes on.
+    /// One limit, with what each cell gave; and the states of the cells at it, from which the next one goes on.
     pub(super) fn limit(
         &self,
         stretch: &Stretch,
@@ -187,15 +192,12 @@ impl<'a> ExactMethod<'a> {
             _ => upper_bound,
         };
         let (model, wave) = (found.model(self.models).clone(), found.wave);
-        let kept = if least || found.by_cell.len() > 1 { found.by_cell } else { Vec::new() };
-        // What was maximised is −l1 where the least is sought.
-        let value = |t: CellTrend| CellTrend { value: t.value.map(|value| stretch.sign * value), ..t };
         let answer = proved(self.judge(&model, stretch, upper_bound, found.result, cancel), &bound);
         // Ranges of what is free are solved for after the search: without them the answer is not whole.
         if cancel.load(Ordering::Relaxed) {
             return ended(Status::Interrupted, None, &bound);
         }
-        let by_cell = kept.into_iter().map(value).collect();
+        let by_cell = found.by_cell.into_iter().map(|trend| stretch.trend(trend)).collect();
         // Of a largest l1 the best cell is enough.
         let best = |cell: &Cell| least || [self.models[0].cell, model.cell].contains(cell);
         let reached = found.starts.into_iter().filter(|(cell, _)| best(cell));
@@ -212,7 +214,7 @@ impl<'a> ExactMethod<'a> {
     }
 
     /// Which larger cells are searched.
-    fn larger<'n>(
+    pub(super) fn larger<'n>(
         &self,
         stretch: &Stretch,
         neighbour: Option<Start>,
