@@ -4,7 +4,7 @@ use crate::{
     answer::{Answer, CellTrend},
     design::Design,
     error::InvalidInput,
-    lattice::{Cell, Direction},
+    lattice::{Across, Cell, Direction},
     model::{Model, of_cell},
     program::{Contact, metric::factor},
     question::{Goal, Question, Sense},
@@ -14,6 +14,7 @@ use crate::{
         curl::{Curl, tightest_roll},
         extreme::{Extreme, extreme},
         strain::{StrainMethod, StrainOptions},
+        stretch::ExactMethod,
     },
     state::{Pose, State},
     survey::{CellChoice, one},
@@ -94,6 +95,26 @@ impl Sheet {
                 tightest_roll(&self.models, curl, &options, cancel)
             }
         })
+    }
+
+    /// The limit of a stretch whose width is held, searched from the state of `near` first: the same limit of another design whose rings are linked
+    /// alike. Every other question is answered as usual.
+    pub(crate) fn answer_near(
+        &self,
+        question: &Question,
+        near: &Answer,
+        cancel: &AtomicBool,
+    ) -> Result<Answer, InvalidInput> {
+        let Question { effort, starts, seed, sense, .. } = *question;
+        match question.goal {
+            Goal::Stretch { direction_deg, l2, across } if across == Across::HELD && sense == Sense::Largest => {
+                question.check()?;
+                let options = ExactOptions { effort, starts, seed, ..ExactOptions::default() };
+                let exact = ExactMethod::new(&self.models, options, cancel);
+                Ok(exact.limit_near(Direction::of_degrees(direction_deg), l2, near, cancel))
+            }
+            _ => self.answer_until(question, cancel),
+        }
     }
 
     /// One strain: where a stretch asks the same, found as that, so that one question has one answer.

@@ -138,6 +138,7 @@ pub fn fit(
         links: &links,
         model: &model,
         place: None,
+        near: None,
         symmetries: &symmetries,
         by_bounds: false,
         solved: &solved,
@@ -184,13 +185,12 @@ pub fn fit(
     })
 }
 
-/// The answers of the given design, and the best one, after the last search. Where that is interrupted they stay as they are.
+/// The answers of the given design, and the best one, as a map of these designs finds them: with the final effort, from no state of
+/// another design. Where that is interrupted they stay as they are.
 fn confirmed(search: &Search<'_>, given: Point, best: Point) -> (Vec<Answer>, Point) {
     let options = FitOptions { effort: search.options.final_effort(), ..search.options.clone() };
-    if options.effort == search.options.effort {
-        return (given.answers().to_vec(), best);
-    }
     let last = Search { options: &options, solved: &Cell::new(0), ..*search };
     let again = |point: Point| last.at(&point.design).solve(point.shares.clone()).unwrap_or(point);
-    (again(given).answers().to_vec(), again(best))
+    let before = if options.effort == search.options.effort { given } else { again(given) };
+    (before.answers().to_vec(), again(best))
 }

@@ -47,7 +47,7 @@ pub struct FitOptions {
 
 impl Default for FitOptions {
     fn default() -> Self {
-        let (cells, effort) = (CellChoice::Auto, Effort::Normal);
+        let (cells, effort) = (CellChoice::Auto, Effort::Low);
         FitOptions { norm: Norm::default(), starts: 8, seed: 1, tolerance: 1e-6, designs: 60, cells, effort }
     }
 }

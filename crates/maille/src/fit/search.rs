@@ -85,6 +85,8 @@ pub(super) struct Search<'a> {
     pub model: &'a Model,
     /// Where the elements are, if not where the family writes them: only for numbers that are all radii.
     pub place: Option<&'a Design>,
+    /// A design near by: its states are the first starts.
+    pub near: Option<&'a Point>,
     /// Which free number goes to which by each symmetry of the given design.
     pub symmetries: &'a [Vec<usize>],
     /// Whether bounds stand for limits.
@@ -129,6 +131,11 @@ impl Search<'_> {
         Search { place: self.family.of_radii().then_some(design), ..*self }
     }
 
+    /// The same near a point.
+    pub fn near<'b>(&'b self, point: &'b Point) -> Search<'b> {
+        Search { near: Some(point), ..*self }
+    }
+
     /// Numbers as shares of their ranges.
     pub fn shares(&self, values: &[f64]) -> Vec<f64> {
         self.family.numbers.iter().zip(values).map(|(n, x)| ((x - n.min) / (n.max - n.min)).clamp(0.0, 1.0)).collect()
@@ -169,7 +176,12 @@ impl Search<'_> {
         let sheet = Sheet::in_cells(design, self.options.cells.clone()).map_err(Refused::first)?;
         self.same_links(sheet.model())?;
         let questions: Vec<Question> = self.targets.iter().map(|target| self.question(target)).collect();
-        let answers = questions.par_iter().map(|question| sheet.answer_until(question, self.cancel));
+        let near = self.near.map_or(&[][..], Point::answers);
+        let answer = |(k, question): (usize, &Question)| match near.get(k) {
+            Some(near) => sheet.answer_near(question, near, self.cancel),
+            None => sheet.answer_until(question, self.cancel),
+        };
+        let answers = questions.par_iter().enumerate().map(answer);
         let answers = answers.collect::<Result<Vec<_>, _>>().map_err(Refused::Design)?;
         let mut values = Vec::with_capacity(answers.len());
         for (answer, target) in answers.iter().zip(self.targets.iter()) {

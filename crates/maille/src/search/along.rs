@@ -89,11 +89,16 @@ impl ExactMethod<'_> {
                 // What was not handed on is not what a whole run finds.
                 answer = self.without_state(Status::Interrupted);
             }
-            if !compression && answer.by_cell.len() == 1 {
-                answer.by_cell.clear();
-            }
-            finished(place, answer, wall_s);
+            finished(place, self.without_one_trend(answer), wall_s);
         }
+    }
+
+    /// Of a largest l1 what each cell gave is told where it is more than one.
+    pub(super) fn without_one_trend(&self, mut answer: Answer) -> Answer {
+        if !self.options.compression && answer.by_cell.len() == 1 {
+            answer.by_cell.clear();
+        }
+        answer
     }
 
     /// Tries the states of each limit at its neighbours, to and fro, until none goes further; `solved` is in the order of l2.

@@ -19,6 +19,7 @@ mod room;
 mod starts;
 mod stop;
 #[doc(hidden)]
+mod near;
 pub mod strain;
 #[doc(hidden)]
 pub mod stretch;
