@@ -7,9 +7,9 @@
 use crate::{
     bound::{Bound, ChainBound, DualForce, LinkBound, TieKind, best_bound, lowered},
     design::Design,
-    lattice::{Across, Direction, Shift},
+    lattice::{Across, Direction},
     model::Model,
-    sensitivity::DesignVector,
+    sensitivity::{DesignVector, is_link},
 };
 
 /// A model with the radii of another design of its family: enough for bounds.
@@ -61,19 +61,13 @@ impl<'a> Bounds<'a> {
             (Some(l1), Some(chain)) => {
                 let pulled = self.model.start.translation(chain.vector).xy().dot(&direction.along());
                 let share = chain.length / ((1.0 + l1) * pulled * pulled);
-                chain.rings.windows(2).filter(|ends| self.is_link(ends)).for_each(|ends| {
+                chain.rings.windows(2).filter(|ends| is_link(self.model, ends)).for_each(|ends| {
                     self.add_link(&mut out, [ends[0].0, ends[1].0], share);
                 });
             }
             _ => {}
         }
         out
-    }
-
-    /// Whether two neighbours along a chain are linked; else they are of one element.
-    fn is_link(&self, ends: &[(usize, Shift)]) -> bool {
-        let element = |end: &(usize, Shift)| (self.model.rings[end.0].element, end.1);
-        element(&ends[0]) != element(&ends[1])
     }
 
     /// L = R_a + R_b − r_a − r_b.

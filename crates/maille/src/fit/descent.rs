@@ -49,7 +49,8 @@ pub(super) fn descend(search: &Search<'_>, begin: Point, tell: &mut dyn FnMut(&P
             continue;
         }
         let next = shares.iter().zip(step.iter()).map(|(x, d)| (x + d).clamp(0.0, 1.0)).collect();
-        let solved = search.near(&at.point).solve(next).and_then(|point| search.with_slopes(point).map_err(Refused::Design));
+        let solved =
+            search.near(&at.point).solve(next).and_then(|point| search.with_slopes(point).map_err(Refused::Design));
         match solved {
             Ok(next) => {
                 let gain = at.point.cost - next.point.cost;

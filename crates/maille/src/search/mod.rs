@@ -13,13 +13,13 @@ pub mod extreme;
 pub(crate) mod family;
 mod local;
 mod multistart;
+#[doc(hidden)]
+mod near;
 mod options;
 mod overlap;
 mod room;
 mod starts;
 mod stop;
-#[doc(hidden)]
-mod near;
 pub mod strain;
 #[doc(hidden)]
 pub mod stretch;

@@ -15,17 +15,20 @@
 //! as the lattice is F a_j, and F is fixed with the unknowns. Centres of elements are unknowns, so the value does not depend on
 //! them. Copies of a ring add up. Derivation, kinks and measurements: `docs/theory/sensitivity.md`.
 
+mod chains;
 mod images;
 mod multipliers;
 mod numbers;
 mod point;
 mod slope;
 
+pub(crate) use chains::is_link;
 pub(crate) use images::permutations;
 pub use numbers::{DesignVector, RingVector};
 pub use slope::{OneSided, Slope};
 
 use self::{
+    chains::ChainLimit,
     multipliers::{Least, Multipliers},
     point::Point,
 };
@@ -55,6 +58,8 @@ pub struct Sensitivity {
     loose: usize,
     model: Model,
     question: Question,
+    /// Where the limit attains its chain bound.
+    chains: Option<ChainLimit>,
     /// The symmetries that keep the question, and the design in its own cell, once they are asked for.
     symmetries: OnceLock<(Vec<Operation>, Model)>,
 }
@@ -114,6 +119,7 @@ impl Sensitivity {
             loose: answer.certificate.as_ref().map_or(0, |certificate| certificate.zero_modes),
             model: model.clone(),
             question: question.clone(),
+            chains: ChainLimit::of(model, question, answer),
             symmetries: OnceLock::new(),
         })
     }
@@ -140,14 +146,16 @@ impl Sensitivity {
 
     /// The derivatives along a change of the design to both sides. A maximum rises by the least Σ μ ∂g/∂q over all forces that
     /// balance, forward, and falls by the largest, backward. Where symmetries of the design make other states of the limit, it is the best
-    /// of them all to each side.
+    /// of them all to each side. A limit that attains its chain bound goes no further than that, whichever of several taut chains carries the force
+    /// in its state.
     ///
     /// # Panics
     /// For a change of a design with another number of rings.
     pub fn one_sided(&self, change: &DesignVector) -> OneSided {
         let images = self.images_of(change);
         let all = std::iter::once(change).chain(&images).map(|change| self.own_one_sided(change));
-        images::best(all, self.sign).expect("the state itself")
+        let best = images::best(all, self.sign).expect("the state itself");
+        self.chains.as_ref().map_or(best, |chains| chains.bounded(best, change))
     }
 
     /// Whether symmetries of the design make other states of the limit with other derivatives along a change: limits that tie, between
