@@ -53,7 +53,8 @@ Targets are a CSV file with a line for each limit:
   0,0,0.45,,,            l1 is to be 0.45
   45,0,,0.7,,            l1 is to be 0.7 or more
   90,-0.1,,,0.6,2        l1 is to be 0.6 or less, and counts twice
-Columns that are not needed may be left out. The limits.csv of a record is such a file, too.
+Columns that are not needed may be left out. A column poisson_ratio wants -ln(1+l2)/ln(1+l1) at the limit, the width left to the sheet
+(also poisson_at_least, poisson_at_most), in place of l1. The limits.csv of a record is such a file, too.
 
 Examples:
   maille fit 1.1 --target profile.csv --free minor_radius=0.05:0.15 --free 'elements.standing-*.rings.major_radius=30%'
@@ -314,10 +315,11 @@ fn search(
     let saved: Mutex<(f64, Option<RecordError>)> = Mutex::new((f64::INFINITY, None));
     let lock = || saved.lock().unwrap_or_else(|e| e.into_inner());
     let tell = |now: FitProgress| {
-        let FitProgress { start, designs, worst_miss, numbers } = now;
+        let FitProgress { start, designs, worst_miss, numbers, by_bounds } = now;
         progress.says(|| {
             let of = request.options.starts;
-            format!("{}, start {start} of {of}, largest miss {worst_miss:.2e}", counted(designs, "design"))
+            let sought = by_bounds.map_or(String::new(), |[done, all]| format!(" (sought by bounds, {done} of {all})"));
+            format!("{}, start {start} of {of}{sought}, largest miss {worst_miss:.2e}", counted(designs, "design"))
         });
         let mut saved = lock();
         if worst_miss < saved.0 {

@@ -7,6 +7,7 @@ use crate::{
     output::{self, counted, say},
 };
 use maille::{
+    Across,
     design::Design,
     fit::{Ended, FitOptions, Measure, Wanted},
     search::ExactOptions,
@@ -16,7 +17,7 @@ use maille_io::{
     Quantity,
     fit::{FIT, FitRecord, FitRequest, FittedTarget, open_fit, target_rows},
     numbers::distinct,
-    plot::{Layout, PolarPlot, polar_svg, svg_to_png},
+    plot::{Layout, PolarPlot, poisson_svg, polar_svg, svg_to_png},
     record::{NamedRecord, Record},
     run::Map,
     write_design,
@@ -83,27 +84,41 @@ impl Files<'_> {
         Ok(false)
     }
 
-    /// The limits of all directions and l2 of the targets, and every 15° between; `None` where they are of none.
+    /// The limits of all directions and l2 of the targets, and every 15° between; with the width left to the sheet where only Poisson ratios are
+    /// wanted; `None` where nothing along a direction is.
     fn question(&self) -> Option<MapQuestion> {
         let stretches = || {
             self.request.targets.iter().filter_map(|target| match target.measure {
                 Measure::Stretch { direction_deg, l2 } => Some((direction_deg, l2)),
-                Measure::Clearance => None,
+                Measure::PoissonRatio { .. } | Measure::Clearance => None,
             })
         };
-        let wanted = stretches().map(|(direction, _)| direction);
+        let ratios = || {
+            self.request.targets.iter().filter_map(|target| match target.measure {
+                Measure::PoissonRatio { direction_deg } => Some(direction_deg),
+                Measure::Stretch { .. } | Measure::Clearance => None,
+            })
+        };
+        let free = stretches().next().is_none() && ratios().next().is_some();
+        let wanted = stretches().map(|(direction, _)| direction).chain(ratios());
         let mut directions_deg = distinct(wanted.chain((0..=180).step_by(15).map(f64::from))).0;
         directions_deg.sort_by(f64::total_cmp);
-        let l2 = distinct(stretches().map(|(_, l2)| l2)).0;
+        let l2 = if free { vec![0.0] } else { distinct(stretches().map(|(_, l2)| l2)).0 };
         let options: &FitOptions = &self.request.options;
         let (seed, effort, cells) = (options.seed, options.final_effort(), options.cells.clone());
-        let exact = ExactOptions { seed, effort, ..ExactOptions::default() };
+        let across = Across { lateral_free: free, shear_free: false };
+        let exact = ExactOptions { seed, effort, across, ..ExactOptions::default() };
         (!l2.is_empty()).then_some(MapQuestion { method: Method::Exact(exact), cells, directions_deg, l2 })
     }
 }
 
-/// The figure of a fit: both designs, with the targets as markers.
+/// The figure of a fit: both designs, the fitted one first, with the targets as markers; where only Poisson ratios are wanted, these.
 pub fn svg(record: &FitRecord, named: &[NamedRecord], layout: Layout) -> String {
+    let named = &named.iter().rev().cloned().collect::<Vec<_>>();
+    let wanted = |target: &maille::fit::Target| matches!(target.measure, Measure::PoissonRatio { .. });
+    if let Some(svg) = poisson_svg(named, layout).filter(|_| record.request.targets.iter().all(wanted)) {
+        return svg;
+    }
     let plot = PolarPlot::from_records(named, Quantity::Stretch).checked_by(&target_rows(record), "wanted");
     polar_svg(&plot, layout)
 }
@@ -167,6 +182,7 @@ fn name(measure: Measure) -> String {
     match measure {
         Measure::Stretch { direction_deg, l2: 0.0 } => format!("{direction_deg}\u{b0}"),
         Measure::Stretch { direction_deg, l2 } => format!("{direction_deg}\u{b0}, l2 = {l2}"),
+        Measure::PoissonRatio { direction_deg } => format!("Poisson, {direction_deg}\u{b0}"),
         Measure::Clearance => "widest gap".into(),
     }
 }
@@ -175,6 +191,7 @@ fn print_target(request: &FitRequest, factor: f64, target: &maille::fit::Target,
     let name = name(target.measure);
     let (by, scale) = match target.measure {
         Measure::Stretch { .. } => (factor, 1.0),
+        Measure::PoissonRatio { .. } => (1.0, 1.0),
         Measure::Clearance => (1.0, request.design.reference_radius),
     };
     let word = match target.wanted {

@@ -117,6 +117,14 @@ impl Sheet {
         }
     }
 
+    /// l1 and l2 of a stretch whose width is free, where one local search from the state of `near` ends: the same limit of another design whose
+    /// rings are linked alike. `None` where it does not end in a certified limit.
+    pub(crate) fn strains_near(&self, question: &Question, near: &Answer, cancel: &AtomicBool) -> Option<[f64; 2]> {
+        let Goal::Stretch { direction_deg, across, .. } = question.goal else { return None };
+        let exact = ExactMethod::new(&self.models, ExactOptions { across, ..ExactOptions::default() }, cancel);
+        exact.strains_near(Direction::of_degrees(direction_deg), across, near, cancel)
+    }
+
     /// One strain: where a stretch asks the same, found as that, so that one question has one answer.
     fn strain(&self, question: &Question, cancel: &AtomicBool) -> Result<Answer, InvalidInput> {
         let Question { effort, starts, seed, sense, .. } = *question;

@@ -159,6 +159,39 @@ fn an_impossible_target_ends_at_the_bounds() {
     assert!((fit.bounds[0].unwrap() - expected).abs() < 1e-9 && fit.is_forbidden(&targets, 0));
 }
 
+/// The width at a limit follows the wire and the rings; an independent solve of the design that is found has the wanted ratio.
+#[test]
+fn a_poisson_ratio_is_reached() {
+    let design = design("2");
+    let wanted = Target {
+        measure: Measure::PoissonRatio { direction_deg: 22.5 },
+        wanted: Wanted::Value(0.5),
+        weight: 1.0,
+    };
+    let targets = Targets::new(vec![wanted], false).unwrap();
+    let fit = run(&design, &values(&design), [0.85, 1.15], &targets, false).unwrap();
+    assert_eq!(fit.ended, Ended::Reached);
+    let answer = Sheet::in_cells(&fit.design, own_cell()).unwrap().answer(&wanted.question()).unwrap();
+    let free = answer.free.unwrap().l2;
+    let ratio = |l2: f64| -l2.ln_1p() / answer.limit().unwrap().ln_1p();
+    // The range is a little wider than the widths of the limit itself.
+    assert!(ratio(free[1]) < 0.5 && ratio(free[0]) > 0.5 && ratio(free[0]) - ratio(free[1]) < 0.01, "{free:?}");
+    assert!((fit.before[0].gradient - answer.gradient).norm() > 1e-3);
+}
+
+#[test]
+fn a_poisson_ratio_of_many_widths_is_refused() {
+    let design = design("1.1");
+    let wanted = Target {
+        measure: Measure::PoissonRatio { direction_deg: 0.0 },
+        wanted: Wanted::AtLeast(0.1),
+        weight: 1.0,
+    };
+    let targets = Targets::new(vec![wanted], false).unwrap();
+    let refused = run(&design, &values(&design), [0.9, 1.1], &targets, false).unwrap_err();
+    assert!(refused.problem.contains("more than one width"), "{refused:?}");
+}
+
 #[test]
 fn a_shape_is_reached_at_some_size() {
     let design = design("1.1");

@@ -8,7 +8,7 @@ use crate::{
 };
 use maille::{
     answer::Answer,
-    fit::{Ended, Fit, Measure, Wanted},
+    fit::{Ended, Fit, Measure, Target, Wanted},
     record::{LimitRow, Status},
 };
 use serde::{Deserialize, Serialize};
@@ -53,7 +53,7 @@ pub struct FitOutcome {
     pub targets: Vec<FittedTarget>,
 }
 
-/// What came of one target. Limits are l1; a clearance is in reference radii.
+/// What came of one target. Limits are l1, Poisson ratios those of their states; a clearance is in reference radii.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FittedTarget {
@@ -88,11 +88,11 @@ impl FitRecord {
         let targets = request.checked_targets()?;
         let labels = ring_labels(&request.design);
         let of = |(k, (before, after)): (usize, (&Answer, &Answer))| FittedTarget {
-            before: before.limit(),
-            after: after.limit(),
+            before: request.targets[k].measure.value(before),
+            after: request.targets[k].measure.value(after),
             status: after.status,
             miss: found.misses[k],
-            bound: after.bound,
+            bound: after.bound.filter(|_| !matches!(request.targets[k].measure, Measure::PoissonRatio { .. })),
             family_bound: found.bounds[k],
             forbidden: found.is_forbidden(&targets, k),
             held_by: held_by(&labels, after),
@@ -167,12 +167,12 @@ pub fn open_fit(folder: &Path) -> Result<FitRecord, RecordError> {
 /// The wanted limits as rows that a plot can draw, of a shape times its factor.
 pub fn target_rows(record: &FitRecord) -> Vec<LimitRow> {
     let factor = record.outcome.factor;
-    let row = |target: &maille::fit::Target| match target.measure {
+    let row = |target: &Target| match target.measure {
         Measure::Stretch { direction_deg, l2 } => {
             let l1 = Some(target.wanted.value() * factor);
             Some(LimitRow { direction_deg, l2, l1, status: Status::Global, ..LimitRow::default() })
         }
-        Measure::Clearance => None,
+        Measure::PoissonRatio { .. } | Measure::Clearance => None,
     };
     record.request.targets.iter().filter_map(row).collect()
 }
@@ -205,11 +205,13 @@ pub fn document(record: &FitRecord) -> Value {
         let mut row = json!(found);
         let (direction_deg, l2) = match target.measure {
             Measure::Stretch { direction_deg, l2 } => (Some(direction_deg), Some(l2)),
+            Measure::PoissonRatio { direction_deg } => (Some(direction_deg), None),
             Measure::Clearance => (None, None),
         };
         row["direction_deg"] = json!(direction_deg);
         row["l2"] = json!(l2);
-        row["wanted"] = json!({ wanted_word(target.wanted): target.wanted.value() });
+        row["measure"] = json!(measure_word(target.measure));
+        row["wanted"] = json!({ wanted_word(target): target.wanted.value() });
         row["weight"] = json!(target.weight);
         row
     });
@@ -229,10 +231,19 @@ fn worst(targets: &[FittedTarget]) -> Option<f64> {
     targets.iter().map(|target| target.miss.abs()).reduce(f64::max)
 }
 
-/// The word of what is wanted, as columns of targets have it.
-fn wanted_word(wanted: Wanted) -> &'static str {
-    match wanted {
-        Wanted::Value(_) => "l1",
+/// What is measured, by its column in targets.
+fn measure_word(measure: Measure) -> &'static str {
+    match measure {
+        Measure::Stretch { .. } => "l1",
+        Measure::PoissonRatio { .. } => "poisson_ratio",
+        Measure::Clearance => "widest_gap",
+    }
+}
+
+/// The word of what is wanted.
+fn wanted_word(target: &Target) -> &'static str {
+    match target.wanted {
+        Wanted::Value(_) => measure_word(target.measure),
         Wanted::AtLeast(_) => "at_least",
         Wanted::AtMost(_) => "at_most",
     }

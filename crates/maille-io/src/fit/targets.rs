@@ -1,4 +1,5 @@
-//! Targets of a fit from CSV: `direction_deg`, `l2`, one of `l1`, `at_least` and `at_most`, and `weight`; or the limits of a record.
+//! Targets of a fit from CSV: `direction_deg`, `l2`, one of `l1`, `at_least` and `at_most` or of `poisson_ratio`, `poisson_at_least` and
+//! `poisson_at_most`, and `weight`; or the limits of a record.
 
 use crate::{nearest::nearest, text_error::TextError};
 use csv::{ReaderBuilder, StringRecord, Trim};
@@ -8,8 +9,18 @@ use maille::{
 };
 use std::ops::Range;
 
-const COLUMNS: [&str; 6] = ["direction_deg", "l2", "l1", "at_least", "at_most", "weight"];
-const FORM: &str = "write a line direction_deg,l1 and below it lines such as 45,0.6; further columns are l2, at_least, at_most and weight";
+const COLUMNS: [&str; 9] = [
+    "direction_deg",
+    "l2",
+    "l1",
+    "at_least",
+    "at_most",
+    "poisson_ratio",
+    "poisson_at_least",
+    "poisson_at_most",
+    "weight",
+];
+const FORM: &str = "write a line direction_deg,l1 and below it lines such as 45,0.6; further columns are l2, at_least, at_most, poisson_ratio and weight";
 
 /// Reads targets. A file with a column `status` is the limits.csv of a record: its limits are wanted, its other columns left aside.
 ///
@@ -102,24 +113,41 @@ impl Row<'_> {
             return Ok(None);
         }
         let direction_deg = self.number("direction_deg")?.ok_or(("the row has no direction_deg".into(), FORM))?;
-        let l2 = self.number("l2")?.unwrap_or(0.0);
-        let mut wanted: Vec<Wanted> = self.number("l1")?.map(Wanted::Value).into_iter().collect();
+        let l2 = self.number("l2")?;
+        let stretch = Measure::Stretch { direction_deg, l2: l2.unwrap_or(0.0) };
+        let poisson_ratio = Measure::PoissonRatio { direction_deg };
+        let mut wanted: Vec<(Measure, Wanted)> = Vec::new();
+        let mut add = |column: &str, measure: Measure, of: fn(f64) -> Wanted| {
+            wanted.extend(self.number(column)?.map(|value| (measure, of(value))));
+            Ok(())
+        };
+        add("l1", stretch, Wanted::Value)?;
         if !of_record {
-            wanted.extend(self.number("at_least")?.map(Wanted::AtLeast));
-            wanted.extend(self.number("at_most")?.map(Wanted::AtMost));
+            add("at_least", stretch, Wanted::AtLeast)?;
+            add("at_most", stretch, Wanted::AtMost)?;
+            add("poisson_ratio", poisson_ratio, Wanted::Value)?;
+            add("poisson_at_least", poisson_ratio, Wanted::AtLeast)?;
+            add("poisson_at_most", poisson_ratio, Wanted::AtMost)?;
         }
-        let [wanted] = wanted[..] else {
+        let [(measure, wanted)] = wanted[..] else {
             let problem = match wanted.len() {
                 0 => "the row wants nothing".to_owned(),
                 n => format!("the row wants {n} things of one limit"),
             };
-            return Err((problem, "give one of l1, at_least and at_most; of two sides, write two rows"));
+            let help = "give one of l1, at_least, at_most, poisson_ratio, poisson_at_least and poisson_at_most; of two, write two rows";
+            return Err((problem, help));
         };
+        if measure == poisson_ratio && l2.is_some() {
+            return Err((
+                "the row gives an l2 for a Poisson ratio".into(),
+                "leave l2 empty there: the width is left to the sheet",
+            ));
+        }
         let weight = if of_record { None } else { self.number("weight")? }.unwrap_or(1.0);
         if weight <= 0.0 {
             return Err((format!("weight: {weight} is not above 0"), "give a number above 0, or leave the row out"));
         }
-        Ok(Some(Target { measure: Measure::Stretch { direction_deg, l2 }, wanted, weight }))
+        Ok(Some(Target { measure, wanted, weight }))
     }
 }
 
@@ -149,6 +177,16 @@ mod tests {
     }
 
     #[test]
+    fn poisson_ratios_are_targets() {
+        let text = "direction_deg,l1,poisson_ratio,poisson_at_most\n0,,0.4,\n45,,,1\n90,0.3,,\n";
+        let found = read_targets("t.csv", text).unwrap();
+        let [a, b] = [0.0, 45.0].map(|direction_deg| Measure::PoissonRatio { direction_deg });
+        assert_eq!([found[0].measure, found[1].measure], [a, b]);
+        assert_eq!([found[0].wanted, found[1].wanted], [Wanted::Value(0.4), Wanted::AtMost(1.0)]);
+        assert_eq!(found[2].measure, Measure::Stretch { direction_deg: 90.0, l2: 0.0 });
+    }
+
+    #[test]
     fn limits_of_a_record_are_targets() {
         let text =
             "direction_deg,l2,status,l1,bound_l1\n0,0,global,0.44,0.44\n15,0,uncertified,,0.5\n30,0.1,local,0.2,0.9\n";
@@ -170,6 +208,7 @@ mod tests {
             ("direction_deg,l1\n0,\n", "wants nothing", "0,", "one of l1"),
             ("direction_deg,l1,at_most\n0,1,2\n", "wants 2 things", "0,1,2", "two rows"),
             ("direction_deg,l1\n,2\n", "no direction_deg", ",2", "direction_deg"),
+            ("direction_deg,l2,poisson_ratio\n0,0.1,2\n", "an l2 for a Poisson ratio", "0,0.1,2", "left to the sheet"),
             ("direction_deg,l1,weight\n0,2,-1\n", "-1 is not above 0", "0,2,-1", "leave the row out"),
         ] {
             let error = read_targets("t.csv", text).unwrap_err();

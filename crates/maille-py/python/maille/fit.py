@@ -33,7 +33,7 @@ class Fit:
     numbers: dict[str, float]
     #: The largest miss of a target, in units of l1.
     worst_miss: float
-    #: One for each target: `wanted`, `before`, `after`, `miss`, `bound`, `family_bound`, `forbidden`, `held_by`; see docs/json.md.
+    #: One for each target: `measure`, `wanted`, `before`, `after`, `miss`, `bound`, `family_bound`, `forbidden`, `held_by`; see docs/json.md.
     targets: list[dict[str, Any]]
     #: With `shape`, the limits are this times the wanted ones.
     shape_factor: float | None
@@ -75,7 +75,7 @@ def fit(
 ) -> Fit:
     """A design whose limits are those of `targets`, as nearly as can be found: what `maille fit` does.
 
-    `targets` is a CSV file as `maille fit --help` has it, or l1 by direction: `{0: 0.45, 90: 0.3}` or rows of both. `free` names
+    `targets` is a CSV file as `maille fit --help` has it, with Poisson ratios, too, or l1 by direction: `{0: 0.45, 90: 0.3}` or rows of both. `free` names
     numbers that may move with their bounds, as `"minor_radius=0.05:0.15"` or `"spacing=10%"`; `free_each` those with a number of its own
     for each element, as `"elements.*.rings.major_radius=30%"`; without both, the parameters of the file that have bounds. `min_gap` is
     in the design's unit. The other arguments are the options of the command.

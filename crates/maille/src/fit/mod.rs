@@ -21,6 +21,7 @@ mod search;
 mod starts;
 mod step;
 mod target;
+mod width;
 
 pub use family::{Family, FreeNumber, Make, NumberKind};
 pub use options::{FitOptions, Norm};
@@ -104,6 +105,8 @@ pub struct FitProgress {
     pub worst_miss: f64,
     /// Its free numbers.
     pub numbers: Vec<f64>,
+    /// While a start is sought by bounds: descents that are done, and all of them at most.
+    pub by_bounds: Option<[usize; 2]>,
 }
 
 /// The numbers of a family with which its design has the wanted limits, as nearly as could be found. After `cancel` the best design
@@ -145,20 +148,25 @@ pub fn fit(
         cancel,
     };
     let given = search.solve(search.shares(&first)).map_err(Refused::of_the_given)?;
-    let again = resumed.and_then(|(numbers, _)| solved_in_place(&search, &given, search.shares(numbers)));
+    let again = resumed.and_then(|(numbers, _)| solved_in_place(&search, search.shares(numbers)));
     let (mut best, mut starts) = (again.unwrap_or_else(|| given.clone()), resumed.map_or(0, |(_, starts)| starts));
     while starts < options.starts && !search.reached(&best) && !cancel.load(Ordering::Relaxed) {
         starts += 1;
-        let begin = if starts == 1 { Some(best.clone()) } else { start(&search, &given, &best, starts) };
-        let mut tell = |point: &Point| {
+        let now = |point: &Point, by_bounds: Option<[usize; 2]>| {
             let better = if point.cost < best.cost { point } else { &best };
             progress(FitProgress {
                 start: starts,
                 designs: search.solved.get(),
                 worst_miss: better.worst_miss(),
                 numbers: search.values(&better.shares),
+                by_bounds,
             });
         };
+        let begin = match starts {
+            1 => Some(best.clone()),
+            _ => start(&search, &best, starts, &|done| now(&best, Some(done))),
+        };
+        let mut tell = |point: &Point| now(point, None);
         if let Some(found) = begin.map(|begin| descend(&search.at(&begin.design.clone()), begin, &mut tell))
             && found.cost < best.cost
         {

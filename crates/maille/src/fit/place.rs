@@ -36,22 +36,23 @@ pub(super) fn at(mut design: Design, place: &Design) -> Design {
 pub fn linked_alike(family: &Family<'_>, values: &[f64], cancel: &AtomicBool) -> Option<Design> {
     let first: Vec<f64> = family.numbers.iter().map(|number| number.value).collect();
     let given = Model::compile(&(family.make)(&first).ok()?, Cell::PRIMITIVE).ok()?;
+    linked_as(family, &given, values, cancel)
+}
+
+/// The same, `given` being the design with the family's first numbers.
+pub(super) fn linked_as(family: &Family<'_>, given: &Model, values: &[f64], cancel: &AtomicBool) -> Option<Design> {
     let written = (family.make)(values).ok()?;
     if Model::compile(&written, Cell::PRIMITIVE).is_ok_and(|model| model.links == given.links) {
         return Some(written);
     }
-    family.of_radii().then(|| steps(family, &given, [&first, values], cancel))?
+    family.of_radii().then(|| steps(family, given, values, cancel))?
 }
 
-/// The design with the numbers `to`, its elements moved so that it is linked as `model`, the design with the numbers `from`; `None` where
+/// The design with the numbers `to`, its elements moved so that it is linked as `model`, the design with the first numbers; `None` where
 /// the steps do not get there.
-pub(super) fn steps(
-    family: &Family<'_>,
-    model: &Model,
-    [from, to]: [&[f64]; 2],
-    cancel: &AtomicBool,
-) -> Option<Design> {
-    let (mut reached, mut step, mut design) = (0.0, LARGEST_STEP, (family.make)(from).ok()?);
+fn steps(family: &Family<'_>, model: &Model, to: &[f64], cancel: &AtomicBool) -> Option<Design> {
+    let from: Vec<f64> = family.numbers.iter().map(|number| number.value).collect();
+    let (mut reached, mut step, mut design) = (0.0, LARGEST_STEP, (family.make)(&from).ok()?);
     while reached < 1.0 {
         let next = f64::min(reached + step, 1.0);
         // The end exactly.

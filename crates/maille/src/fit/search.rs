@@ -6,6 +6,7 @@ use super::{
     options::FitOptions,
     place,
     target::{Measure, Target, Targets},
+    width,
 };
 use crate::{
     answer::Answer,
@@ -69,6 +70,7 @@ pub(super) struct Solved {
 pub(super) enum Refused {
     Design(InvalidInput),
     Limit(Target, Status),
+    Width(Target),
     Shape,
     Interrupted,
 }
@@ -114,6 +116,14 @@ impl Refused {
                 let problem = format!("{} of the given design is {}", target.words(), status.name());
                 InvalidInput::new("targets", problem, "begin with a design that has every limit that is wanted")
             }
+            Refused::Width(target) => {
+                let problem = format!(
+                    "{} of the given design is not unique: its limit allows more than one width",
+                    target.words()
+                );
+                let help = "leave it out; `maille characterize DESIGN --lateral free` tells the widths of each limit";
+                InvalidInput::new("targets", problem, help)
+            }
             Refused::Shape => {
                 let problem = "the given design does not stretch along the directions of the shape";
                 InvalidInput::new("targets", problem, "begin with a design whose limits there are above 0")
@@ -153,8 +163,7 @@ impl Search<'_> {
     /// The design with these shares, measured for all targets.
     pub fn solve(&self, shares: Vec<f64>) -> Result<Point, Refused> {
         self.solved.set(self.solved.get() + 1);
-        let made = (self.family.make)(&self.values(&shares)).map_err(Refused::first)?;
-        let design = if let Some(place) = self.place { place::at(made, place) } else { made };
+        let design = self.design(&shares)?;
         let (values, measured) = if self.by_bounds { self.bounds(&design)? } else { self.limits(&design)? };
         let deviations = self.targets.deviations(&values).ok_or(Refused::Shape)?;
         let misses: Vec<f64> =
@@ -162,6 +171,12 @@ impl Search<'_> {
         let weighted = self.targets.iter().zip(&misses).map(|(target, miss)| target.weight * miss);
         let cost = self.options.norm.of(&DVector::from_iterator(misses.len(), weighted));
         Ok(Point { shares, design, measured, values, deviations, misses, cost })
+    }
+
+    /// The design with these shares.
+    pub fn design(&self, shares: &[f64]) -> Result<Design, Refused> {
+        let made = (self.family.make)(&self.values(shares)).map_err(Refused::first)?;
+        Ok(if let Some(place) = self.place { place::at(made, place) } else { made })
     }
 
     fn same_links(&self, model: &Model) -> Result<(), Refused> {
@@ -185,9 +200,10 @@ impl Search<'_> {
         let answers = answers.collect::<Result<Vec<_>, _>>().map_err(Refused::Design)?;
         let mut values = Vec::with_capacity(answers.len());
         for (answer, target) in answers.iter().zip(self.targets.iter()) {
-            match (answer.limit(), answer.status) {
+            match (target.measure.value(answer), answer.status) {
                 (Some(value), _) => values.push(value),
                 (None, Status::Interrupted) => return Err(Refused::Interrupted),
+                (None, _) if answer.is_limit() => return Err(Refused::Width(*target)),
                 (None, status) => return Err(Refused::Limit(*target, status)),
             }
         }
@@ -213,7 +229,7 @@ impl Search<'_> {
         Ok((values, Measured::Bounds(slopes)))
     }
 
-    fn question(&self, target: &Target) -> Question {
+    pub fn question(&self, target: &Target) -> Question {
         Question { effort: self.options.effort, seed: self.options.seed, ..target.question() }
     }
 
@@ -226,6 +242,9 @@ impl Search<'_> {
         let mut slopes = DMatrix::zeros(point.values.len(), rates.len());
         for (k, target) in self.targets.iter().enumerate() {
             let along = match &point.measured {
+                Measured::Limits { answers, .. } if matches!(target.measure, Measure::PoissonRatio { .. }) => {
+                    width::slopes_of_poisson_ratio(self, &point, &answers[k], target)?
+                }
                 Measured::Limits { sheet, answers } => self.slopes_of_limit(target, sheet, &answers[k], &rates)?,
                 Measured::Bounds(slopes) => rates.iter().map(|rate| slopes[k].dot(rate)).collect(),
             };

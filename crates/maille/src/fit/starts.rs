@@ -4,7 +4,7 @@ use super::{
     descent::descend,
     family::NumberKind,
     options::FitOptions,
-    place::steps,
+    place::linked_as,
     search::{Point, Refused, Search},
     target::Measure,
 };
@@ -36,12 +36,13 @@ const SPREAD: f64 = 0.05;
 const MEASURED: usize = 3;
 
 /// Start number `number`, from 2: every second one anywhere in the ranges, the others near the best design. Each start has random
-/// numbers of its own. Where bounds say something, the former is a design whose bounds are what is wanted.
-pub(super) fn start(search: &Search<'_>, given: &Point, best: &Point, number: usize) -> Option<Point> {
+/// numbers of its own. Where bounds say something, the former is a design whose bounds are what is wanted; `tell` hears of the descents on
+/// bounds, how many are done of how many.
+pub(super) fn start(search: &Search<'_>, best: &Point, number: usize, tell: &dyn Fn([usize; 2])) -> Option<Point> {
     let mut random = ChaCha8Rng::seed_from_u64(search.options.seed);
     random.set_stream(number as u64);
     let near = number % 2 == 1;
-    let of_bounds = if near { None } else { by_bounds(search, given, &mut random) };
+    let of_bounds = if near { None } else { by_bounds(search, &mut random, tell) };
     of_bounds.or_else(|| drawn(search, best, near, &mut random))
 }
 
@@ -90,7 +91,7 @@ fn symmetric(search: &Search<'_>, random: &mut ChaCha8Rng) -> Vec<f64> {
 /// A design whose bounds are what is wanted, as nearly as many descents find one, measured by its limits. A bound takes a small
 /// part of the time of its limit, and is often attained. After the first descents, each begins at the best design yet with some of its
 /// numbers drawn anew: from anywhere, nearly all end in the same poor minimum.
-fn by_bounds(search: &Search<'_>, given: &Point, random: &mut ChaCha8Rng) -> Option<Point> {
+fn by_bounds(search: &Search<'_>, random: &mut ChaCha8Rng, tell: &dyn Fn([usize; 2])) -> Option<Point> {
     let stretches = search.targets.iter().all(|target| matches!(target.measure, Measure::Stretch { .. }));
     let elements = search.model.elements.len();
     if !search.family.of_radii() || !stretches || elements >= MOST_ELEMENTS {
@@ -99,13 +100,14 @@ fn by_bounds(search: &Search<'_>, given: &Point, random: &mut ChaCha8Rng) -> Opt
     let fewer = |descents: usize| descents * ELEMENTS.pow(3) / elements.max(ELEMENTS).pow(3);
     let (options, solved) = (FitOptions { designs: DESIGNS_BY_BOUNDS, ..search.options.clone() }, Cell::new(0));
     let bounds = Search { options: &options, by_bounds: true, solved: &solved, ..*search };
-    let measured = |point: &Point| solved_in_place(search, given, thinned(search, point.shares.clone()));
+    let measured = |point: &Point| solved_in_place(search, thinned(search, point.shares.clone()));
     let (mut found, mut best): (Vec<Point>, Option<Point>) = (Vec::new(), None);
     let mut measurements = 0;
     for k in 0..fewer(BY_BOUNDS) {
         if search.cancel.load(Ordering::Relaxed) || measurements == MEASURED {
             break;
         }
+        tell([k, fewer(BY_BOUNDS)]);
         let mut shares = symmetric(search, random);
         if let (true, Some(best)) = (k >= fewer(DRAWN_BY_BOUNDS), found.first()) {
             let share = REDRAWN[k % REDRAWN.len()];
@@ -127,13 +129,9 @@ fn by_bounds(search: &Search<'_>, given: &Point, random: &mut ChaCha8Rng) -> Opt
     best.or_else(|| found.iter().take(MEASURED).find_map(measured))
 }
 
-/// The design with these shares, measured: where only radii are free, with its elements where steps from the given design lead.
-pub(super) fn solved_in_place(search: &Search<'_>, given: &Point, shares: Vec<f64>) -> Option<Point> {
-    if !search.family.of_radii() {
-        return search.solve(shares).ok();
-    }
-    let place =
-        steps(search.family, search.model, [&search.values(&given.shares), &search.values(&shares)], search.cancel)?;
+/// The design with these shares, measured, its rings linked as those of the given one.
+pub(super) fn solved_in_place(search: &Search<'_>, shares: Vec<f64>) -> Option<Point> {
+    let place = linked_as(search.family, search.model, &search.values(&shares), search.cancel)?;
     search.at(&place).solve(shares).ok()
 }
 

@@ -1,7 +1,9 @@
-//! What a fit is to reach: limits along directions, and the widest gap.
+//! What a fit is to reach: limits along directions, Poisson ratios, and the widest gap.
 
 use crate::{
+    answer::Answer,
     error::InvalidInput,
+    lattice::{Across, Direction},
     question::{Goal, Question, Sense},
 };
 use nalgebra::{DMatrix, DVector};
@@ -30,9 +32,35 @@ pub enum Measure {
         /// Stretch − 1 that is held across it.
         l2: f64,
     },
+    /// ν = −ln(1 + l2)/ln(1 + l1) in the state of the limit along a direction with the width left to the sheet. Where the limit allows more
+    /// than one width there is none.
+    PoissonRatio {
+        /// Direction of the pull, degrees counter-clockwise from x.
+        direction_deg: f64,
+    },
     /// The smallest gap between the rings of different elements, in reference radii, where it is as wide as the lattice of the design
     /// allows: the roomiest state.
     Clearance,
+}
+
+/// Widths of a limit, as l2, that differ by less are one. Some 1e-3 of it is what a range of l2 is wider by than the widths of the limit itself.
+const ONE_WIDTH: f64 = 0.01;
+
+impl Measure {
+    /// Its value, as far as the answer has one.
+    pub fn value(self, answer: &Answer) -> Option<f64> {
+        let limit = answer.limit();
+        let Measure::PoissonRatio { direction_deg } = self else { return limit };
+        let [least, most] = answer.free?.l2;
+        let across = Direction::of_degrees(direction_deg).across();
+        let l2 = across.dot(&(answer.gradient * across)) - 1.0;
+        limit.filter(|_| most - least < ONE_WIDTH).map(|l1| poisson_ratio([l1, l2]))
+    }
+}
+
+/// Of the strains along and across a pull.
+pub(super) fn poisson_ratio([l1, l2]: [f64; 2]) -> f64 {
+    -l2.ln_1p() / l1.ln_1p()
 }
 
 /// What a value is to be.
@@ -71,6 +99,9 @@ impl Target {
     pub fn question(&self) -> Question {
         match self.measure {
             Measure::Stretch { direction_deg, l2 } => Question::stretch_along(direction_deg).with_lateral(l2),
+            Measure::PoissonRatio { direction_deg } => {
+                Question::stretch_along(direction_deg).with_free(Across { lateral_free: true, shear_free: false })
+            }
             Measure::Clearance => Question::new(Goal::Clearance { lattice_free: false }, Sense::Largest),
         }
     }
@@ -79,6 +110,7 @@ impl Target {
     pub(super) fn words(&self) -> String {
         match self.measure {
             Measure::Stretch { direction_deg, l2 } => format!("the limit along {direction_deg}\u{b0} at l2 {l2}"),
+            Measure::PoissonRatio { direction_deg } => format!("the Poisson ratio along {direction_deg}\u{b0}"),
             Measure::Clearance => "the widest gap".into(),
         }
     }

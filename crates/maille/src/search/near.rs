@@ -1,8 +1,9 @@
 //! A limit searched from the state of another design near by, whose rings are linked alike.
 
 use super::{
-    multistart::CellStarts,
+    multistart::{CellStarts, Target},
     starts::{Route, Start},
+    stop::StopRule,
     stretch::{ExactMethod, Stretch},
 };
 use crate::{
@@ -23,13 +24,36 @@ impl ExactMethod<'_> {
         self.without_one_trend(answer)
     }
 
+    /// The strains along and across a pull with free width, where one local search from the state of `near` ends, the limit of another
+    /// design; `None` where it is not certified.
+    pub fn strains_near(
+        &self,
+        direction: Direction,
+        across: Across,
+        near: &Answer,
+        cancel: &AtomicBool,
+    ) -> Option<[f64; 2]> {
+        let at = Stretch { direction, l2: 0.0, across, sign: 1.0 };
+        let (cell, start) = self.start_near(&at, near).pop()?;
+        let search = self.search(&at, f64::INFINITY, cancel);
+        let best = search.run(&of_cell(self.models, cell), vec![start], StopRule::given_only()).best?;
+        let Start { l1, l2, .. } = search.target.start(&best);
+        best.certified.then_some([l1, l2])
+    }
+
     fn start_near(&self, at: &Stretch, near: &Answer) -> CellStarts {
-        let Some(l1) = near.limit() else { return Vec::new() };
+        if !near.is_limit() {
+            return Vec::new();
+        }
         let model = of_cell(self.models, near.cell);
-        let [a1, a2] = at.lattices(&model).lattice(l1, at.l2, 0.0);
+        let (f, along, side) = (near.gradient, at.direction.along(), at.direction.across());
+        let [l1, there, shear] = [along.dot(&(f * along)) - 1.0, side.dot(&(f * side)) - 1.0, along.dot(&(f * side))];
+        let l2 = if at.across.lateral_free { there } else { at.l2 };
+        let shear = if at.across.shear_free { shear } else { 0.0 };
+        let [a1, a2] = at.lattices(&model).lattice(l1, l2, shear);
         let state = State { a1, a2, ..near.state.clone() };
         let linked = state.poses.len() == model.start.poses.len() && links_kept(&model, &state);
-        let start = || Start { state, l1, l2: at.l2, shear: 0.0, route: Route::DIRECT };
+        let start = || Start { state, l1, l2, shear, route: Route::DIRECT };
         linked.then(start).map(|start| (near.cell, start)).into_iter().collect()
     }
 }
