@@ -99,12 +99,11 @@ impl Sheet {
 
     /// The limit of a stretch whose width is held, searched from the state of `near` first: the same limit of another design whose rings are linked
     /// alike. Every other question is answered as usual.
-    pub(crate) fn answer_near(
-        &self,
-        question: &Question,
-        near: &Answer,
-        cancel: &AtomicBool,
-    ) -> Result<Answer, InvalidInput> {
+    ///
+    /// # Errors
+    /// What [`Question::check`] refuses.
+    #[doc(hidden)]
+    pub fn answer_near(&self, question: &Question, near: &Answer, cancel: &AtomicBool) -> Result<Answer, InvalidInput> {
         let Question { effort, starts, seed, sense, .. } = *question;
         match question.goal {
             Goal::Stretch { direction_deg, l2, across } if across == Across::HELD && sense == Sense::Largest => {

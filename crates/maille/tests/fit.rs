@@ -163,11 +163,8 @@ fn an_impossible_target_ends_at_the_bounds() {
 #[test]
 fn a_poisson_ratio_is_reached() {
     let design = design("2");
-    let wanted = Target {
-        measure: Measure::PoissonRatio { direction_deg: 22.5 },
-        wanted: Wanted::Value(0.5),
-        weight: 1.0,
-    };
+    let wanted =
+        Target { measure: Measure::PoissonRatio { direction_deg: 22.5 }, wanted: Wanted::Value(0.5), weight: 1.0 };
     let targets = Targets::new(vec![wanted], false).unwrap();
     let fit = run(&design, &values(&design), [0.85, 1.15], &targets, false).unwrap();
     assert_eq!(fit.ended, Ended::Reached);
@@ -182,11 +179,8 @@ fn a_poisson_ratio_is_reached() {
 #[test]
 fn a_poisson_ratio_of_many_widths_is_refused() {
     let design = design("1.1");
-    let wanted = Target {
-        measure: Measure::PoissonRatio { direction_deg: 0.0 },
-        wanted: Wanted::AtLeast(0.1),
-        weight: 1.0,
-    };
+    let wanted =
+        Target { measure: Measure::PoissonRatio { direction_deg: 0.0 }, wanted: Wanted::AtLeast(0.1), weight: 1.0 };
     let targets = Targets::new(vec![wanted], false).unwrap();
     let refused = run(&design, &values(&design), [0.9, 1.1], &targets, false).unwrap_err();
     assert!(refused.problem.contains("more than one width"), "{refused:?}");

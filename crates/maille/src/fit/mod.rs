@@ -18,10 +18,10 @@ mod forbid;
 mod options;
 mod place;
 mod search;
+mod slopes;
 mod starts;
 mod step;
 mod target;
-mod width;
 
 pub use family::{Family, FreeNumber, Make, NumberKind};
 pub use options::{FitOptions, Norm};

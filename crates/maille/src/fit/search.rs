@@ -6,7 +6,6 @@ use super::{
     options::FitOptions,
     place,
     target::{Measure, Target, Targets},
-    width,
 };
 use crate::{
     answer::Answer,
@@ -16,7 +15,7 @@ use crate::{
     model::{Link, Model},
     question::Question,
     record::Status,
-    sensitivity::{self, DesignVector},
+    sensitivity::DesignVector,
     sheet::Sheet,
 };
 use nalgebra::{DMatrix, DVector};
@@ -231,43 +230,6 @@ impl Search<'_> {
 
     pub fn question(&self, target: &Target) -> Question {
         Question { effort: self.options.effort, seed: self.options.seed, ..target.question() }
-    }
-
-    /// The point with the derivatives of its deviations by the shares.
-    ///
-    /// # Errors
-    /// Where the design or an answer has none.
-    pub fn with_slopes(&self, point: Point) -> Result<Solved, InvalidInput> {
-        let rates = self.family.rates(&self.values(&point.shares))?;
-        let mut slopes = DMatrix::zeros(point.values.len(), rates.len());
-        for (k, target) in self.targets.iter().enumerate() {
-            let along = match &point.measured {
-                Measured::Limits { answers, .. } if matches!(target.measure, Measure::PoissonRatio { .. }) => {
-                    width::slopes_of_poisson_ratio(self, &point, &answers[k], target)?
-                }
-                Measured::Limits { sheet, answers } => self.slopes_of_limit(target, sheet, &answers[k], &rates)?,
-                Measured::Bounds(slopes) => rates.iter().map(|rate| slopes[k].dot(rate)).collect(),
-            };
-            slopes.row_mut(k).copy_from_slice(&along);
-        }
-        let slopes = self.targets.deviation_slopes(&point.values, &slopes);
-        Ok(Solved { point, slopes })
-    }
-
-    fn slopes_of_limit(
-        &self,
-        target: &Target,
-        sheet: &Sheet,
-        answer: &Answer,
-        rates: &[DesignVector],
-    ) -> Result<Vec<f64>, InvalidInput> {
-        let model = sheet.model_of(answer);
-        let mut along = sensitivity::gradient(&model, &self.question(target), answer, rates)?;
-        // The derivative of a clearance is one of a length in the design's unit.
-        if target.measure == Measure::Clearance {
-            along.iter_mut().for_each(|x| *x /= model.unit);
-        }
-        Ok(along)
     }
 
     pub fn reached(&self, point: &Point) -> bool {

@@ -3,8 +3,11 @@
 //! A number is compared by central differences where one choice of forces balances, else by differences to each side. A derivative that
 //! agrees with the differences of one step agrees: the solves' rounding spoils short steps, curvature and other contacts long ones. One
 //! that agrees at no step is wrong, unless other contacts carry within each step, or a limit within it is not found: those are counted.
+//!
+//! A changed design is solved from the state of the limit. Where the difference does not agree, it is solved from starts of its own: where
+//! several states tie, the change chooses between them.
 
-use crate::{builtin, solved, stretch};
+use crate::{builtin, solved, solved_near, stretch};
 use maille::{
     Answer, Design, Question, Status,
     sensitivity::{DesignVector, RingVector, Sensitivity},
@@ -111,11 +114,19 @@ impl Case<'_> {
         let unit = self.unit(number);
         let (mut best, mut changed) = (None, false);
         for step in STEPS {
-            let answers = at.map(|k| solved(&change.applied(self.design, k * step * unit), self.question).1);
-            let values: Option<Vec<f64>> = answers.iter().map(limit).collect();
-            let Some(values) = values else { continue };
-            let difference = of(values.try_into().expect("one for each answer")) / (step * unit);
-            let error = (derivative - difference).abs() * unit / (difference.abs() * unit).max(LEAST);
+            let beside = |k: f64| change.applied(self.design, k * step * unit);
+            let judged = |answers: &[Answer; N]| {
+                let values: Option<Vec<f64>> = answers.iter().map(limit).collect();
+                let difference = of(values?.try_into().expect("one for each answer")) / (step * unit);
+                let error = (derivative - difference).abs() * unit / (difference.abs() * unit).max(LEAST);
+                Some((difference, error))
+            };
+            let near = judged(&at.map(|k| solved_near(&beside(k), self.question, self.answer)));
+            if let Some((_, error)) = near.filter(|(_, error)| *error <= AGREE) {
+                return Found::Agrees(error);
+            }
+            let answers = at.map(|k| solved(&beside(k), self.question).1);
+            let Some((difference, error)) = judged(&answers) else { continue };
             if error <= AGREE {
                 return Found::Agrees(error);
             }

@@ -10,7 +10,7 @@ use maille::{
 };
 use maille_geometry::Vec3;
 use nalgebra::UnitQuaternion;
-use std::time::Instant;
+use std::{sync::atomic::AtomicBool, time::Instant};
 
 fn builtin(name: &str) -> Design {
     maille_io::read_design(name, maille_io::builtin(name).unwrap()).unwrap()
@@ -20,6 +20,13 @@ fn solved(design: &Design, question: &Question) -> (Sheet, Answer) {
     let sheet = Sheet::in_cells(design, Cell::PRIMITIVE.into()).unwrap();
     let answer = sheet.answer(question).unwrap();
     (sheet, answer)
+}
+
+/// From the state of `near`, the answer of another design, alone.
+fn solved_near(design: &Design, question: &Question, near: &Answer) -> Answer {
+    let sheet = Sheet::in_cells(design, Cell::PRIMITIVE.into()).unwrap();
+    let alone = Question { starts: Some(1), ..question.clone() };
+    sheet.answer_near(&alone, near, &AtomicBool::new(false)).unwrap()
 }
 
 fn stretch(direction_deg: f64, l2: f64) -> Question {
