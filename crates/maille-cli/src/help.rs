@@ -20,6 +20,7 @@ const GROUPS: [(&str, &[(&str, &str)]); 6] = [
         &[
             ("characterize", "compute how far a sheet stretches in each direction"),
             ("limit", "compute the largest or smallest value of one strain"),
+            ("roll", "compute how tightly a sheet can be rolled"),
             ("sensitivity", "compute how a limit changes with the numbers of its design"),
             ("fit", "find a design for wanted limits"),
             ("boundary", "compute the surface of all in-plane strains"),

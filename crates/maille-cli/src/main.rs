@@ -40,6 +40,7 @@ mod remedy;
 mod render;
 mod replay;
 mod reproduce;
+mod roll;
 mod schema;
 mod sensitivity;
 mod simulate;
@@ -112,6 +113,7 @@ enum Command {
     Prove(prove::Args),
     Sweep(sweep::Args),
     Limit(limit::Args),
+    Roll(roll::Args),
     Sensitivity(sensitivity::Args),
     Fit(Box<fit::Args>),
     Boundary(boundary::Args),
@@ -148,6 +150,7 @@ fn main() -> ExitCode {
         Command::Prove(args) => prove::run(&args),
         Command::Sweep(args) => sweep::run(&args),
         Command::Limit(args) => limit::run(&args),
+        Command::Roll(args) => roll::run(&args),
         Command::Sensitivity(args) => sensitivity::run(&args),
         Command::Fit(args) => fit::run(&args),
         Command::Boundary(args) => boundary::run(&args),

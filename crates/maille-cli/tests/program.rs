@@ -132,6 +132,7 @@ fn every_key_of_the_json_output_is_documented() {
     let mut found = BTreeSet::new();
     keys(&json(folder, "designs --json"), &mut found);
     keys(&json(folder, "inspect 1.1 --json"), &mut found);
+    keys(&json(folder, "roll european-4-in-1 --directions 0 --axis below --json"), &mut found);
     keys(&check, &mut found);
     keys(&json(folder, "verify 1.1 --json --quiet"), &mut found);
     let mut summary = summary;

@@ -20,6 +20,8 @@ const AGREE: f64 = 1e-5;
 const LEAST: f64 = 0.01;
 /// Steps of differences, in reference radii or radians, in the order in which they are tried.
 const STEPS: [f64; 7] = [1e-4, 1e-5, 1e-3, 1e-6, 3e-7, 1e-7, 3e-8];
+/// A number is given up after so many steps in which a limit is not found.
+const HOPELESS: usize = 3;
 /// Forces that carry, of a pull of 1.
 const CARRIES: f64 = 1e-6;
 
@@ -112,8 +114,11 @@ impl Case<'_> {
         of: impl Fn([f64; N]) -> f64,
     ) -> Found {
         let unit = self.unit(number);
-        let (mut best, mut changed) = (None, false);
+        let (mut best, mut changed, mut not_found) = (None, false, 0);
         for step in STEPS {
+            if not_found == HOPELESS {
+                break;
+            }
             let beside = |k: f64| change.applied(self.design, k * step * unit);
             let judged = |answers: &[Answer; N]| {
                 let values: Option<Vec<f64>> = answers.iter().map(limit).collect();
@@ -126,7 +131,10 @@ impl Case<'_> {
                 return Found::Agrees(error);
             }
             let answers = at.map(|k| solved(&beside(k), self.question).1);
-            let Some((difference, error)) = judged(&answers) else { continue };
+            let Some((difference, error)) = judged(&answers) else {
+                not_found += 1;
+                continue;
+            };
             if error <= AGREE {
                 return Found::Agrees(error);
             }
