@@ -20,7 +20,7 @@ const AGREE: f64 = 1e-5;
 const LEAST: f64 = 0.01;
 /// Steps of differences, in reference radii or radians, in the order in which they are tried.
 const STEPS: [f64; 7] = [1e-4, 1e-5, 1e-3, 1e-6, 3e-7, 1e-7, 3e-8];
-/// A number is given up after so many steps in which a limit is not found.
+/// A number is given up after so many steps in which a limit is not found, in the first of them also from starts of its own.
 const HOPELESS: usize = 3;
 /// Forces that carry, of a pull of 1.
 const CARRIES: f64 = 1e-6;
@@ -129,6 +129,10 @@ impl Case<'_> {
             let near = judged(&at.map(|k| solved_near(&beside(k), self.question, self.answer)));
             if let Some((_, error)) = near.filter(|(_, error)| *error <= AGREE) {
                 return Found::Agrees(error);
+            }
+            if near.is_none() && not_found > 0 {
+                not_found += 1;
+                continue;
             }
             let answers = at.map(|k| solved(&beside(k), self.question).1);
             let Some((difference, error)) = judged(&answers) else {
