@@ -51,9 +51,9 @@ designs! {
     #[ignore = "minutes"]
     design_4_3: "4.3", 0 other contacts, 0 no limit;
     #[ignore = "minutes"]
-    design_5_1: "5.1", 0 other contacts, 0 no limit;
+    design_5_1: "5.1", 0 other contacts, 48 no limit;
     #[ignore = "minutes"]
-    design_5_2: "5.2", 0 other contacts, 0 no limit;
+    design_5_2: "5.2", 0 other contacts, 48 no limit;
     #[ignore = "minutes"]
     european_4_in_1: "european-4-in-1", 0 other contacts, 0 no limit;
     #[ignore = "minutes"]
