@@ -39,8 +39,7 @@ use std::{
 /// A design whose limits are those that are wanted
 ///
 /// Moves numbers of a design between their bounds until its limits are the targets, as nearly as can be found: by least squares, or so that
-/// the largest miss is smallest. Every design on the way is solved, and its certified limits give their derivatives at no further
-/// solve. Several starts are searched. That no other design does better is not proved, but where a target is proved to be out of reach, the
+/// the largest miss is smallest. Every design on the way is solved, and its certified limits give their derivatives. Several starts are searched. That no other design does better is not proved, but where a target is proved to be out of reach, the
 /// summary says so.
 ///
 /// Writes a folder: fitted.toml, the design, which every command takes; fit.json, what was asked and found; given/ and fitted/,
@@ -78,7 +77,7 @@ pub struct Args {
     /// A value for a parameter of the design's file, as radius=5.0; several with commas
     #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',')]
     set: Vec<Setting>,
-    /// The wanted limits, a CSV file
+    /// The wanted limits and Poisson ratios, a CSV file
     #[arg(long, value_name = "FILE")]
     target: PathBuf,
     /// Only the proportions of the wanted limits count, not their size

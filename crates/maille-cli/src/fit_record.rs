@@ -115,8 +115,8 @@ impl Files<'_> {
 /// The figure of a fit: both designs, the fitted one first, with the targets as markers; where only Poisson ratios are wanted, these.
 pub fn svg(record: &FitRecord, named: &[NamedRecord], layout: Layout) -> String {
     let named = &named.iter().rev().cloned().collect::<Vec<_>>();
-    let wanted = |target: &maille::fit::Target| matches!(target.measure, Measure::PoissonRatio { .. });
-    if let Some(svg) = poisson_svg(named, layout).filter(|_| record.request.targets.iter().all(wanted)) {
+    let stretch = |target: &maille::fit::Target| matches!(target.measure, Measure::Stretch { .. });
+    if let Some(svg) = poisson_svg(named, layout).filter(|_| !record.request.targets.iter().any(stretch)) {
         return svg;
     }
     let plot = PolarPlot::from_records(named, Quantity::Stretch).checked_by(&target_rows(record), "wanted");

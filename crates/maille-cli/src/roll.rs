@@ -138,7 +138,8 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         print(args, &input.design, &rolls, wall_s);
     }
     let certified = |roll: &RollAnswer<'_>| roll.found.is_limit();
-    let interrupted = rolls.iter().any(|roll| roll.found.status == Status::Interrupted);
+    let stopped = |roll: &RollAnswer<'_>| roll.found.status == Status::Interrupted;
+    let interrupted = rolls.len() < questions.len() || rolls.iter().any(stopped);
     Ok(ExitCode::from(match () {
         () if interrupted => exit::INTERRUPTED,
         () if rolls.iter().all(certified) => exit::DONE,
@@ -150,7 +151,7 @@ fn print(args: &Args, design: &maille::Design, rolls: &[RollAnswer<'_>], wall_s:
     let unit = design.unit.as_deref().map_or("radius".to_owned(), |unit| format!("radius, {unit}"));
     say!("{}: the tightest rolls, {}; {wall_s:.1} s", design.name, args.held());
     say!(
-        "  {:>10}  {:<5} {:>12} {:>12} {:>9}  {:<11} cell",
+        "  {:>10}  {:<5} {:>12} {:>12} {:>9}  {:<13} cell",
         "direction",
         "axis",
         unit,
@@ -163,7 +164,7 @@ fn print(args: &Args, design: &maille::Design, rolls: &[RollAnswer<'_>], wall_s:
         let neutral = roll.neutral();
         let (radius, stretch) = (neutral.map(|n| n.radius), neutral.map(|n| n.stretch));
         say!(
-            "  {:>9}\u{b0}  {:<5} {:>12} {:>12} {:>9}  {:<11} {}",
+            "  {:>9}\u{b0}  {:<5} {:>12} {:>12} {:>9}  {:<13} {}",
             roll.direction_deg,
             roll.axis(),
             number(radius.map(|r| r * design.reference_radius), 4),

@@ -106,6 +106,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             "  several choices of forces hold this state; changes to both sides are by the least and the largest of them"
         );
     }
+    if found.forces_are_unique() && lines.iter().any(|line| !line.images_tie && line.slope.is_kink()) {
+        say!("  another chain of links is taut without force; it bounds changes to one side");
+    }
     if lines.iter().any(|line| line.images_tie) {
         say!(
             "  states that symmetries of the design make of each other tie; a change that breaks the symmetry has the best of them"

@@ -31,7 +31,7 @@ class Fit:
     design: Design
     #: Its free numbers by their places.
     numbers: dict[str, float]
-    #: The largest miss of a target, in units of l1.
+    #: The largest miss of a target: of l1, of a Poisson ratio, or of a gap in reference radii.
     worst_miss: float
     #: One for each target: `measure`, `wanted`, `before`, `after`, `miss`, `bound`, `family_bound`, `forbidden`, `held_by`; see docs/json.md.
     targets: list[dict[str, Any]]

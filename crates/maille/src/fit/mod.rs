@@ -1,13 +1,13 @@
 //! A design for wanted limits: free numbers of a design are moved until its limits are those.
 //!
 //! The sum of squares of weight × miss over all targets, or the largest of them, is made small over the free numbers, each between its
-//! bounds. Every design on the way is solved for all targets as any design is, and its certified limits give their derivatives by every free
-//! number at no further solve (`sensitivity`). A step is that of a model: the tangents of the limits at the current design and at those that were
+//! bounds. Every design on the way is solved for all targets, from the states of the last one first, and its certified limits give their derivatives by every free
+//! number at no further solve (`sensitivity`), but for Poisson ratios (`slopes`). A step is that of a model: the tangents of the limits at the current design and at those that were
 //! solved near it, as limits have kinks; within a box that shrinks where the model promises too much. A design is not taken if its
 //! rings overlap as written and it does not allow that, if they are linked in another way, or if it has no certified limit for a target.
 //! There are several minima: further starts are drawn within the bounds, by turns far from the best one and near to it; where all free numbers
 //! are radii, the former are those whose proven bounds are what is wanted. What is found is a
-//! design that was solved, no estimate; where the search on the way was short, its limits are searched again with normal effort. That no design of the family does better is proved only where a bound of all of them forbids a target.
+//! design that was solved, no estimate: its limits are searched again, from no other state and at least with normal effort. That no design of the family does better is proved only where a bound of all of them forbids a target.
 //!
 //! The method, with its measurements: `docs/theory/fit.md`.
 
@@ -150,7 +150,15 @@ pub fn fit(
     let given = search.solve(search.shares(&first)).map_err(Refused::of_the_given)?;
     let again = resumed.and_then(|(numbers, _)| solved_in_place(&search, search.shares(numbers)));
     let (mut best, mut starts) = (again.unwrap_or_else(|| given.clone()), resumed.map_or(0, |(_, starts)| starts));
-    while starts < options.starts && !search.reached(&best) && !cancel.load(Ordering::Relaxed) {
+    let mut is_confirmed = false;
+    while starts < options.starts && !cancel.load(Ordering::Relaxed) {
+        if search.reached(&best) {
+            best = confirmed(&search, best);
+            is_confirmed = search.reached(&best);
+            if is_confirmed {
+                break;
+            }
+        }
         starts += 1;
         let now = |point: &Point, by_bounds: Option<[usize; 2]>| {
             let better = if point.cost < best.cost { point } else { &best };
@@ -173,7 +181,10 @@ pub fn fit(
             best = found;
         }
     }
-    let (before, best) = confirmed(&search, given, best);
+    if !is_confirmed {
+        best = confirmed(&search, best);
+    }
+    let before = if options.effort == options.final_effort() { given } else { confirmed(&search, given) };
     let ended = match cancel.load(Ordering::Relaxed) {
         true => Ended::Interrupted,
         false if search.reached(&best) => Ended::Reached,
@@ -187,18 +198,16 @@ pub fn fit(
         answers: best.answers().to_vec(),
         misses: best.misses,
         design: best.design,
-        before,
+        before: before.answers().to_vec(),
         starts,
         designs: search.solved.get(),
     })
 }
 
-/// The answers of the given design, and the best one, as a map of these designs finds them: with the final effort, from no state of
-/// another design. Where that is interrupted they stay as they are.
-fn confirmed(search: &Search<'_>, given: Point, best: Point) -> (Vec<Answer>, Point) {
+/// A point as a map of its design finds it: with the final effort, from no state of another design. Where that is interrupted it stays as
+/// it is.
+fn confirmed(search: &Search<'_>, point: Point) -> Point {
     let options = FitOptions { effort: search.options.final_effort(), ..search.options.clone() };
     let last = Search { options: &options, solved: &Cell::new(0), ..*search };
-    let again = |point: Point| last.at(&point.design).solve(point.shares.clone()).unwrap_or(point);
-    let before = if options.effort == search.options.effort { given } else { again(given) };
-    (before.answers().to_vec(), again(best))
+    last.at(&point.design).solve(point.shares.clone()).unwrap_or(point)
 }

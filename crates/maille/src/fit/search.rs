@@ -69,7 +69,7 @@ pub(super) struct Solved {
 pub(super) enum Refused {
     Design(InvalidInput),
     Limit(Target, Status),
-    Width(Target),
+    NoRatio(Target),
     Shape,
     Interrupted,
 }
@@ -115,9 +115,9 @@ impl Refused {
                 let problem = format!("{} of the given design is {}", target.words(), status.name());
                 InvalidInput::new("targets", problem, "begin with a design that has every limit that is wanted")
             }
-            Refused::Width(target) => {
+            Refused::NoRatio(target) => {
                 let problem = format!(
-                    "{} of the given design is not unique: its limit allows more than one width",
+                    "{} of the given design is not known: its limit allows more than one width, or no stretch",
                     target.words()
                 );
                 let help = "leave it out; `maille characterize DESIGN --lateral free` tells the widths of each limit";
@@ -202,7 +202,7 @@ impl Search<'_> {
             match (target.measure.value(answer), answer.status) {
                 (Some(value), _) => values.push(value),
                 (None, Status::Interrupted) => return Err(Refused::Interrupted),
-                (None, _) if answer.is_limit() => return Err(Refused::Width(*target)),
+                (None, _) if answer.is_limit() => return Err(Refused::NoRatio(*target)),
                 (None, status) => return Err(Refused::Limit(*target, status)),
             }
         }

@@ -5,7 +5,7 @@
 
 use super::{
     search::{Measured, Point, Search, Solved},
-    target::{Measure, Target, poisson_ratio},
+    target::{Measure, Target, poisson_ratio, strains},
 };
 use crate::{
     answer::Answer,
@@ -17,6 +17,8 @@ use nalgebra::DMatrix;
 
 /// How far a number is moved for a Poisson ratio, as a share of its range.
 const STEP: f64 = 1e-3;
+/// A strain that differs by more over this step is that of another state.
+const JUMP: f64 = 0.02;
 
 impl Search<'_> {
     /// The point with the derivatives of its deviations by the shares.
@@ -56,7 +58,7 @@ impl Search<'_> {
         Ok(along)
     }
 
-    /// A side beyond the range counts, too: it is only solved, never taken.
+    /// By the limits a little to both sides within the range; to one side where the other has no limit near that of the point.
     fn slopes_of_poisson_ratio(
         &self,
         target: &Target,
@@ -64,19 +66,32 @@ impl Search<'_> {
         answer: &Answer,
     ) -> Result<Vec<f64>, InvalidInput> {
         let question = self.question(target);
+        let here = match target.measure {
+            Measure::PoissonRatio { direction_deg } => strains(direction_deg, answer),
+            Measure::Stretch { .. } | Measure::Clearance => unreachable!("a Poisson ratio"),
+        };
+        let beside = |number: usize, step: f64| -> Option<[f64; 2]> {
+            let mut shares = point.shares.clone();
+            shares[number] = (shares[number] + step).clamp(0.0, 1.0);
+            let moved = shares[number] - point.shares[number];
+            let design = self.design(&shares).ok().filter(|_| moved != 0.0)?;
+            let sheet = Sheet::in_cells(&design, self.options.cells.clone()).ok()?;
+            let there = sheet.strains_near(&question, answer, self.cancel)?;
+            let near = there.iter().zip(here).all(|(there, here)| (there - here).abs() < JUMP);
+            near.then(|| [moved, poisson_ratio(there)])
+        };
         let none = || {
             let problem =
                 "a limit beside a design was not found from its state, so its Poisson ratio has no derivative";
             InvalidInput::new("targets", problem, "begin with another design, or leave the Poisson ratio out")
         };
-        let beside = |number: usize, step: f64| {
-            let mut shares = point.shares.clone();
-            shares[number] += step;
-            let design = self.design(&shares).ok()?;
-            let sheet = Sheet::in_cells(&design, self.options.cells.clone()).ok()?;
-            sheet.strains_near(&question, answer, self.cancel).map(poisson_ratio)
+        let slope = |number: usize| {
+            let own = [0.0, poisson_ratio(here)];
+            let [back, ahead] = [-STEP, STEP].map(|step| beside(number, step));
+            let ends = [back.unwrap_or(own), ahead.unwrap_or(own)];
+            let apart = ends[1][0] - ends[0][0];
+            (apart > 0.0).then(|| (ends[1][1] - ends[0][1]) / apart).ok_or_else(none)
         };
-        let slope = |number: usize| Some((beside(number, STEP)? - beside(number, -STEP)?) / (2.0 * STEP));
-        (0..point.shares.len()).map(|number| slope(number).ok_or_else(none)).collect()
+        (0..point.shares.len()).map(slope).collect()
     }
 }

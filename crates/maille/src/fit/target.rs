@@ -33,7 +33,7 @@ pub enum Measure {
         l2: f64,
     },
     /// ν = −ln(1 + l2)/ln(1 + l1) in the state of the limit along a direction with the width left to the sheet. Where the limit allows more
-    /// than one width there is none.
+    /// than one width, or no stretch, there is none.
     PoissonRatio {
         /// Direction of the pull, degrees counter-clockwise from x.
         direction_deg: f64,
@@ -45,6 +45,8 @@ pub enum Measure {
 
 /// Widths of a limit, as l2, that differ by less are one. Some 1e-3 of it is what a range of l2 is wider by than the widths of the limit itself.
 const ONE_WIDTH: f64 = 0.01;
+/// Below this l1 the ratio of the logarithms says nothing.
+const LEAST_L1: f64 = 1e-4;
 
 impl Measure {
     /// Its value, as far as the answer has one.
@@ -52,10 +54,17 @@ impl Measure {
         let limit = answer.limit();
         let Measure::PoissonRatio { direction_deg } = self else { return limit };
         let [least, most] = answer.free?.l2;
-        let across = Direction::of_degrees(direction_deg).across();
-        let l2 = across.dot(&(answer.gradient * across)) - 1.0;
-        limit.filter(|_| most - least < ONE_WIDTH).map(|l1| poisson_ratio([l1, l2]))
+        let strains = strains(direction_deg, answer);
+        limit
+            .filter(|l1| *l1 > LEAST_L1 && strains[1] > -1.0 && most - least < ONE_WIDTH)
+            .map(|_| poisson_ratio(strains))
     }
+}
+
+/// l1 and l2 in the state of an answer.
+pub(super) fn strains(direction_deg: f64, answer: &Answer) -> [f64; 2] {
+    let direction = Direction::of_degrees(direction_deg);
+    [direction.along(), direction.across()].map(|line| line.dot(&(answer.gradient * line)) - 1.0)
 }
 
 /// Of the strains along and across a pull.

@@ -37,9 +37,14 @@ fn take_over(states: &mut CellStarts, found: &[(Cell, Start)]) {
     states.extend(found.iter().cloned());
 }
 
-/// Whether another state can change a limit.
-fn sought(status: Status) -> bool {
-    matches!(status, Status::Local | Status::Uncertified | Status::L2NotReached)
+/// Whether another state can change a limit. Where a certificate contradicts a bound, that is what is to be told.
+fn sought(answer: &Answer) -> bool {
+    let certified = || answer.certificate.as_ref().is_some_and(|certificate| certificate.holds());
+    match answer.status {
+        Status::Local | Status::L2NotReached => true,
+        Status::Uncertified => !certified(),
+        _ => false,
+    }
 }
 
 impl ExactMethod<'_> {
@@ -85,7 +90,7 @@ impl ExactMethod<'_> {
         self.hand_on(&mut solved, cancel);
         let stopped = cancel.load(Ordering::Relaxed);
         for Solved { place, mut answer, wall_s, .. } in solved {
-            if stopped && sought(answer.status) {
+            if stopped && sought(&answer) {
                 // What was not handed on is not what a whole run finds.
                 answer = self.without_state(Status::Interrupted);
             }
@@ -115,7 +120,7 @@ impl ExactMethod<'_> {
                 for (cell, start) in solved[from].starts.clone() {
                     // What a smaller cell found is in the first one's starts.
                     let smaller = cell.copies() < self.models[0].cell.copies();
-                    if !smaller && sought(solved[to].answer.status) && !cancel.load(Ordering::Relaxed) {
+                    if !smaller && sought(&solved[to].answer) && !cancel.load(Ordering::Relaxed) {
                         self.tried_again(&mut solved[to], cell, start, cancel);
                     }
                 }

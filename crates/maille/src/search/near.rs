@@ -10,6 +10,7 @@ use crate::{
     answer::Answer,
     lattice::{Across, Direction},
     model::of_cell,
+    record::Status,
     state::State,
     topology::links_kept,
 };
@@ -17,10 +18,16 @@ use std::sync::atomic::AtomicBool;
 
 impl ExactMethod<'_> {
     /// One limit with width and shear held, searched from the state of `near` first, the same limit of another design, and then from starts of
-    /// its own. A state whose rings are not linked as this design's is left out.
+    /// its own. Where that state is not linked as this design is, found as usual.
     pub fn limit_near(&self, direction: Direction, l2: f64, near: &Answer, cancel: &AtomicBool) -> Answer {
         let at = Stretch { direction, l2, across: Across::HELD, sign: 1.0 };
-        let (answer, _) = self.limit(&at, &self.start_near(&at, near), cancel);
+        let starts = self.start_near(&at, near);
+        if starts.is_empty() {
+            let mut answer = self.without_state(Status::Interrupted);
+            self.limits(direction, &[l2], cancel, &|_| (), &mut |_, found, _| answer = found);
+            return answer;
+        }
+        let (answer, _) = self.limit(&at, &starts, cancel);
         self.without_one_trend(answer)
     }
 

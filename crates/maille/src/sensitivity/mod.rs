@@ -136,7 +136,8 @@ impl Sensitivity {
         out
     }
 
-    /// The derivative along a change of the design, with the forces and the state of the answer.
+    /// The derivative along a change of the design, with the forces and the state of the answer: at a kink one choice of many, see
+    /// [`Self::one_sided`].
     ///
     /// # Panics
     /// For a change of a design with another number of rings.
@@ -214,8 +215,8 @@ impl Sensitivity {
         out
     }
 
-    /// Whether the forces that balance are the only ones. Else some numbers of the design may have different derivatives to
-    /// both sides: see [`Self::one_sided`].
+    /// Whether the forces that balance are the only ones. Else, and where another chain is taut without force, some numbers of the design may
+    /// have different derivatives to both sides: see [`Self::one_sided`].
     pub fn forces_are_unique(&self) -> bool {
         self.multipliers.unique()
     }
