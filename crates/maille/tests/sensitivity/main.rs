@@ -59,6 +59,22 @@ fn both_sides_of_a_kink() {
     assert!((backward - slope).abs() < 1e-8 && forward.abs() < 1e-8, "{both:?}, expected {slope} and 0");
 }
 
+/// Along 33° two chains of 1.3 are taut at once, and the state that is found has forces in one of them alone: longer rings of either chain do
+/// nothing, shorter ones cost.
+#[test]
+fn a_taut_chain_without_force_bounds_the_other_side() {
+    let (design, question) = (builtin("1.3"), stretch(33.0, 0.0));
+    let (sheet, answer) = solved(&design, &question);
+    let found = Sensitivity::of(&sheet.model_of(&answer), &question, &answer).unwrap();
+    for ring in [1, 2] {
+        let mut longer = DesignVector::zeros(rings(&design));
+        longer.rings[ring].major_radius = 1.0;
+        let both = found.one_sided(&longer);
+        let [backward, forward] = [both.backward, both.forward].map(|slope| slope.finite().unwrap());
+        assert!(forward.abs() < 1e-6 && (backward - 0.927).abs() < 1e-3, "ring {ring}: {both:?}");
+    }
+}
+
 /// A state of the limit and its images under symmetries of the design carry other forces: a change that breaks the symmetry chooses
 /// the best of them. So both sides are the same whichever of them was found, and the value rises to both sides.
 #[test]
