@@ -145,7 +145,11 @@ impl<T: Target> Multistart<'_, T> {
             // States without a certificate are no reason to stop.
             let chance = if result.lacks_certificate() { 1.0 } else { result.better_chance() };
             let left = rule.left(result.starts, chance, began.elapsed().as_secs_f64());
-            let own = (batch.min(left as usize)).saturating_sub(starts.len());
+            let agreed = starts.is_empty() && result.times_of_best() > 1;
+            let own = match rule.trusts_given && (agreed || !starts.is_empty()) {
+                true => 0,
+                false => batch.min(left as usize).saturating_sub(starts.len()),
+            };
             starts.extend((drawn..drawn + own).map(|k| self.target.explored(model, self.seed, k)));
             drawn += own;
             if starts.is_empty() {
@@ -296,6 +300,11 @@ impl SearchResult {
     pub(super) fn with_chance(self, upper_bound: f64) -> Self {
         let chance = (!self.attains(upper_bound)).then(|| self.better_chance());
         SearchResult { chance, ..self }
+    }
+
+    /// How many starts led to the best certified value.
+    fn times_of_best(&self) -> u64 {
+        self.distinct.iter().max_by(|a, b| a.0.total_cmp(&b.0)).map_or(0, |(_, times)| *times)
     }
 
     /// Whether states were found, but none with a certificate.

@@ -24,6 +24,8 @@ pub(super) struct StopRule {
     pub chance: f64,
     /// After this time no start begins.
     pub seconds: f64,
+    /// No start is drawn where two that are given lead to the best.
+    pub trusts_given: bool,
 }
 
 impl StopRule {
@@ -32,14 +34,19 @@ impl StopRule {
         Self::exactly(0)
     }
 
+    /// The same, but with no drawn starts where two that are given lead to the best.
+    pub(super) fn trusting_given(self) -> Self {
+        StopRule { trusts_given: true, ..self }
+    }
+
     /// This many starts, those that are given counted; all of these are solved.
     pub(super) fn exactly(starts: u64) -> Self {
-        StopRule { least: starts, most: starts, chance: 0.0, seconds: f64::INFINITY }
+        StopRule { least: starts, most: starts, chance: 0.0, seconds: f64::INFINITY, trusts_given: false }
     }
 
     /// That of an effort, or of a number of starts.
     pub(super) fn of(effort: Effort, starts: Option<usize>) -> Self {
-        let rule = |least, most, chance| StopRule { least, most, chance, seconds: f64::INFINITY };
+        let rule = |least, most, chance| StopRule { least, most, chance, ..Self::given_only() };
         match (starts, effort) {
             (Some(starts), _) => Self::exactly(starts as u64),
             (None, Effort::Low) => rule(4, 8, 0.1),

@@ -27,6 +27,7 @@ use crate::{
     state::State,
 };
 use nalgebra::Matrix2;
+use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// How the search goes.
@@ -49,6 +50,19 @@ impl Default for StrainOptions {
     fn default() -> Self {
         StrainOptions { effort: Effort::Normal, starts: None, seed: 1, sense: Sense::Largest, follow_waves: false }
     }
+}
+
+/// Which starts a query gets beside the states of its neighbours.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum OtherStarts {
+    /// The straight way, and drawn ones as the effort says.
+    #[default]
+    All,
+    /// The straight way; drawn ones where no two of the others lead to the best.
+    WhereNeighboursDiffer,
+    /// None.
+    None,
 }
 
 /// Answers queries on one sheet.
@@ -125,6 +139,17 @@ impl<'a> StrainMethod<'a> {
     /// The largest p₀, as the value of the strain itself: −p₀ of a least one. `from` are states of neighbouring queries, each with
     /// its cell. An unreachable strain is proved to be so by the chains; one that is not reached is not.
     pub fn solve(&self, query: &StrainQuery, from: &[(Cell, State)], cancel: &AtomicBool) -> Answer {
+        self.solve_beside(query, from, OtherStarts::All, cancel)
+    }
+
+    /// The same with other starts beside the states.
+    pub(crate) fn solve_beside(
+        &self,
+        query: &StrainQuery,
+        from: &[(Cell, State)],
+        others: OtherStarts,
+        cancel: &AtomicBool,
+    ) -> Answer {
         let (model, sign) = (&self.models[0], self.options.sense.sign());
         let none = |status: Status| Answer { n_starts: Some(0), n_distinct: Some(0), ..Answer::new(model, status) };
         let bound = match self.bound(query) {
@@ -136,15 +161,20 @@ impl<'a> StrainMethod<'a> {
         // A least strain is never called global: larger cells can fold further.
         let upper_bound = bound.filter(|_| !least).unwrap_or(f64::INFINITY);
         let StrainOptions { effort, starts, seed, follow_waves, .. } = self.options;
-        let stop = StopRule::of(effort, starts);
+        let stop = match others {
+            OtherStarts::All => StopRule::of(effort, starts),
+            OtherStarts::WhereNeighboursDiffer => StopRule::of(effort, starts).trusting_given(),
+            OtherStarts::None => StopRule::given_only(),
+        };
         let search = Multistart { target: query, upper_bound, seed, cancel };
-        let straight = perturbed(model, &model.start, STRAIGHT, &mut rng(seed, Use::Start, u64::from(u32::MAX)));
+        let straight = (others != OtherStarts::None)
+            .then(|| perturbed(model, &model.start, STRAIGHT, &mut rng(seed, Use::Start, u64::from(u32::MAX))));
         let neighbours: CellStarts = from.iter().map(|(cell, state)| (*cell, Start::written(state.clone()))).collect();
         let of =
             |cell: Cell| neighbours.iter().filter(move |(other, _)| *other == cell).map(|(_, start)| start.clone());
         let own = self.own.as_ref().map(|own| search.own_cell(own, of(own.cell).collect(), stop, model));
         let OwnCell { starts: repeated, runs, iterations, .. } = own.unwrap_or_default();
-        let given = std::iter::once(Start::written(straight)).chain(repeated).chain(of(model.cell));
+        let given = straight.map(Start::written).into_iter().chain(repeated).chain(of(model.cell));
         let mut first = search.run(model, given.collect(), stop);
         (first.runs, first.iterations) = (first.runs + runs, first.iterations + iterations);
         let exit = first.first;

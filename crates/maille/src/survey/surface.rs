@@ -5,8 +5,10 @@
 //! it is stopped is the first exit. The farthest certified state of all starts, its neighbours' states among them, is the
 //! vertex. Where the two differ the ray has left and entered the set again, or the straight way is blocked.
 //!
-//! A ray starts from the states of the two rays that it was put between, and may end in a worse fold than a neighbour found. So
-//! when no edge is left to divide, states are handed on along the edges at which the surface bends more than it should, until no ray gains by it.
+//! The first rays are searched as the effort says. A later one starts from the states of the two rays that it was put between, and
+//! from drawn ones only where no two starts lead to the best. A ray may still end in a worse fold than a neighbour found. So
+//! after each pass states are handed on along the edges at which the surface bends more than it should, until no ray gains by it;
+//! what bends then is divided.
 
 use super::{
     icosphere::{Bent, Sphere},
@@ -17,7 +19,7 @@ use crate::{
     model::Model,
     question::{Effort, Sense, StrainQuery},
     record::Status,
-    search::strain::{StrainMethod, StrainOptions},
+    search::strain::{OtherStarts, StrainMethod, StrainOptions},
     state::{Pose, State},
 };
 use maille_geometry::Vec3;
@@ -143,6 +145,8 @@ pub struct Ray {
     pub direction: [f64; 3],
     /// Vertices whose states are starts.
     pub from: Vec<BoundaryVertex>,
+    /// Which other starts it gets.
+    pub others: OtherStarts,
 }
 
 /// Solves rays of which none needs another: gets them, and whether they are new, and gives their ends in order, `None` after a stop.
@@ -166,7 +170,7 @@ impl<'a> RaySolver<'a> {
         let from: Vec<(Cell, State)> = ray.from.iter().map(BoundaryVertex::state).collect();
         let [xx, yy, xy] = ray.direction;
         let query = StrainQuery { held: Matrix2::zeros(), free: vec![Matrix2::new(xx, xy, xy, yy)] };
-        let answer = self.0.solve(&query, &from, cancel);
+        let answer = self.0.solve_beside(&query, &from, ray.others, cancel);
         if cancel.load(Ordering::Relaxed) || answer.status == Status::Interrupted {
             return None;
         }
@@ -228,6 +232,7 @@ pub fn boundary_by(
     let known: BTreeMap<[u64; 3], &BoundaryVertex> = known.iter().map(|v| (bits(v.direction), v)).collect();
     let mut sphere = Sphere::new(FIRST);
     let mut vertices: Vec<BoundaryVertex> = Vec::new();
+    let mut tried = BTreeSet::new();
     loop {
         let open = vertices.len()..sphere.directions.len();
         let count = open.len();
@@ -235,7 +240,8 @@ pub fn boundary_by(
         let rays = open.clone().filter(|k| known(k).is_none()).map(|k| {
             let parents = sphere.parents[k].into_iter().filter_map(|parent| vertices.get(parent));
             let from = parents.filter(|p| p.distance.is_some()).cloned().collect();
-            Ray { direction: sphere.directions[k].into(), from }
+            let others = if vertices.is_empty() { OtherStarts::All } else { OtherStarts::WhereNeighboursDiffer };
+            Ray { direction: sphere.directions[k].into(), from, others }
         });
         let rays: Vec<Ray> = rays.collect();
         planned(rays.len());
@@ -244,18 +250,14 @@ pub fn boundary_by(
         let ends: Vec<Option<BoundaryVertex>> = open.map(&mut end).collect();
         vertices.extend(ends.into_iter().map_while(|vertex| vertex));
         let complete = vertices.len() == sphere.directions.len();
-        let wide = |vertices: &[BoundaryVertex]| -> Vec<Bent> {
-            let bends = if complete { sphere.bent(&points(vertices), options.tolerance) } else { Vec::new() };
-            bends.into_iter().filter(|bent| bent.wide).collect()
-        };
-        let room = options.most.saturating_sub(vertices.len());
-        let mut divided = wide(&vertices);
-        if complete && (divided.is_empty() || room == 0) {
-            hand_on(&sphere, options.tolerance, &mut vertices, solve);
-            divided = wide(&vertices);
+        if complete {
+            hand_on(&sphere, options.tolerance, &mut vertices, &mut tried, solve);
         }
         // Stopped while states were handed on: the next run does that again.
         let complete = complete && !cancel.load(Ordering::Relaxed);
+        let bends = if complete { sphere.bent(&points(&vertices), options.tolerance) } else { Vec::new() };
+        let divided: Vec<Bent> = bends.into_iter().filter(|bent| bent.wide).collect();
+        let room = options.most.saturating_sub(vertices.len());
         if !complete || divided.is_empty() || room == 0 || count == 0 {
             let bent = if complete { sphere.bent(&points(&vertices), 0.0) } else { Vec::new() };
             let arch = bent.first().map_or(if complete { 0.0 } else { f64::NAN }, |worst| worst.arch);
@@ -277,17 +279,23 @@ const ROUNDS: usize = 40;
 /// A ray has gained if it goes further by more than this.
 const GAIN: f64 = 1e-7;
 
-/// Rays at bent edges, solved once more from the state at the other end.
-fn hand_on(sphere: &Sphere, tolerance: f64, vertices: &mut [BoundaryVertex], solve: SolveRays<'_>) {
-    // A state is tried once on a ray.
-    let mut tried: BTreeSet<(usize, usize, u64)> = BTreeSet::new();
+/// Rays at bent edges, solved once more from the state at the other end. `tried` has the ray, that end and its distance: a state is
+/// tried once on a ray.
+fn hand_on(
+    sphere: &Sphere,
+    tolerance: f64,
+    vertices: &mut [BoundaryVertex],
+    tried: &mut BTreeSet<(usize, usize, u64)>,
+    solve: SolveRays<'_>,
+) {
     for _ in 0..ROUNDS {
         let mut tasks: BTreeMap<usize, Ray> = BTreeMap::new();
         for Bent { edge: [a, b], .. } in sphere.bent(&points(vertices), tolerance) {
             for (k, other) in [(a, b), (b, a)] {
                 let Some(distance) = vertices[other].distance else { continue };
                 if tried.insert((k, other, distance.to_bits())) {
-                    let ray = || Ray { direction: sphere.directions[k].into(), from: Vec::new() };
+                    let others = OtherStarts::None;
+                    let ray = || Ray { direction: sphere.directions[k].into(), from: Vec::new(), others };
                     tasks.entry(k).or_insert_with(ray).from.push(vertices[other].clone());
                 }
             }
