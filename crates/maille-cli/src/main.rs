@@ -51,6 +51,7 @@ mod table;
 mod units;
 mod verify;
 mod verify_proof;
+mod verify_roll;
 mod verify_surface;
 mod view;
 mod watch;

@@ -12,7 +12,7 @@ use maille_io::{
     Quantity,
     plot::{
         Cost, Layout, NamedSimulation, OfStep, PolarPlot, Tolerance, cost_svg, difference_svg, force_svg,
-        parameter_words, poisson_svg, polar_svg, radius_svg, run_svg,
+        parameter_words, poisson_svg, polar_svg, radius_svg, roll_svg, run_svg,
     },
     record::{NamedRecord, Record, Reference, ReferenceCell, SIMULATION, SensitivityRow, open_simulation},
 };
@@ -39,6 +39,7 @@ Examples:
   maille plot maille-out/1.1 --kind times --where 'direction<=90'
   maille plot 1.1-fit                                  of `maille fit`: before, after, and what was wanted
   maille plot 1.1 3.1 --reference largest-cell --where l2=0    each from its largest cell: comparable, whatever their files start from
+  maille plot european-4-in-1-roll                     of `maille roll`: how tightly it rolls, both ways
   maille plot 1.1-simulate --kind force                of `maille simulate 1.1 --fix left --pull right=8,0,0 --steps 40`
 
 Kinds: polar shows limits against the direction of the pull, 0\u{b0} right, counter-clockwise; difference the largest \
@@ -46,7 +47,7 @@ less the smallest limit of all directions, against l2; radius \
 limits against the minor radius, a curve for each design, direction and l2; poisson the ratio of width to length where the width was free; steps and times the solver's iterations and the wall time of \
 each limit; force how hard a finite sheet of `maille simulate` is pulled, against its stretch. --where takes the conditions of `maille table`.")]
 pub struct Args {
-    /// Folders of records, for force those of simulations, or the folder of one surface; NAME stands for maille-out/NAME
+    /// Folders of records, for force those of simulations, or the folder of one surface or roll; NAME stands for maille-out/NAME
     #[arg(required = true, value_name = "RECORD")]
     records: Vec<PathBuf>,
     /// What is shown
@@ -207,6 +208,13 @@ pub fn run(args: &Args) -> Result<()> {
         alone(args, "the surface of all strains has one kind of plot, of all its rays")?;
         let svg = surface_svg(&record, &surface, layout);
         return args.figure.write(&svg, &format!("maille-out/boundary-{}", file_name(&record.design.name)));
+    }
+    if let [path] = &args.records[..]
+        && let Some((record, rolls)) = records::rolls(path)?
+    {
+        alone(args, "rolls have one kind of plot, of all directions and both sides")?;
+        let svg = roll_svg(&record.design, &rolls, layout);
+        return args.figure.write(&svg, &format!("maille-out/roll-{}", file_name(&record.design.name)));
     }
     if let [path] = &args.records[..]
         && let Some((design, svg)) = fit_record::svg_of(&records::folder(path), layout)?

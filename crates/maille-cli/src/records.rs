@@ -5,6 +5,7 @@ use maille::survey::surface::Boundary;
 use maille_io::{
     boundary::{SURFACE, SurfaceRecord, open_surface},
     record::{NamedRecord, Record},
+    roll::{ROLL, ROLLS, Roll, RollRecordFile, open_rolls},
 };
 use miette::Result;
 use std::path::{Path, PathBuf};
@@ -32,6 +33,21 @@ pub fn surface(named: &Path) -> Result<Option<(SurfaceRecord, Boundary)>> {
             let problem = format!("{} holds a surface without {SURFACE}", folder.display());
             let help = "its run was killed, or is older than this file: the same `maille boundary` command writes it";
             Err(wrong(exit::RECORD, problem, help))
+        }
+        false => Ok(None),
+    }
+}
+
+/// The rolls that the folder holds, if it holds any.
+pub fn rolls(named: &Path) -> Result<Option<(RollRecordFile, Vec<Roll>)>> {
+    let folder = folder(named);
+    if folder.join(ROLL).is_file() {
+        return Ok(Some(open_rolls(&folder)?));
+    }
+    match folder.join(ROLLS).is_file() {
+        true => {
+            let problem = format!("{} holds rolls without {ROLL}", folder.display());
+            Err(wrong(exit::RECORD, problem, "its run was killed: the same `maille roll` command writes it"))
         }
         false => Ok(None),
     }

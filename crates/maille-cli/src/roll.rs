@@ -1,31 +1,37 @@
-//! `maille roll`: how tightly a sheet can be rolled along each direction, both ways, answered on the screen.
+//! `maille roll`: how tightly a sheet can be rolled along each direction, both ways, as a record.
 
 use crate::{
-    certificate,
     exit::{self, refused},
-    input::DesignArgs,
+    input::{DesignArgs, Input, file_name},
     interrupt,
-    map::pool,
+    map::{RunArgs, pool},
     numbers::{Numbers, parse, read},
     output::{self, counted, say},
-    progress::Spinner,
+    progress::Progress,
 };
-use maille::{
-    Across,
-    question::{Effort, Question},
-    record::Status,
-    survey::CellChoice,
+use maille::{Across, Design, question::Effort, record::Status, survey::CellChoice};
+use maille_io::{
+    plot::{Layout, roll_svg, svg_to_png},
+    roll::{Axis, ROLL, Roll, RollFolder, RollQuestion, in_order, rolls_json},
 };
-use maille_io::answer::RollAnswer;
-use miette::Result;
-use std::{process::ExitCode, sync::atomic::Ordering, time::Instant};
+use miette::{IntoDiagnostic, Report, Result, WrapErr};
+use std::{
+    fs,
+    io::ErrorKind,
+    path::{Path, PathBuf},
+    process::ExitCode,
+    sync::atomic::{AtomicBool, Ordering},
+    time::Instant,
+};
 
 /// How tightly a sheet can be rolled
 ///
 /// For each direction and both ways: the largest curvature of the sheet along it before its rings lock, with the axis below the sheet and above it.
 /// Neighbouring cells are images under turns about one axis, so the state is exact and certified as a limit is. The radius is that of the
 /// neutral surface, at the mean distance of the elements from the axis; the stretch along it is left to the sheet. No bound is known: every answer
-/// is the best of the starts that were searched. That no other state goes further is not proved.
+/// is the best of the starts that were searched. That no other state goes further is not proved. Writes a folder with rolls.csv (a row for each roll),
+/// rolls.jsonl (the same with every state, from which an interrupted run continues), roll.json (what it is of), roll.svg and roll.png
+/// (R by the radius, along each direction). The same command continues it, with more directions, too.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -33,8 +39,10 @@ Examples:
   maille roll shirt.toml --directions 0,45,90 --free width,shear
   maille roll 3.1 --directions 90 --axis below --effort thorough
   maille roll european-4-in-1 --json | jq '.rolls[] | [.direction_deg, .axis, .neutral_radius]'
+  maille plot european-4-in-1-roll --style paper -o fig.pdf   its figure, for print
+  maille verify european-4-in-1-roll   its states derived anew
 
-Exit codes: 0 every roll is certified, 5 some are not, 130 interrupted.")]
+Exit codes: 0 every roll is certified, 5 some are not (0 with --allow-incomplete), 130 interrupted.")]
 pub struct Args {
     #[command(flatten)]
     design: DesignArgs,
@@ -42,8 +50,8 @@ pub struct Args {
     #[arg(long, default_value = "0:150:30", value_parser = parse, allow_hyphen_values = true)]
     directions: Numbers,
     /// Where the axis is
-    #[arg(long, value_enum, default_value_t = Axis::Both)]
-    axis: Axis,
+    #[arg(long, value_enum, default_value_t = Side::Both)]
+    axis: Side,
     /// What is left to the sheet: its width along the axis, its shear, or both, as width,shear; else they are held as written
     #[arg(long, value_enum, value_name = "STRAIN", value_delimiter = ',')]
     free: Vec<Free>,
@@ -56,19 +64,21 @@ pub struct Args {
     /// Seed of the random starts
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Threads [default: all cores]; results do not depend on it
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
-    threads: Option<u16>,
+    /// Folder that is written [default: maille-out/NAME-roll]
+    #[arg(long)]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    run: RunArgs,
     /// Print one JSON document; docs/json.md has its keys
     #[arg(long)]
     json: bool,
-    /// No progress
+    /// No progress and no summary
     #[arg(long, short)]
     quiet: bool,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum Axis {
+enum Side {
     /// Below the sheet and above it
     Both,
     /// Below: the sheet bends downwards
@@ -84,72 +94,106 @@ enum Free {
 }
 
 impl Args {
-    fn questions(&self) -> Vec<Question> {
+    fn question(&self) -> RollQuestion {
         let free = |what: Free| self.free.contains(&what);
-        let across = Across { lateral_free: free(Free::Width), shear_free: free(Free::Shear) };
-        let signs: &[f64] = match self.axis {
-            Axis::Both => &[1.0, -1.0],
-            Axis::Below => &[1.0],
-            Axis::Above => &[-1.0],
+        let axes = match self.axis {
+            Side::Both => Axis::BOTH.to_vec(),
+            Side::Below => vec![Axis::Below],
+            Side::Above => vec![Axis::Above],
         };
-        let all =
-            self.directions.0.iter().flat_map(|direction_deg| signs.iter().map(move |sign| (*direction_deg, *sign)));
-        let of = |(direction_deg, sign)| Question::curvature_along(direction_deg, sign).with_free(across);
-        all.map(of).map(|question| Question { effort: self.effort, seed: self.seed, ..question }).collect()
-    }
-
-    fn held(&self) -> &'static str {
-        match [Free::Width, Free::Shear].map(|what| self.free.contains(&what)) {
-            [false, false] => "width and shear held",
-            [true, false] => "width free, shear held",
-            [false, true] => "width held, shear free",
-            [true, true] => "width and shear free",
+        RollQuestion {
+            directions_deg: self.directions.0.clone(),
+            axes,
+            free: Across { lateral_free: free(Free::Width), shear_free: free(Free::Shear) },
+            cells: self.cell.clone(),
+            effort: self.effort,
+            seed: self.seed,
         }
     }
 }
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    let questions = args.questions();
-    questions.iter().try_for_each(|question| question.check().map_err(|e| refused(&e)))?;
+    let question = args.question();
+    question.check().map_err(|e| refused(&e))?;
     let input = args.design.read()?;
     let sheet = input.sheet(args.cell.clone())?;
-    let (cancel, pool) = (interrupt::flag(args.quiet)?, pool(args.threads)?);
+    let usual = || PathBuf::from("maille-out").join(format!("{}-roll", file_name(&input.design.name)));
+    let out = args.out.clone().unwrap_or_else(usual);
+    output::folder(&out, "the rolls are a folder")?;
+    let (mut folder, mut rolls) = RollFolder::open(&out, &input.design, &question, args.run.overwrite)?;
+    // Until all files are of this run, there is nothing to read.
+    match fs::remove_file(out.join(ROLL)) {
+        Err(e) if e.kind() != ErrorKind::NotFound => {
+            return Err(Report::msg(e).wrap_err(format!("cannot replace {}", out.join(ROLL).display())));
+        }
+        _ => {}
+    }
+    let asked = question.rolls();
+    let is_known = |rolls: &[Roll], &(direction_deg, axis): &(f64, Axis)| {
+        rolls.iter().any(|roll| roll.direction_deg == direction_deg && roll.axis == axis)
+    };
+    let missing: Vec<(f64, Axis)> = asked.iter().copied().filter(|roll| !is_known(&rolls, roll)).collect();
+    let known = asked.len() - missing.len();
+    let (cancel, pool) = (interrupt::flag(args.quiet)?, pool(args.run.threads)?);
     let begun = Instant::now();
-    let progress = Spinner::new(args.quiet);
-    let mut answers = Vec::with_capacity(questions.len());
-    for question in &questions {
-        progress.says(|| format!("{} of {} rolls", answers.len(), questions.len()));
-        let found = pool.install(|| sheet.answer_until(question, &cancel)).map_err(|e| refused(&e))?;
-        answers.push(found);
-        if cancel.load(Ordering::Relaxed) {
+    let progress = Progress::new("rolls", known, asked.len(), args.quiet);
+    for roll in missing {
+        let (one, begun) = (question.question(roll), Instant::now());
+        let found = pool.install(|| sheet.answer_until(&one, &cancel)).map_err(|e| refused(&e))?;
+        if stopped(&cancel) {
             break;
         }
+        let (model, wall_s) = (sheet.model_of(&found), begun.elapsed().as_secs_f64());
+        if let Some(roll) = Roll::new(&input.design, &one, &model, &found, wall_s) {
+            folder.keep(&roll)?;
+            rolls.push(roll);
+        }
+        progress.step();
     }
     progress.finish();
-    let models: Vec<_> = answers.iter().map(|found| sheet.model_of(found)).collect();
-    let rolls = questions.iter().zip(&models).zip(&answers);
-    let rolls: Vec<RollAnswer<'_>> =
-        rolls.filter_map(|((question, model), found)| RollAnswer::new(&input.design, question, model, found)).collect();
+    in_order(&mut rolls);
+    write(&out, &folder, &input, &question, &rolls)?;
     let wall_s = begun.elapsed().as_secs_f64();
+    let interrupted = stopped(&cancel);
+    let shown: Vec<Roll> = rolls.into_iter().filter(|roll| asked.contains(&(roll.direction_deg, roll.axis))).collect();
     if args.json {
-        output::print_json(&output::timed(RollAnswer::document(&input.design, &rolls), wall_s))?;
-    } else {
-        print(args, &input.design, &rolls, wall_s);
+        output::print_json(&output::timed(rolls_json(&input.design, &shown), wall_s))?;
+    } else if !args.quiet {
+        print(&question, &input.design, &shown, known, wall_s);
+        say!("look at {}", out.join("roll.png").display());
     }
-    let certified = |roll: &RollAnswer<'_>| roll.found.is_limit();
-    let stopped = |roll: &RollAnswer<'_>| roll.found.status == Status::Interrupted;
-    let interrupted = rolls.len() < questions.len() || rolls.iter().any(stopped);
-    Ok(ExitCode::from(match () {
-        () if interrupted => exit::INTERRUPTED,
-        () if rolls.iter().all(certified) => exit::DONE,
-        () => exit::INCOMPLETE,
-    }))
+    let incomplete = !shown.iter().all(Roll::is_certified);
+    Ok(exit::ended(interrupted, args.run.code(incomplete), args.quiet))
 }
 
-fn print(args: &Args, design: &maille::Design, rolls: &[RollAnswer<'_>], wall_s: f64) {
+fn stopped(cancel: &AtomicBool) -> bool {
+    cancel.load(Ordering::Relaxed)
+}
+
+/// Writes the table, the figure, and what the rolls are of.
+fn write(out: &Path, folder: &RollFolder<'_>, input: &Input, question: &RollQuestion, rolls: &[Roll]) -> Result<()> {
+    let svg = roll_svg(&input.design, rolls, Layout::Beside);
+    let png = svg_to_png(&svg, 2.0).into_diagnostic().wrap_err("cannot draw the figure")?;
+    output::write(&out.join("roll.svg"), svg.as_bytes())?;
+    output::write(&out.join("roll.png"), &png)?;
+    Ok(folder.finish(&input.design, question, rolls)?)
+}
+
+/// What of the sheet is held.
+fn held(free: Across) -> &'static str {
+    match (free.lateral_free, free.shear_free) {
+        (false, false) => "width and shear held",
+        (true, false) => "width free, shear held",
+        (false, true) => "width held, shear free",
+        (true, true) => "width and shear free",
+    }
+}
+
+fn print(question: &RollQuestion, design: &Design, rolls: &[Roll], known: usize, wall_s: f64) {
     let unit = design.unit.as_deref().map_or("radius".to_owned(), |unit| format!("radius, {unit}"));
-    say!("{}: the tightest rolls, {}; {wall_s:.1} s", design.name, args.held());
+    let before = if known > 0 { format!(", {known} of them there before") } else { String::new() };
+    say!("{}: the tightest rolls, {}{before}; {wall_s:.1} s", design.name, held(question.free));
     say!(
         "  {:>10}  {:<5} {:>12} {:>12} {:>9}  {:<13} cell",
         "direction",
@@ -160,34 +204,30 @@ fn print(args: &Args, design: &maille::Design, rolls: &[RollAnswer<'_>], wall_s:
         "status"
     );
     for roll in rolls {
-        let number = |x: Option<f64>, digits: usize| x.map_or("-".to_owned(), |x| format!("{x:.digits$}"));
-        let neutral = roll.neutral();
-        let (radius, stretch) = (neutral.map(|n| n.radius), neutral.map(|n| n.stretch));
+        let number = |x: Option<f64>| x.map_or("-".to_owned(), |x| format!("{x:.4}"));
         say!(
             "  {:>9}\u{b0}  {:<5} {:>12} {:>12} {:>9}  {:<13} {}",
             roll.direction_deg,
-            roll.axis(),
-            number(radius.map(|r| r * design.reference_radius), 4),
-            number(radius, 4),
-            number(stretch, 4),
-            roll.found.status.name(),
-            roll.found.cell
+            roll.axis.name(),
+            number(roll.neutral_radius),
+            number(roll.neutral_radius.map(|radius| radius / design.reference_radius)),
+            number(roll.neutral_stretch),
+            roll.status.name(),
+            roll.cell
         );
-        if let Some(note) = &roll.found.note {
+        if let Some(note) = &roll.note {
             say!("              {note}");
         }
     }
     say!(
         "radius: of the neutral surface, at the mean distance of the elements from the axis; stretch: of lines along it"
     );
-    let local = rolls.iter().filter(|roll| roll.found.status == Status::Local).count();
+    let local = rolls.iter().filter(|roll| roll.status == Status::Local).count();
     if local > 0 {
         say!("{} certified; that no other state bends further is not proved", counted(local, "roll"));
     }
-    if let [RollAnswer { found, .. }] = rolls
-        && let Some(c) = &found.certificate
-    {
-        say!("  {}", certificate::search(found));
-        say!("  {}", certificate::line(c));
+    let chances = rolls.iter().filter_map(|roll| roll.better_chance);
+    if let Some(most) = chances.max_by(f64::total_cmp) {
+        say!("estimated chance that another start of the same kinds bends further: {:.1} % at most", 100.0 * most);
     }
 }

@@ -4,10 +4,10 @@ use crate::{
     exit::{self, wrong},
     output, records,
 };
-use maille::survey::surface::Boundary;
 use maille_io::{
     boundary::{boundary_csv, boundary_json},
     record::NamedRecord,
+    roll::{rolls_csv, rolls_json},
     table::{Condition, Extent, Field, SortKey, Table, TableError},
 };
 use miette::{IntoDiagnostic, Result, WrapErr};
@@ -35,7 +35,7 @@ Conditions: = != < <= > >=, separated by commas; all must hold. a|b means either
 comma stands in double quotes: 'cell=\"1,0;-1,2\"'. Numbers are equal if nine digits are. direction is short for \
 direction_deg, r for minor_radius; record is the folder that a row comes from.")]
 pub struct Args {
-    /// Folders of records, of a sweep for all its records, or of one surface; NAME stands for maille-out/NAME
+    /// Folders of records, of a sweep for all its records, or of one surface or roll; NAME stands for maille-out/NAME
     #[arg(required = true, value_name = "RECORD")]
     records: Vec<PathBuf>,
     /// Only rows that meet these conditions; may be given several times
@@ -117,7 +117,20 @@ pub fn run(args: &Args) -> Result<()> {
     }
     file.into_iter().try_for_each(|file| args.replace.check(file))?;
     let bytes = match &args.records[..] {
-        [path] => records::surface(path)?.map(|(_, surface)| of_surface(args, &surface, format)).transpose()?,
+        [path] => match (records::surface(path)?, records::rolls(path)?) {
+            (Some((_, surface)), _) => {
+                let json = |rows| boundary_json(&surface, rows);
+                Some(whole(args, "surface", &boundary_csv(&surface), &json, format)?)
+            }
+            (_, Some((record, rolls))) => {
+                let json = |rows: usize| {
+                    let rolls = &rolls[..rows.min(rolls.len())];
+                    format!("{:#}\n", rolls_json(&record.design, rolls))
+                };
+                Some(whole(args, "roll", &rolls_csv(&rolls), &json, format)?)
+            }
+            (None, None) => None,
+        },
         _ => None,
     };
     let bytes = match bytes {
@@ -167,17 +180,13 @@ fn written(args: &Args, records: &[NamedRecord], format: Format) -> Result<Vec<u
     })
 }
 
-/// The vertices of a surface: the columns of its `boundary.csv`, rounded in text.
-fn of_surface(args: &Args, surface: &Boundary, format: Format) -> Result<Vec<u8>> {
+/// The table of a `surface` or of a `roll`: the columns of its CSV file, rounded in text.
+fn whole(args: &Args, what: &str, csv: &str, json: &dyn Fn(usize) -> String, format: Format) -> Result<Vec<u8>> {
     if !args.conditions.is_empty() || args.sort.is_some() || args.columns.is_some() || format == Format::Parquet {
         let help = "--format csv or json has all of its columns and rows, for other programs to choose from";
-        return Err(wrong(
-            exit::USAGE,
-            "the table of a surface is not chosen from, sorted or written as Parquet",
-            help,
-        ));
+        let problem = format!("the table of a {what} is not chosen from, sorted or written as Parquet");
+        return Err(wrong(exit::USAGE, problem, help));
     }
-    let csv = boundary_csv(surface);
     let rows = args.rows.unwrap_or(usize::MAX);
     let parsed: Vec<csv::StringRecord> = csv::ReaderBuilder::new()
         .has_headers(false)
@@ -189,7 +198,7 @@ fn of_surface(args: &Args, surface: &Boundary, format: Format) -> Result<Vec<u8>
     let kept: Vec<Vec<&str>> = parsed.iter().map(|row| row.iter().collect()).collect();
     let text = match (format, &kept[..]) {
         (Format::Text, kept) => aligned(kept),
-        (Format::Json, _) => boundary_json(surface, rows),
+        (Format::Json, _) => json(rows),
         (_, kept) => csv.lines().take(kept.len()).map(|line| format!("{line}\n")).collect(),
     };
     Ok(text.into_bytes())

@@ -9,6 +9,7 @@ use crate::{
     records::is_record,
     remedy::DAMAGED,
     verify_proof::{self, VerifiedProof},
+    verify_roll::{self, VerifiedRolls, is_roll},
     verify_surface::{self, VerifiedSurface, is_surface},
 };
 use maille_verify::{Finding, RowReport, Texts, Verdict, Verifier};
@@ -34,6 +35,7 @@ Examples:
   maille verify 1.1 --rows                a line for each row
   maille verify 1.1 --json
   maille verify 1.1-boundary              a surface of `maille boundary`: each vertex
+  maille verify european-4-in-1-roll      rolls of `maille roll`: each state
   maille verify maille-out/2-0deg.proof   a proof that `maille prove` wrote
 
 What a row claims is derived, or false, or open. Not judged: what the search did (n_starts, n_distinct, better_chance, iterations, runs, wall_s), and
@@ -41,7 +43,7 @@ that rings never crossed on the way. docs/reliability.md has the method.
 
 Exit codes: 0 all certified rows are proved, 4 something is false or unreadable, 5 something could not be proved.")]
 pub struct Args {
-    /// Folders of records or of surfaces, NAME stands for maille-out/NAME; or files of `maille prove`
+    /// Folders of records, of surfaces or of rolls, NAME stands for maille-out/NAME; or files of `maille prove`
     #[arg(required = true, value_name = "RECORD")]
     records: Vec<PathBuf>,
     /// A line for each row, not only for those that are not proved
@@ -76,11 +78,12 @@ const NAMED: usize = 20;
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let pool = map::pool(args.threads)?;
-    let (mut all, mut proofs, mut surfaces) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut all, mut proofs, mut surfaces, mut rolls) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for named in &args.records {
         match verify_proof::is_proof(named) {
             true => proofs.push(verify_proof::verified(named, &pool, args.quiet)?),
             false if is_surface(named) => surfaces.push(verify_surface::verified(named, &pool, args.quiet)?),
+            false if is_roll(named) => rolls.push(verify_roll::verified(named, &pool, args.quiet)?),
             false => {
                 for folder in records::of_sweep(records::folder(named)) {
                     all.push(verified(&folder, &pool, args.quiet)?);
@@ -89,14 +92,18 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         }
     }
     if args.json {
-        output::print_json(&serde_json::json!({ "records": all, "proofs": proofs, "surfaces": surfaces }))?;
+        output::print_json(
+            &serde_json::json!({ "records": all, "proofs": proofs, "surfaces": surfaces, "rolls": rolls }),
+        )?;
     } else {
         all.iter().for_each(|record| tell(record, args.rows));
         surfaces.iter().for_each(|surface| surface.tell(args.rows));
+        rolls.iter().for_each(|rolls| rolls.tell(args.rows));
         proofs.iter().for_each(VerifiedProof::tell);
     }
     let codes = || {
         let of_records = all.iter().map(Verified::code).chain(surfaces.iter().map(VerifiedSurface::code));
+        let of_records = of_records.chain(rolls.iter().map(VerifiedRolls::code));
         of_records.chain(proofs.iter().map(VerifiedProof::code))
     };
     let worst = codes().max().unwrap_or(exit::DONE);

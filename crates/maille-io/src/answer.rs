@@ -3,13 +3,12 @@
 use maille::{
     answer::{Answer, CellTrend},
     design::Design,
-    lattice::{Across, Direction},
+    lattice::Direction,
     model::Model,
-    question::{Goal, Question, Sense, Strain},
-    record::{RollRecord, Status, pose_records},
+    question::{Goal, Question, Strain},
+    record::{Status, pose_records},
     search::extreme::Extreme,
     solver::certificate::Certificate,
-    state::NeutralSurface,
 };
 use maille_geometry::Vec3;
 use serde_json::{Map, Value, json};
@@ -103,76 +102,6 @@ impl<'a> StrainAnswer<'a> {
             "l1": self.stretch(),
             "a1": solved.then(|| length(self.model, found.state.a1)),
             "a2": solved.then(|| length(self.model, found.state.a2)),
-            "poses": solved.then(|| pose_records(self.model, &found.state)),
-            "certificate": found.certificate.as_ref().map(|c| certificate(c, self.model.unit)),
-            "links_ok": found.links_ok.filter(|_| solved),
-            "n_starts": found.n_starts,
-            "n_distinct": found.n_distinct,
-            "better_chance": found.better_chance,
-        })
-    }
-}
-
-/// A question on the curvature of a roll, and what came of it.
-pub struct RollAnswer<'a> {
-    design: &'a Design,
-    /// Direction that is rolled.
-    pub direction_deg: f64,
-    sense: Sense,
-    free: Across,
-    /// The design, compiled for the cell of the answer.
-    model: &'a Model,
-    /// What was found.
-    pub found: &'a Answer,
-}
-
-impl<'a> RollAnswer<'a> {
-    /// The answer to a question on a roll; `None` of other goals.
-    pub fn new(design: &'a Design, question: &Question, model: &'a Model, found: &'a Answer) -> Option<Self> {
-        let Goal::Curvature { direction_deg, free } = question.goal else { return None };
-        Some(RollAnswer { design, direction_deg, sense: question.sense, free, model, found })
-    }
-
-    /// Where the axis is: `below` the sheet or `above` it.
-    pub fn axis(&self) -> &'static str {
-        if self.sense == Sense::Largest { "below" } else { "above" }
-    }
-
-    /// The neutral surface of its state, in reference radii.
-    pub fn neutral(&self) -> Option<NeutralSurface> {
-        self.found.value.and_then(|_| self.found.state.neutral_surface_of(self.model))
-    }
-
-    /// The document of all rolls of a design.
-    pub fn document(design: &Design, rolls: &[RollAnswer<'_>]) -> Value {
-        json!({
-            "design": design.name,
-            "rolls": rolls.iter().map(RollAnswer::json).collect::<Vec<_>>(),
-        })
-    }
-
-    fn json(&self) -> Value {
-        let (found, unit) = (self.found, self.design.reference_radius);
-        let solved = found.value.is_some();
-        let neutral = self.neutral();
-        let word = |free: bool| if free { "free" } else { "fixed" };
-        // Lines along the axis stay along it: they are √(1 + 2 E) times as long.
-        let width = Strain::Eyy.of(&found.green_strain(), Direction::of_degrees(self.direction_deg));
-        json!({
-            "direction_deg": self.direction_deg,
-            "axis": self.axis(),
-            "lateral": word(self.free.lateral_free),
-            "shear": word(self.free.shear_free),
-            "status": found.status.name(),
-            "curvature": found.value.map(|curvature| curvature / unit),
-            "neutral_radius": neutral.map(|n| n.radius * unit),
-            "neutral_stretch": neutral.map(|n| n.stretch),
-            "l2": solved.then(|| (1.0 + 2.0 * width).sqrt() - 1.0),
-            "note": found.note,
-            "cell": self.model.cell.to_string(),
-            "a1": solved.then(|| length(self.model, found.state.a1)),
-            "a2": solved.then(|| length(self.model, found.state.a2)),
-            "roll": RollRecord::of(&found.state).filter(|_| solved),
             "poses": solved.then(|| pose_records(self.model, &found.state)),
             "certificate": found.certificate.as_ref().map(|c| certificate(c, self.model.unit)),
             "links_ok": found.links_ok.filter(|_| solved),

@@ -35,7 +35,7 @@ pub use pdf::{outlined_svg, svg_to_pdf};
 pub(crate) use png::{COLOURS, SAMPLE};
 pub use png::{PlotError, svg_to_png, with_palette};
 pub use poisson::poisson_svg;
-pub use polar::{PolarPlot, Ray, RayKind, polar_svg};
+pub use polar::{PolarPlot, Ray, RayKind, polar_svg, roll_svg};
 pub use radius::radius_svg;
 pub use run::{OfStep, run_svg};
 pub use tolerance::{Band, Tolerance};

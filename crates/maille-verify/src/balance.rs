@@ -157,7 +157,7 @@ fn difference(g: impl Fn(f64) -> f64, h: f64) -> f64 {
 }
 
 /// The angle of the least distance next to `angle` by Newton's method on its slope; `angle` itself where there is none.
-fn least(arc: &Arc<'_>, angle: f64) -> f64 {
+pub(crate) fn least(arc: &Arc<'_>, angle: f64) -> f64 {
     let (mut x, h) = (angle, 1e-5);
     for _ in 0..30 {
         let bend = (arc.at(x + h).slope - arc.at(x - h).slope) / (2.0 * h);
@@ -203,7 +203,7 @@ pub(crate) fn balance(sheet: &Sheet, points: &[(Closed<'_>, f64)], free: &Free) 
 }
 
 /// The angle of a recorded contact on its ring b, if the record's points and normal are where they should be.
-fn placed(sheet: &Sheet, contact: &Contact, unit: f64) -> Result<f64, String> {
+pub(crate) fn placed(sheet: &Sheet, contact: &Contact, unit: f64) -> Result<f64, String> {
     let (a, b, shift) = (contact.ring_a, contact.ring_b, contact.shift);
     if a.max(b) >= sheet.rings.len() {
         return Err(format!("is of ring {}, of {} rings", a.max(b), sheet.rings.len()));

@@ -36,7 +36,7 @@ pub(crate) const ZERO_MODE: f64 = 1e-7;
 /// A recorded curvature is the one that is found within this share of it.
 pub(crate) const CURVATURE: f64 = 1e-3;
 /// d_θθ below which a contact has no place of its own.
-const FLATTEST: f64 = 1e-6;
+pub(crate) const FLATTEST: f64 = 1e-6;
 /// Tilt, and distance of the axes and difference of the radii in radii, of a pair that lies flat.
 const FLAT: f64 = 1e-3;
 /// |T|/N of a pair that is held flat, at most.
@@ -324,7 +324,7 @@ pub(crate) fn curvature(
 
 /// Eigenvalues of `of_sum`, ascending, on the motions that keep the rows with this Gram matrix, and the number of unknowns that
 /// neither meets.
-fn kept(of_sum: &DMatrix<f64>, gram: &DMatrix<f64>) -> (Vec<f64>, usize) {
+pub(crate) fn kept(of_sum: &DMatrix<f64>, gram: &DMatrix<f64>) -> (Vec<f64>, usize) {
     let n = gram.nrows();
     let is_met = |k: &usize| gram[(*k, *k)] != 0.0 || of_sum.column(*k).iter().any(|x| *x != 0.0);
     let met: Vec<usize> = (0..n).filter(is_met).collect();

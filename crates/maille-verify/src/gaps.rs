@@ -85,7 +85,7 @@ fn smallest_gap_differs(here: &Sheet, gap: f64) -> Option<Finding> {
         match apart(&one, &other, touching + gap - GAP, slack) {
             Apart::Nearer(found) => {
                 let words = format!(
-                    "rings {a} and {b} at {shift:?} have the gap {:.3e} R, {gap:.3e} R in limits.csv",
+                    "rings {a} and {b} at {shift:?} have the gap {:.3e} R, {gap:.3e} R in the record",
                     found - touching
                 );
                 return say(Verdict::False, words);
@@ -103,7 +103,7 @@ fn smallest_gap_differs(here: &Sheet, gap: f64) -> Option<Finding> {
     }
     match (attained, unknown) {
         (true, false) => None,
-        (false, false) => say(Verdict::False, format!("no two rings have the gap {gap:.3e} R of limits.csv")),
+        (false, false) => say(Verdict::False, format!("no two rings have the gap {gap:.3e} R of the record")),
         _ => say(Verdict::Open, format!("whether the smallest gap is {gap:.3e} R could not be shown")),
     }
 }

@@ -1,6 +1,9 @@
 //! Rings in space: a design's start or a recorded state in one cell, in units of the reference radius R.
 
-use crate::record::{Design, Pose, State};
+use crate::{
+    record::{Design, Pose, State},
+    rolled::Rolled,
+};
 use maille_geometry::Circle;
 use nalgebra::{Matrix2, Quaternion, Unit, UnitQuaternion, Vector3};
 
@@ -38,6 +41,8 @@ pub(crate) struct Sheet {
     pub lattice: [Vec3; 2],
     /// Where the copy of the design's cell lies that each element is of, at the start.
     pub copies: Vec<Vec3>,
+    /// How the images are turned; none where they are translations.
+    pub roll: Option<Rolled>,
 }
 
 /// Rows of integers: the cell's lattice vectors in those of the design.
@@ -117,8 +122,13 @@ impl Sheet {
     pub fn start(design: &Design, cell: &Cell, names: &[&str]) -> Result<Sheet, String> {
         let unit = design.reference_radius;
         let [p1, p2] = primitive(design);
-        let mut out =
-            Sheet { rings: Vec::new(), bodies: Vec::new(), lattice: vectors(cell, [p1, p2]), copies: Vec::new() };
+        let mut out = Sheet {
+            rings: Vec::new(),
+            bodies: Vec::new(),
+            lattice: vectors(cell, [p1, p2]),
+            copies: Vec::new(),
+            roll: None,
+        };
         let mut seen: Vec<(usize, [i32; 2])> = Vec::new();
         for name in names {
             let (element, copy) = named(design, cell, name)?;
@@ -163,7 +173,13 @@ impl Sheet {
         };
         let bodies = state.poses.iter().map(body).collect::<Result<_, _>>()?;
         let lattice = [state.a1, state.a2].map(|a| Vec3::from(a) / unit);
-        Ok(Sheet { rings: self.rings.clone(), bodies, lattice, copies: self.copies.clone() })
+        Ok(Sheet { rings: self.rings.clone(), bodies, lattice, copies: self.copies.clone(), roll: None })
+    }
+
+    /// The places of the elements in lattice vectors of this start.
+    pub fn places(&self) -> Vec<[f64; 2]> {
+        let inverse = columns(self.lattice).try_inverse().unwrap_or_default();
+        self.bodies.iter().map(|body| (inverse * body.position.xy()).into()).collect()
     }
 
     /// Where the copy that each element is of lies, in lattice vectors of this start.
@@ -180,8 +196,15 @@ impl Sheet {
     /// Core circle of a ring in the cell `shift`.
     pub fn circle(&self, ring: usize, shift: [i32; 2]) -> Circle {
         let (ring, body) = (&self.rings[ring], &self.bodies[self.rings[ring].element]);
-        let center = body.position + body.turn * ring.arm + self.translation(shift);
-        Circle::new(center, Unit::new_normalize(body.turn * ring.normal), ring.radius)
+        let (center, normal) = (body.position + body.turn * ring.arm, body.turn * ring.normal);
+        match &self.roll {
+            None => Circle::new(center + self.translation(shift), Unit::new_normalize(normal), ring.radius),
+            Some(roll) => {
+                let image = roll.image(self.lattice, shift);
+                let center = (image * nalgebra::Point3::from(center)).coords;
+                Circle::new(center, Unit::new_normalize(image.rotation * normal), ring.radius)
+            }
+        }
     }
 
     /// Error of a coordinate of a point of the pair's circles: a bound of what rounding can do.
@@ -191,7 +214,9 @@ impl Sheet {
             self.bodies[ring.element].position.norm() + ring.arm.norm() + ring.radius
         };
         let [m, n] = [0, 1].map(|k| f64::from(shift[k]).abs() * self.lattice[k].norm());
-        OPERATIONS * ROUNDING * (size(a) + size(b) + m + n)
+        // A turn about a far axis.
+        let axis = self.roll.as_ref().map_or(0.0, |roll| 2.0 * roll.axis_distance(self.lattice).abs());
+        OPERATIONS * ROUNDING * (size(a) + size(b) + m + n + axis)
     }
 
     /// Core distance at which the rings touch.
@@ -204,6 +229,9 @@ impl Sheet {
     ///
     /// With dual vectors b_k (b_k · a_l = δ_kl), a shift s with |x + s₁ a₁ + s₂ a₂| ≤ d has |s_k + b_k · x| ≤ d |b_k|.
     pub fn pairs(&self, more: impl Fn(usize, usize) -> f64) -> Result<Vec<Pair>, String> {
+        if let Some(roll) = &self.roll {
+            return roll.pairs(self, more);
+        }
         let [a1, a2] = self.lattice;
         let area = a1.cross(&a2);
         let (b1, b2) = (a2.cross(&area) / area.norm_squared(), area.cross(&a1) / area.norm_squared());

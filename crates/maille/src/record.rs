@@ -6,6 +6,7 @@ pub use row::{Column, Entry, Kind, LIMIT_COLUMNS, LimitRow, Status, Unit};
 
 use crate::{
     model::{Element, Model},
+    program::Contact,
     state::{Pose, Roll, State},
 };
 use maille_geometry::Vec3;
@@ -89,6 +90,21 @@ pub struct ContactRecord {
     pub normal: [f64; 3],
     /// Force per unit of pull: dl1 for each reference radius by which this gap is widened.
     pub force: f64,
+}
+
+/// The contacts of a state, in the file's unit.
+pub fn contact_records(model: &Model, contacts: &[Contact]) -> Vec<ContactRecord> {
+    let position = |v: Vec3| -> [f64; 3] { (v * model.unit).into() };
+    let record = |c: &Contact| ContactRecord {
+        ring_a: c.pair.ring_a,
+        ring_b: c.pair.ring_b,
+        shift: c.pair.shift,
+        point_a: position(c.point_a),
+        point_b: position(c.point_b),
+        normal: (c.point_b - c.point_a).normalize().into(),
+        force: c.force,
+    };
+    contacts.iter().map(record).collect()
 }
 
 /// The chain of links that binds in the bound: rings with their cells, the last an image of the first. Rings and cells are

@@ -1,8 +1,10 @@
 //! Polar plots of limits against the direction of the pull: 0° right, counter-clockwise.
 
 mod figure;
+mod roll;
 
 pub use figure::polar_svg;
+pub use roll::roll_svg;
 
 use super::compare::{
     captions, differences, directions, growing, heading, inputs, l2_label, l2_values, missing, title,

@@ -18,6 +18,7 @@ fn sheet(poses: [(Vec3, Vec3, Vec3); 2]) -> Sheet {
         bodies: poses.iter().map(body).collect(),
         lattice: [Vec3::x() * 50.0, Vec3::y() * 50.0],
         copies: vec![Vec3::zeros(); 2],
+        roll: None,
     }
 }
 

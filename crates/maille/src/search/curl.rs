@@ -10,7 +10,7 @@
 
 use super::{
     local::LocalSolution,
-    multistart::{CellStarts, Entered, LargerCells, Multistart, SearchResult, Target, verdict},
+    multistart::{CellStarts, Entered, FollowedWaves, LargerCells, Multistart, SearchResult, Target, verdict},
     options::{ExtremeOptions, STRAIGHT},
     starts::{Start, Use, perturbed, rng},
     stop::StopRule,
@@ -157,9 +157,10 @@ pub(crate) fn tightest_roll(models: &[Model], target: Curl, options: &ExtremeOpt
     let rule = LargerCells {
         every: false,
         own_starts: stop.of_larger_cell(false),
-        follow_waves: false,
+        waves: FollowedWaves::None,
         where_none: false,
         fallback: None,
+        beyond: f64::NEG_INFINITY,
         neighbours: &CellStarts::default(),
     };
     let found = search.larger_cells(models, first, &rule);

@@ -107,6 +107,23 @@ impl CellSearch {
     }
 }
 
+/// Which unstable waves of a state are followed, each into the smallest cell that holds it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum FollowedWaves {
+    /// None.
+    None,
+    /// The three worst, until one gives more.
+    Worst,
+    /// One into each cell.
+    All,
+}
+
+impl FollowedWaves {
+    pub(super) fn worst_if(followed: bool) -> Self {
+        if followed { FollowedWaves::Worst } else { FollowedWaves::None }
+    }
+}
+
 /// Which larger cells are searched, and from where.
 pub(super) struct LargerCells<'a> {
     /// All of them; otherwise only where the first cell's solution presses an element on its own image. Unstable waves are followed into
@@ -114,12 +131,14 @@ pub(super) struct LargerCells<'a> {
     pub every: bool,
     /// Starts of a larger cell of its own.
     pub own_starts: u64,
-    /// Whether unstable waves are followed into cells that are not listed.
-    pub follow_waves: bool,
+    /// How unstable waves are followed into cells that are not listed.
+    pub waves: FollowedWaves,
     /// Whether larger cells are tried where the first one has no state.
     pub where_none: bool,
     /// The state that is repeated over a larger cell where the first one has none.
     pub fallback: Option<Start>,
+    /// Only a value above this is of interest: less is not followed.
+    pub beyond: f64,
     /// States of cells at neighbouring questions. A larger cell that is not searched otherwise is tried from them alone.
     pub neighbours: &'a [(Cell, Start)],
 }
@@ -135,6 +154,11 @@ impl<T: Target> Multistart<'_, T> {
     /// Solves `given` in one cell, then starts that are drawn until `rule` says that these were enough or the upper bound is
     /// attained, and keeps the best: certified first, then by value; of equals the first.
     pub(crate) fn run(&self, model: &Model, given: Vec<Start>, rule: StopRule) -> SearchResult {
+        self.run_beyond(model, given, rule, f64::NEG_INFINITY)
+    }
+
+    /// The same where only a value above `beyond` is of interest.
+    fn run_beyond(&self, model: &Model, given: Vec<Start>, rule: StopRule, beyond: f64) -> SearchResult {
         let began = Instant::now();
         // Where a bound can end the search at any start, one at a time.
         let batch = if self.upper_bound.is_finite() { 1 } else { EXPLORATIONS.len() };
@@ -157,7 +181,7 @@ impl<T: Target> Multistart<'_, T> {
             }
             let numbered: Vec<(u64, Start)> = (result.starts..).zip(starts).collect();
             let certified = result.best.as_ref().filter(|best| best.certified);
-            let floor = certified.map_or(f64::NEG_INFINITY, LocalSolution::value);
+            let floor = certified.map_or(beyond, |best| best.value().max(beyond));
             let solve = |(k, start): (u64, Start)| (!self.cancelled()).then(|| self.retried(model, start, k, floor));
             let solved: Vec<Option<SearchResult>> = numbered.into_par_iter().with_max_len(1).map(solve).collect();
             solved.into_iter().flatten().for_each(|found| result.take(found));
@@ -248,7 +272,9 @@ impl<T: Target> Multistart<'_, T> {
         }
         let mut found = CellSearch { result, cell, further: None, wave: None, by_cell, starts };
         self.try_neighbours(models, rule, &mut found);
-        self.follow_waves(models, rule, &mut found);
+        if found.result.best.as_ref().is_some_and(|best| best.value() > rule.beyond) {
+            self.follow_waves(models, rule, &mut found);
+        }
         let further = found.further.as_ref().map(|model| model.cell);
         found.starts.extend(further.zip(best(&found.result)));
         found
@@ -263,7 +289,7 @@ impl<T: Target> Multistart<'_, T> {
                 continue;
             }
             let model = of_cell(models, cell).into_owned();
-            let here = self.run(&model, rule.of(cell).collect(), StopRule::given_only());
+            let here = self.run_beyond(&model, rule.of(cell).collect(), StopRule::given_only(), rule.beyond);
             found.by_cell.push(here.by_cell(cell));
             if here.improves_on(&found.result) {
                 found.further = Some(model);

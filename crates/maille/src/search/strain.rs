@@ -8,7 +8,7 @@
 
 use super::{
     local::LocalSolution,
-    multistart::{CellStarts, Entered, LargerCells, Multistart, Target, verdict},
+    multistart::{CellStarts, Entered, FollowedWaves, LargerCells, Multistart, Target, verdict},
     options::{FREE_SLACK, STRAIGHT},
     starts::{Start, Use, perturbed, rng},
     stop::StopRule,
@@ -53,16 +53,18 @@ impl Default for StrainOptions {
 }
 
 /// Which starts a query gets beside the states of its neighbours.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum OtherStarts {
     /// The straight way, and drawn ones as the effort says.
     #[default]
-    All,
+    Usual,
+    /// The same, and where waves are followed one unstable wave into each cell.
+    AndEveryWave,
     /// The straight way; drawn ones where no two of the others lead to the best.
     WhereNeighboursDiffer,
-    /// None.
-    None,
+    /// None, and only a value above this is of interest.
+    NoneAndBeyond(f64),
 }
 
 /// Answers queries on one sheet.
@@ -139,7 +141,7 @@ impl<'a> StrainMethod<'a> {
     /// The largest p₀, as the value of the strain itself: −p₀ of a least one. `from` are states of neighbouring queries, each with
     /// its cell. An unreachable strain is proved to be so by the chains; one that is not reached is not.
     pub fn solve(&self, query: &StrainQuery, from: &[(Cell, State)], cancel: &AtomicBool) -> Answer {
-        self.solve_beside(query, from, OtherStarts::All, cancel)
+        self.solve_beside(query, from, OtherStarts::Usual, cancel)
     }
 
     /// The same with other starts beside the states.
@@ -161,13 +163,23 @@ impl<'a> StrainMethod<'a> {
         // A least strain is never called global: larger cells can fold further.
         let upper_bound = bound.filter(|_| !least).unwrap_or(f64::INFINITY);
         let StrainOptions { effort, starts, seed, follow_waves, .. } = self.options;
+        let waves = match others {
+            OtherStarts::AndEveryWave if follow_waves => FollowedWaves::All,
+            _ => FollowedWaves::worst_if(follow_waves),
+        };
         let stop = match others {
-            OtherStarts::All => StopRule::of(effort, starts),
+            OtherStarts::Usual | OtherStarts::AndEveryWave => StopRule::of(effort, starts),
+            // What the own cell can reach, its neighbours have left behind.
+            OtherStarts::WhereNeighboursDiffer
+                if !from.is_empty() && from.iter().all(|(cell, _)| *cell != model.cell) =>
+            {
+                StopRule::given_only()
+            }
             OtherStarts::WhereNeighboursDiffer => StopRule::of(effort, starts).trusting_given(),
-            OtherStarts::None => StopRule::given_only(),
+            OtherStarts::NoneAndBeyond(_) => StopRule::given_only(),
         };
         let search = Multistart { target: query, upper_bound, seed, cancel };
-        let straight = (others != OtherStarts::None)
+        let straight = (!matches!(others, OtherStarts::NoneAndBeyond(_)))
             .then(|| perturbed(model, &model.start, STRAIGHT, &mut rng(seed, Use::Start, u64::from(u32::MAX))));
         let neighbours: CellStarts = from.iter().map(|(cell, state)| (*cell, Start::written(state.clone()))).collect();
         let of =
@@ -179,9 +191,20 @@ impl<'a> StrainMethod<'a> {
         (first.runs, first.iterations) = (first.runs + runs, first.iterations + iterations);
         let exit = first.first;
         let own_starts = stop.of_larger_cell(least);
+        let beyond = match others {
+            OtherStarts::NoneAndBeyond(value) => value,
+            _ => f64::NEG_INFINITY,
+        };
         let fallback = Some(Start::written(model.start.clone()));
-        let rule =
-            LargerCells { every: least, own_starts, where_none: true, fallback, follow_waves, neighbours: &neighbours };
+        let rule = LargerCells {
+            every: least,
+            own_starts,
+            where_none: true,
+            fallback,
+            waves,
+            beyond,
+            neighbours: &neighbours,
+        };
         let found = search.larger_cells(self.models, first, &rule);
         let model = &found.model(self.models).clone();
         let wave = found.wave;

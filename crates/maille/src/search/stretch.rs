@@ -11,7 +11,7 @@
 
 use super::{
     local::LocalSolution,
-    multistart::{CellStarts, Entered, LargerCells, Multistart, SearchResult, Target, verdict},
+    multistart::{CellStarts, Entered, FollowedWaves, LargerCells, Multistart, SearchResult, Target, verdict},
     options::{ATTAINED, ExactOptions, LATERAL_ROUNDS, LATERAL_STARTS, LATERAL_STEP, SAME_VALUE},
     overlap::{Overlapping, beyond_repair},
     starts::{Start, explored, explored_or_buckled},
@@ -232,7 +232,8 @@ impl<'a> ExactMethod<'a> {
             // Under lateral compression a larger cell can fold where this one cannot.
             where_none: stretch.l2 < 0.0,
             fallback: (!least).then(|| neighbour.unwrap_or_else(|| Start::written(self.models[0].start.clone()))),
-            follow_waves: self.models.len() > 1,
+            waves: FollowedWaves::worst_if(self.models.len() > 1),
+            beyond: f64::NEG_INFINITY,
             neighbours,
         }
     }

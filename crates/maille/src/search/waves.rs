@@ -9,7 +9,7 @@
 
 use super::{
     local::LocalSolution,
-    multistart::{CellSearch, LargerCells, Multistart, SearchResult, Target},
+    multistart::{CellSearch, FollowedWaves, LargerCells, Multistart, SearchResult, Target},
     options::{ATTAINED, FOLLOWED_ELEMENTS, WAVE_COPIES, WAVE_ELEMENTS, WAVE_SIZE},
     starts::{Start, moved, tiled},
     stop::StopRule,
@@ -122,7 +122,11 @@ impl<T: Target> Multistart<'_, T> {
     /// the smallest cell that holds it, until one gives more; that cell is then searched from as many starts
     /// of its own, and the waves of what is best there are followed.
     pub(super) fn follow_waves(&self, models: &[Model], rule: &LargerCells<'_>, found: &mut CellSearch) {
-        let most = if rule.follow_waves { FOLLOWED_WAVES } else { 0 };
+        let most = match rule.waves {
+            FollowedWaves::None => 0,
+            FollowedWaves::Worst => FOLLOWED_WAVES,
+            FollowedWaves::All => usize::MAX,
+        };
         loop {
             let (model, Some(best)) = (found.model(models), &found.result.best) else { return };
             let (waves, from) = (self.waves(model, best), self.target.start(best));
@@ -130,7 +134,7 @@ impl<T: Target> Multistart<'_, T> {
             found.wave = waves.curvature();
             let mut improved = false;
             for (cell, wave) in cells.into_iter().take(most) {
-                if improved || self.cancelled() {
+                if self.cancelled() || (improved && rule.waves == FollowedWaves::Worst) {
                     break;
                 }
                 let larger = models[0].in_cell(cell);
@@ -141,11 +145,11 @@ impl<T: Target> Multistart<'_, T> {
                     here = here.with_chance(self.upper_bound);
                 }
                 found.by_cell.push(here.by_cell(cell));
-                improved = here.improves_on(&found.result);
-                found.result.merge(here);
-                if improved {
+                if here.improves_on(&found.result) {
+                    improved = true;
                     found.further = Some(larger);
                 }
+                found.result.merge(here);
             }
             if !improved {
                 return;

@@ -6,8 +6,7 @@ use crate::{
     answer::{Answer, CellTrend, FreeRanges},
     bound::DualForce,
     model::Model,
-    program::Contact,
-    record::{ChainRecord, ContactRecord, DualRecord, LimitRow, RollRecord, StateRecord, Status, pose_records},
+    record::{ChainRecord, DualRecord, LimitRow, RollRecord, StateRecord, Status, contact_records, pose_records},
 };
 use maille_geometry::Vec3;
 
@@ -104,15 +103,6 @@ pub(super) fn state_record(direction_deg: f64, l2: f64, model: &Model, answer: &
     let f = answer.gradient;
     let position = |v: Vec3| -> [f64; 3] { (v * model.unit).into() };
     let poses = pose_records(model, &answer.state);
-    let contact = |c: &Contact| ContactRecord {
-        ring_a: c.pair.ring_a,
-        ring_b: c.pair.ring_b,
-        shift: c.pair.shift,
-        point_a: position(c.point_a),
-        point_b: position(c.point_b),
-        normal: (c.point_b - c.point_a).normalize().into(),
-        force: c.force,
-    };
     let chain = answer.chain.as_ref().map(|chain| ChainRecord {
         vector: chain.vector,
         length: chain.length * model.unit,
@@ -134,7 +124,7 @@ pub(super) fn state_record(direction_deg: f64, l2: f64, model: &Model, answer: &
         poses,
         residual: answer.residual.filter(|r| r.is_finite()),
         note: answer.note.clone(),
-        contacts: answer.contacts.iter().map(contact).collect(),
+        contacts: contact_records(model, &answer.contacts),
         chain,
         dual: answer.dual.iter().map(force).collect(),
         steps: answer.steps.clone(),

@@ -136,6 +136,8 @@ pub struct Boundary {
 
 /// Divisions of the icosahedron before the surface decides: 162 rays.
 const FIRST: usize = 2;
+/// The rays of one division, on which thorough effort follows an unstable wave into each cell: what they find is handed on.
+const EVERY_WAVE: usize = 42;
 
 /// A ray that is to be solved.
 #[doc(hidden)]
@@ -240,7 +242,11 @@ pub fn boundary_by(
         let rays = open.clone().filter(|k| known(k).is_none()).map(|k| {
             let parents = sphere.parents[k].into_iter().filter_map(|parent| vertices.get(parent));
             let from = parents.filter(|p| p.distance.is_some()).cloned().collect();
-            let others = if vertices.is_empty() { OtherStarts::All } else { OtherStarts::WhereNeighboursDiffer };
+            let others = match k {
+                _ if !vertices.is_empty() => OtherStarts::WhereNeighboursDiffer,
+                _ if k < EVERY_WAVE && options.effort == Effort::Thorough => OtherStarts::AndEveryWave,
+                _ => OtherStarts::Usual,
+            };
             Ray { direction: sphere.directions[k].into(), from, others }
         });
         let rays: Vec<Ray> = rays.collect();
@@ -294,7 +300,7 @@ fn hand_on(
             for (k, other) in [(a, b), (b, a)] {
                 let Some(distance) = vertices[other].distance else { continue };
                 if tried.insert((k, other, distance.to_bits())) {
-                    let others = OtherStarts::None;
+                    let others = OtherStarts::NoneAndBeyond(vertices[k].distance.unwrap_or(f64::NEG_INFINITY));
                     let ray = || Ray { direction: sphere.directions[k].into(), from: Vec::new(), others };
                     tasks.entry(k).or_insert_with(ray).from.push(vertices[other].clone());
                 }

@@ -44,7 +44,7 @@ pub fn polar_svg(input: &PolarPlot, layout: Layout) -> String {
         for (curve, look) in back_to_front.iter().filter(|(curve, _)| curve.kind != CurveKind::Check) {
             disc.draw_line(canvas, curve, look);
         }
-        disc.draw_ticks(canvas, input);
+        disc.draw_ticks(canvas, &input.curves);
         let marked = if input.check.is_empty() { CurveKind::Limits } else { CurveKind::Check };
         let marked = back_to_front.iter().filter(|(curve, _)| curve.kind == marked);
         for (k, (curve, look)) in marked.enumerate() {
@@ -55,14 +55,14 @@ pub fn polar_svg(input: &PolarPlot, layout: Layout) -> String {
 }
 
 /// Where values stand: on a disc, by direction and by distance from its centre.
-struct Disc {
-    center: [f64; 2],
-    radius: f64,
+pub(super) struct Disc {
+    pub(super) center: [f64; 2],
+    pub(super) radius: f64,
     scale: Scale,
 }
 
 impl Disc {
-    fn new(area: Area, scale: Scale) -> Self {
+    pub(super) fn new(area: Area, scale: Scale) -> Self {
         let radius = 0.5 * (area.right - area.left - 96.0);
         Disc { center: [area.left + 40.0 + radius, area.top + radius], radius, scale }
     }
@@ -78,7 +78,7 @@ impl Disc {
         self.polar(degrees, self.radius * self.scale.fraction(value))
     }
 
-    fn draw_grid(&self, canvas: &mut Canvas, base: f64) {
+    pub(super) fn draw_grid(&self, canvas: &mut Canvas, base: f64) {
         for k in 0..12 {
             let degrees = 30.0 * f64::from(k);
             canvas.line(self.polar(degrees, 0.0), self.polar(degrees, self.radius), Stroke::solid(GRID, 1.0));
@@ -116,9 +116,9 @@ impl Disc {
 
     /// Labels of the circles along one direction, where curves strike fewest of them; one that is struck stands in another
     /// direction, and is left out if all are.
-    fn draw_ticks(&self, canvas: &mut Canvas, input: &PolarPlot) {
+    pub(super) fn draw_ticks(&self, canvas: &mut Canvas, curves: &[Curve]) {
         const RAYS: [f64; 12] = [22.5, 37.5, 52.5, 67.5, 7.5, 82.5, 97.5, 112.5, 127.5, 142.5, 157.5, 172.5];
-        let places: Vec<[f64; 2]> = input.curves.iter().flat_map(|curve| self.line_points(curve)).collect();
+        let places: Vec<[f64; 2]> = curves.iter().flat_map(|curve| self.line_points(curve)).collect();
         let ticks: Vec<f64> =
             self.scale.ticks.iter().copied().filter(|&tick| self.scale.fraction(tick) > 0.1).collect();
         let half = |tick: f64| [0.5 * text_width(&self.scale.label(tick), 12.0) + 3.0, 9.0];
@@ -139,7 +139,7 @@ impl Disc {
     }
 
     /// Straight between neighbouring directions, and cut where it leaves the disc.
-    fn draw_line(&self, canvas: &mut Canvas, curve: &Curve, look: &Look) {
+    pub(super) fn draw_line(&self, canvas: &mut Canvas, curve: &Curve, look: &Look) {
         let (runs, closed) = curve.runs();
         for run in runs.iter().filter(|run| run.len() > 1) {
             let mut points: Vec<_> = run.iter().map(|&(degrees, value)| self.at(degrees, value)).collect();
@@ -199,7 +199,7 @@ impl Disc {
     }
 
     /// Of several records each has its markers at other directions, so that they do not hide each other.
-    fn draw_markers(&self, canvas: &mut Canvas, curve: &Curve, look: &Look, records: usize) {
+    pub(super) fn draw_markers(&self, canvas: &mut Canvas, curve: &Curve, look: &Look, records: usize) {
         let turn = curve.turn();
         let every = turn.len().div_ceil(if records > 1 { 24 } else { 72 }).max(1);
         let first = (curve.record * every / records.max(1)) % every;
@@ -213,7 +213,7 @@ impl Disc {
     }
 
     /// Marks inside the rim in directions without a limit; those of several curves stand behind each other.
-    fn draw_gaps(&self, canvas: &mut Canvas, curve: &Curve, look: &Look, behind: usize) {
+    pub(super) fn draw_gaps(&self, canvas: &mut Canvas, curve: &Curve, look: &Look, behind: usize) {
         let distance = self.radius - 8.0 - 9.0 * (behind % 6) as f64;
         for (degrees, value, status) in curve.turn() {
             if let (None, Some(shape)) = (value, Outcome::of(status).shape()) {

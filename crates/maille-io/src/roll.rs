@@ -1,0 +1,259 @@
+//! Rolls of a sheet as a record: how tightly it can be rolled along each direction, both ways, with the state of each.
+//!
+//! The folder has `roll.json`, what it is of; `rolls.jsonl`, a line for each roll with its state, from which an interrupted run goes on;
+//! and `rolls.csv`, the same without states.
+
+mod folder;
+
+pub use folder::{ROLL, ROLLS, ROLLS_TABLE, RollFolder, RollRecordFile, in_order, open_rolls};
+
+use crate::record::{csv_number, csv_text};
+use maille::{
+    answer::Answer,
+    design::Design,
+    error::InvalidInput,
+    lattice::{Across, Direction},
+    model::Model,
+    question::{Effort, Goal, Question, Sense, Strain},
+    record::{ContactRecord, PoseRecord, RollRecord, Status, contact_records, pose_records},
+    solver::certificate::Certificate,
+    survey::CellChoice,
+};
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+use std::fmt::Write;
+
+/// Where the axis of a roll is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Axis {
+    /// Below the sheet, which bends downwards: κ > 0.
+    Below,
+    /// Above the sheet, which bends upwards: κ < 0.
+    Above,
+}
+
+impl Axis {
+    /// Both, in the order of tables.
+    pub const BOTH: [Axis; 2] = [Axis::Below, Axis::Above];
+
+    /// The name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Axis::Below => "below",
+            Axis::Above => "above",
+        }
+    }
+}
+
+/// What is asked of a sheet that is rolled.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RollQuestion {
+    /// Directions that are rolled, degrees counter-clockwise from x.
+    pub directions_deg: Vec<f64>,
+    /// On which side the axis is.
+    pub axes: Vec<Axis>,
+    /// What is left to the sheet.
+    pub free: Across,
+    /// The cells that may be solved.
+    pub cells: CellChoice,
+    /// How long each roll is searched.
+    pub effort: Effort,
+    /// Seed of the starts that are drawn.
+    pub seed: u64,
+}
+
+impl RollQuestion {
+    /// Its rolls, in the order of the table.
+    pub fn rolls(&self) -> Vec<(f64, Axis)> {
+        let along = |direction_deg: &f64| self.axes.iter().map(move |axis| (*direction_deg, *axis)).collect::<Vec<_>>();
+        self.directions_deg.iter().flat_map(along).collect()
+    }
+
+    /// One of them as a question by itself.
+    pub fn question(&self, (direction_deg, axis): (f64, Axis)) -> Question {
+        let sign = if axis == Axis::Below { 1.0 } else { -1.0 };
+        let question = Question::curvature_along(direction_deg, sign).with_free(self.free);
+        Question { effort: self.effort, seed: self.seed, ..question }
+    }
+
+    /// Whether all can be asked.
+    ///
+    /// # Errors
+    /// Without directions, and what [`Question::check`] refuses.
+    pub fn check(&self) -> Result<(), InvalidInput> {
+        if self.directions_deg.is_empty() {
+            return Err(InvalidInput::new("directions", "there is none", "give one or more"));
+        }
+        self.rolls().into_iter().try_for_each(|roll| self.question(roll).check())
+    }
+}
+
+/// Figures of a certificate; the gap in the file's unit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CertificateRecord {
+    /// Smallest gap of two rings.
+    pub smallest_gap: f64,
+    /// Largest component of the unbalanced force, for a unit pull.
+    pub dual_residual: f64,
+    /// Largest product of a force and its gap.
+    pub complementarity: f64,
+    /// Smallest force; none where no contact carries.
+    pub min_multiplier: Option<f64>,
+    /// Smallest curvature on the motions that keep the loaded contacts.
+    pub min_curvature: Option<f64>,
+    /// Motions without curvature.
+    pub zero_modes: usize,
+}
+
+impl CertificateRecord {
+    /// That of a certificate, where R is `unit`.
+    pub fn new(c: &Certificate, unit: f64) -> Self {
+        CertificateRecord {
+            smallest_gap: c.smallest_gap * unit,
+            dual_residual: c.dual_residual,
+            complementarity: c.complementarity,
+            min_multiplier: Some(c.min_multiplier).filter(|x| x.is_finite()),
+            min_curvature: c.min_curvature.filter(|x| x.is_finite()),
+            zero_modes: c.zero_modes,
+        }
+    }
+}
+
+/// One roll: a line of `rolls.jsonl`. Lengths are in the file's unit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Roll {
+    /// Direction that is rolled.
+    pub direction_deg: f64,
+    /// Where the axis is.
+    pub axis: Axis,
+    /// `free` where the width along the axis is left to the sheet, else `fixed`.
+    pub lateral: String,
+    /// The same of the shear.
+    pub shear: String,
+    /// Outcome of the search.
+    pub status: Status,
+    /// κ in 1/unit, above 0 where the axis is below; `None` where nothing was found.
+    pub curvature: Option<f64>,
+    /// Radius of the neutral surface, at the mean distance of the elements from the axis.
+    pub neutral_radius: Option<f64>,
+    /// Its length along the direction, as a share of the written one.
+    pub neutral_stretch: Option<f64>,
+    /// Stretch along the axis, minus 1.
+    pub l2: Option<f64>,
+    /// What stopped the roll where no contact did.
+    pub note: Option<String>,
+    /// The cell of the state.
+    pub cell: String,
+    /// First lattice vector of that cell.
+    pub a1: Option<[f64; 3]>,
+    /// Second lattice vector.
+    pub a2: Option<[f64; 3]>,
+    /// How images are turned.
+    pub roll: Option<RollRecord>,
+    /// Poses of the elements of the cell.
+    pub poses: Option<Vec<PoseRecord>>,
+    /// Contacts that carry force.
+    pub contacts: Vec<ContactRecord>,
+    /// What certifies the state.
+    pub certificate: Option<CertificateRecord>,
+    /// Whether the links are those of the design.
+    pub links_ok: Option<bool>,
+    /// Starts that were searched.
+    pub n_starts: Option<u64>,
+    /// Distinct certified curvatures among their ends.
+    pub n_distinct: Option<u64>,
+    /// Estimated chance that another start of the same kinds goes further.
+    pub better_chance: Option<f64>,
+    /// Wall time.
+    pub wall_s: f64,
+}
+
+impl Roll {
+    /// What was found of a question on a roll, in the cell of `model`; `None` of other goals.
+    pub fn new(design: &Design, question: &Question, model: &Model, found: &Answer, wall_s: f64) -> Option<Self> {
+        let Goal::Curvature { direction_deg, free } = question.goal else { return None };
+        let unit = design.reference_radius;
+        let solved = found.value.is_some();
+        let neutral = found.state.neutral_surface_of(model).filter(|_| solved);
+        let word = |free: bool| if free { "free" } else { "fixed" }.to_owned();
+        let length = |a: maille_geometry::Vec3| -> [f64; 3] { (a * model.unit).into() };
+        // Lines along the axis stay along it: they are √(1 + 2 E) times as long.
+        let width = Strain::Eyy.of(&found.green_strain(), Direction::of_degrees(direction_deg));
+        Some(Roll {
+            direction_deg,
+            axis: if question.sense == Sense::Largest { Axis::Below } else { Axis::Above },
+            lateral: word(free.lateral_free),
+            shear: word(free.shear_free),
+            status: found.status,
+            curvature: found.value.map(|curvature| curvature / unit),
+            neutral_radius: neutral.map(|n| n.radius * unit),
+            neutral_stretch: neutral.map(|n| n.stretch),
+            l2: solved.then(|| (1.0 + 2.0 * width).sqrt() - 1.0),
+            note: found.note.clone(),
+            cell: model.cell.to_string(),
+            a1: solved.then(|| length(found.state.a1)),
+            a2: solved.then(|| length(found.state.a2)),
+            roll: RollRecord::of(&found.state).filter(|_| solved),
+            poses: solved.then(|| pose_records(model, &found.state)),
+            contacts: if solved { contact_records(model, &found.contacts) } else { Vec::new() },
+            certificate: found.certificate.as_ref().map(|c| CertificateRecord::new(c, model.unit)),
+            links_ok: found.links_ok.filter(|_| solved),
+            n_starts: found.n_starts,
+            n_distinct: found.n_distinct,
+            better_chance: found.better_chance,
+            wall_s,
+        })
+    }
+
+    /// Whether it is certified.
+    pub fn is_certified(&self) -> bool {
+        matches!(self.status, Status::Global | Status::Local)
+    }
+}
+
+/// The document of all rolls of a design.
+pub fn rolls_json(design: &Design, rolls: &[Roll]) -> Value {
+    json!({ "design": design.name, "rolls": rolls })
+}
+
+/// A column of `rolls.csv`: its name and the value of a roll.
+type RollColumn = (&'static str, fn(&Roll) -> String);
+
+/// The columns of `rolls.csv`.
+const COLUMNS: [RollColumn; 22] = [
+    ("direction_deg", |r| csv_number(Some(r.direction_deg))),
+    ("axis", |r| r.axis.name().into()),
+    ("lateral", |r| r.lateral.clone()),
+    ("shear", |r| r.shear.clone()),
+    ("cell", |r| csv_text(&r.cell)),
+    ("status", |r| r.status.name().into()),
+    ("curvature", |r| csv_number(r.curvature)),
+    ("neutral_radius", |r| csv_number(r.neutral_radius)),
+    ("neutral_stretch", |r| csv_number(r.neutral_stretch)),
+    ("l2", |r| csv_number(r.l2)),
+    ("min_gap", |r| csv_number(r.certificate.as_ref().map(|c| c.smallest_gap))),
+    ("links_ok", |r| r.links_ok.map_or(String::new(), |ok| ok.to_string())),
+    ("dual_residual", |r| csv_number(r.certificate.as_ref().map(|c| c.dual_residual))),
+    ("complementarity", |r| csv_number(r.certificate.as_ref().map(|c| c.complementarity))),
+    ("min_multiplier", |r| csv_number(r.certificate.as_ref().and_then(|c| c.min_multiplier))),
+    ("min_curvature", |r| csv_number(r.certificate.as_ref().and_then(|c| c.min_curvature))),
+    ("zero_modes", |r| r.certificate.as_ref().map_or(String::new(), |c| c.zero_modes.to_string())),
+    ("n_starts", |r| r.n_starts.map_or(String::new(), |n| n.to_string())),
+    ("n_distinct", |r| r.n_distinct.map_or(String::new(), |n| n.to_string())),
+    ("better_chance", |r| csv_number(r.better_chance)),
+    ("wall_s", |r| csv_number(Some(r.wall_s))),
+    ("note", |r| r.note.as_deref().map_or(String::new(), csv_text)),
+];
+
+/// The table: a line for each roll.
+pub fn rolls_csv(rolls: &[Roll]) -> String {
+    let mut out = COLUMNS.map(|(name, _)| name).join(",") + "\n";
+    for roll in rolls {
+        let _ = writeln!(out, "{}", COLUMNS.map(|(_, of)| of(roll)).join(","));
+    }
+    out
+}

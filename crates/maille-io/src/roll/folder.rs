@@ -1,0 +1,195 @@
+//! The folder of a design's rolls.
+
+use super::{Roll, RollQuestion, rolls_csv};
+use crate::{
+    files,
+    record::{
+        FolderLock, RecordError, input_hash,
+        journal::{Journal, line, parse},
+        sha256,
+    },
+};
+use maille::design::Design;
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+use std::{collections::BTreeMap, fs, path::Path};
+
+/// Name of the file that says what the rolls are of.
+pub const ROLL: &str = "roll.json";
+/// Name of the file with all rolls and their states.
+pub const ROLLS: &str = "rolls.jsonl";
+/// Name of the table.
+pub const ROLLS_TABLE: &str = "rolls.csv";
+const SCHEMA: u32 = 1;
+
+/// `roll.json`: what the rolls of a folder are of.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RollRecordFile {
+    /// Version of this file.
+    pub schema: u32,
+    /// Version of the program.
+    pub program_version: String,
+    /// Hash of the design and of what decides where a roll ends.
+    pub input_hash: String,
+    /// The design as computed.
+    pub design: Design,
+    /// What was asked.
+    pub question: RollQuestion,
+    /// Whether all rolls were searched.
+    pub complete: bool,
+    /// SHA-256 of the table and of the states.
+    pub files: BTreeMap<String, String>,
+}
+
+/// First line of `rolls.jsonl`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Head {
+    program_version: String,
+    input_hash: String,
+    design: String,
+}
+
+impl Head {
+    /// Which directions and sides are asked does not decide where a roll ends.
+    fn new(design: &Design, question: &RollQuestion) -> Self {
+        let RollQuestion { free, cells, effort, seed, .. } = question;
+        let parameters = json!({ "free": free, "cells": cells, "effort": effort, "seed": seed });
+        Head {
+            program_version: env!("CARGO_PKG_VERSION").into(),
+            input_hash: input_hash(design, &parameters),
+            design: design.name.clone(),
+        }
+    }
+}
+
+/// The folder that a run writes to; no other run does meanwhile.
+#[derive(Debug)]
+pub struct RollFolder<'a> {
+    folder: &'a Path,
+    journal: Journal,
+    _lock: FolderLock,
+}
+
+impl<'a> RollFolder<'a> {
+    /// Opens or creates the folder; gives the rolls of an earlier run with these inputs.
+    ///
+    /// # Errors
+    /// Where it holds rolls of other inputs and is not to be overwritten, or cannot be read or written.
+    pub fn open(
+        folder: &'a Path,
+        design: &Design,
+        question: &RollQuestion,
+        overwrite: bool,
+    ) -> Result<(Self, Vec<Roll>), RecordError> {
+        let lock = FolderLock::take(folder)?;
+        let (path, head) = (folder.join(ROLLS), Head::new(design, question));
+        let mut known = Vec::new();
+        if !overwrite && path.exists() {
+            let (old, rolls) = read(&path)?;
+            if old != head {
+                let difference = match old.program_version == head.program_version {
+                    true => format!("its inputs have the hash {:.12}…", old.input_hash),
+                    false => {
+                        format!("it was computed by version {}, not {}", old.program_version, head.program_version)
+                    }
+                };
+                return Err(RecordError::OtherInputs { folder: folder.into(), difference });
+            }
+            known = rolls;
+        }
+        // Written anew, so that a line that was cut off does not stay.
+        let text = line(&head) + &known.iter().map(line).collect::<String>();
+        files::write(&path, text.as_bytes()).map_err(RecordError::io("write", &path))?;
+        Ok((RollFolder { folder, journal: Journal::open(&path)?, _lock: lock }, known))
+    }
+
+    /// Keeps a roll.
+    ///
+    /// # Errors
+    /// Where it cannot be written.
+    pub fn keep(&mut self, roll: &Roll) -> Result<(), RecordError> {
+        self.journal.write(&line(roll))
+    }
+
+    /// Writes the table of the folder's rolls and what they are of.
+    ///
+    /// # Errors
+    /// Where one cannot be written.
+    pub fn finish(&self, design: &Design, question: &RollQuestion, rolls: &[Roll]) -> Result<(), RecordError> {
+        let table = rolls_csv(rolls);
+        let write = |name: &str, bytes: &[u8]| {
+            let path = self.folder.join(name);
+            files::write(&path, bytes).map_err(RecordError::io("write", &path))
+        };
+        write(ROLLS_TABLE, table.as_bytes())?;
+        let path = self.folder.join(ROLLS);
+        let states = fs::read(&path).map_err(RecordError::io("read", &path))?;
+        let Head { program_version, input_hash, .. } = Head::new(design, question);
+        let known = |roll: &(f64, super::Axis)| rolls.iter().any(|r| (r.direction_deg, r.axis) == *roll);
+        let record = RollRecordFile {
+            schema: SCHEMA,
+            program_version,
+            input_hash,
+            design: design.clone(),
+            question: question.clone(),
+            complete: question.rolls().iter().all(known),
+            files: [(ROLLS_TABLE.to_owned(), sha256(table.as_bytes())), (ROLLS.to_owned(), sha256(&states))].into(),
+        };
+        let text = serde_json::to_string_pretty(&record).expect("no map with odd keys") + "\n";
+        write(ROLL, text.as_bytes())
+    }
+}
+
+fn read(path: &Path) -> Result<(Head, Vec<Roll>), RecordError> {
+    #[derive(Deserialize)]
+    #[serde(untagged)]
+    enum Line {
+        Head(Head),
+        Roll(Box<Roll>),
+    }
+    let file = path.display().to_string();
+    let bytes = fs::read(path).map_err(RecordError::io("read", path))?;
+    let malformed = |line, problem: &str| RecordError::malformed(&file, line, problem);
+    let mut lines = parse::<Line>(&file, &bytes)?.into_iter();
+    let Some(Line::Head(head)) = lines.next() else { return Err(malformed(1, "no head of rolls")) };
+    let roll = |(number, line)| match line {
+        Line::Roll(roll) => Ok(*roll),
+        Line::Head(_) => Err(malformed(number + 2, "a second head")),
+    };
+    Ok((head, lines.enumerate().map(roll).collect::<Result<_, _>>()?))
+}
+
+/// Reads a folder of rolls, and checks that its files are those that were written.
+///
+/// # Errors
+/// Where a file is missing, malformed or edited.
+pub fn open_rolls(folder: &Path) -> Result<(RollRecordFile, Vec<Roll>), RecordError> {
+    let path = folder.join(ROLL);
+    let text = fs::read_to_string(&path).map_err(RecordError::io("read", &path))?;
+    let file = path.display().to_string();
+    let record: RollRecordFile =
+        serde_json::from_str(&text).map_err(|e| RecordError::json(&file, e.line().max(1), &e))?;
+    if record.schema != SCHEMA {
+        let problem = format!("schema {}; this program reads schema {SCHEMA}", record.schema);
+        return Err(RecordError::malformed(&file, 1, problem));
+    }
+    for name in [ROLLS_TABLE, ROLLS] {
+        let path = folder.join(name);
+        let bytes = fs::read(&path).map_err(RecordError::io("read", &path))?;
+        let (found, expected) = (sha256(&bytes), record.files.get(name).cloned().unwrap_or_default());
+        if found != expected {
+            let file = path.display().to_string();
+            return Err(RecordError::Edited { file, found, expected, by: ROLL });
+        }
+    }
+    let (_, mut rolls) = read(&folder.join(ROLLS))?;
+    in_order(&mut rolls);
+    Ok((record, rolls))
+}
+
+/// By direction, the axis below first: the order of the table.
+pub fn in_order(rolls: &mut [Roll]) {
+    rolls.sort_by(|a, b| a.direction_deg.total_cmp(&b.direction_deg).then(a.axis.cmp(&b.axis)));
+}

@@ -1,0 +1,309 @@
+//! The rolls of a sheet, one by one: each state is derived anew from its texts.
+
+use crate::{
+    files::sha256,
+    gaps::gaps_and_links,
+    record::{Contact, Design, Pose, Row, State, Unreadable, json},
+    report::{Check, Finding, Verdict},
+    roll_forces::{Rate, roll_forces},
+    rolled::Rolled,
+    sheet::{self, Sheet, Vec3},
+    start::{Start, names, start},
+    strain::axes,
+};
+use nalgebra::{Matrix2, Vector2};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+const HEAD: &str = "roll.json";
+const STATES: &str = "rolls.jsonl";
+const TABLE: &str = "rolls.csv";
+/// Figures of a roll are those of its state within this, relative.
+const SAME: f64 = 1e-9;
+/// Tolerance of the figures of a certificate.
+const CERTIFIED: f64 = 1e-9;
+/// Statuses of a roll.
+const STATUSES: [&str; 3] = ["local", "uncertified", "not-converged"];
+
+/// The files of rolls.
+#[derive(Clone, Copy, Debug)]
+pub struct RollTexts<'a> {
+    /// `roll.json`.
+    pub head: &'a str,
+    /// `rolls.jsonl`.
+    pub states: &'a str,
+    /// `rolls.csv`.
+    pub table: &'a str,
+}
+
+#[derive(Deserialize)]
+struct Head {
+    design: Design,
+    files: BTreeMap<String, String>,
+}
+
+#[derive(Deserialize)]
+struct Certificate {
+    smallest_gap: f64,
+    dual_residual: f64,
+    complementarity: f64,
+    min_multiplier: Option<f64>,
+    min_curvature: Option<f64>,
+}
+
+#[derive(Deserialize)]
+struct Turns {
+    along: [f64; 2],
+    turn_rad: [f64; 2],
+}
+
+#[derive(Deserialize)]
+struct Roll {
+    direction_deg: f64,
+    axis: String,
+    lateral: String,
+    shear: String,
+    status: String,
+    curvature: Option<f64>,
+    neutral_radius: Option<f64>,
+    neutral_stretch: Option<f64>,
+    l2: Option<f64>,
+    cell: String,
+    a1: Option<[f64; 3]>,
+    a2: Option<[f64; 3]>,
+    roll: Option<Turns>,
+    poses: Option<Vec<Pose>>,
+    contacts: Vec<Contact>,
+    certificate: Option<Certificate>,
+    links_ok: Option<bool>,
+}
+
+/// What is known of one roll.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RollReport {
+    /// Direction that is rolled.
+    pub direction_deg: f64,
+    /// `below` or `above`.
+    pub axis: String,
+    /// Its status.
+    pub status: String,
+    /// Whether it claims a certificate.
+    pub certified: bool,
+    /// The checks.
+    pub findings: Vec<Finding>,
+}
+
+/// Rolls that were read, with the design.
+pub struct RollVerifier {
+    design: Design,
+    rolls: Vec<Roll>,
+    files: Vec<Finding>,
+}
+
+impl RollVerifier {
+    /// Reads the files and checks that they fit together.
+    ///
+    /// # Errors
+    /// Where one cannot be read as what it should be.
+    pub fn new(texts: &RollTexts<'_>) -> Result<Self, Unreadable> {
+        let head: Head = json(HEAD, 0, texts.head)?;
+        // The first line says what the rolls are of.
+        let lines = texts.states.lines().enumerate().skip(1);
+        let mut rolls: Vec<Roll> = lines.map(|(k, line)| json(STATES, k + 1, line)).collect::<Result<_, _>>()?;
+        // As the table: the axis below comes first.
+        rolls.sort_by(|a, b| a.direction_deg.total_cmp(&b.direction_deg).then(b.axis.cmp(&a.axis)));
+        let mut files = Vec::new();
+        for (name, text) in [(STATES, texts.states), (TABLE, texts.table)] {
+            let found = sha256(text.as_bytes());
+            files.push(match head.files.get(name) {
+                Some(sum) if *sum == found => of_files(Verdict::Proved, format!("{name} has the checksum of {HEAD}")),
+                Some(sum) => {
+                    let words =
+                        format!("{name} was edited, cut off or continued: its SHA-256 is {found}, {HEAD} has {sum}");
+                    of_files(Verdict::False, words)
+                }
+                None => of_files(Verdict::Open, format!("{name} has no checksum in {HEAD}")),
+            });
+        }
+        files.push(table_fits(&rolls, texts.table)?);
+        Ok(RollVerifier { design: head.design, rolls, files })
+    }
+
+    /// What is known of the files.
+    pub fn files(&self) -> &[Finding] {
+        &self.files
+    }
+
+    /// Name of the design.
+    pub fn design(&self) -> &str {
+        &self.design.name
+    }
+
+    /// Rolls.
+    pub fn len(&self) -> usize {
+        self.rolls.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.rolls.is_empty()
+    }
+
+    /// Verifies roll `k`, counted from 0 in the order of the table.
+    pub fn roll(&self, k: usize) -> RollReport {
+        let roll = &self.rolls[k];
+        let certified = roll.status == "local";
+        let mut findings = vec![status(roll, certified)];
+        if roll.curvature.is_some() {
+            findings
+                .extend(self.of_state(roll, certified).unwrap_or_else(|words| vec![of_files(Verdict::False, words)]));
+        }
+        let (direction_deg, axis, status) = (roll.direction_deg, roll.axis.clone(), roll.status.clone());
+        RollReport { direction_deg, axis, status, certified, findings }
+    }
+
+    fn of_state(&self, roll: &Roll, certified: bool) -> Result<Vec<Finding>, String> {
+        let unit = self.design.reference_radius;
+        let cell = sheet::cell(&roll.cell).ok_or_else(|| format!("\"{}\" is no cell", roll.cell))?;
+        let (Some(poses), Some(turns), Some(a1), Some(a2)) = (&roll.poses, &roll.roll, roll.a1, roll.a2) else {
+            return Err("a roll with a curvature has no state".into());
+        };
+        let state = State { a1, a2, poses: poses.clone(), ..State::default() };
+        let start: Start = start(&self.design, &cell, &names(&state))?;
+        let along = Vec3::new(turns.along[0], turns.along[1], 0.0);
+        let rolled = Rolled { along, turn_rad: turns.turn_rad, places: start.sheet.places() };
+        let mut here = start.sheet.at(&state, unit)?;
+        if let Some(words) = rolled.contradiction(here.lattice) {
+            return Err(words);
+        }
+        here.roll = Some(rolled);
+        let mut out = vec![match deformation(roll, &here, &start.sheet, unit) {
+            Ok(off) => {
+                let words = format!("curvature, radius and stretch are those of the state, to {off:.1e}");
+                Finding::new(Check::Deformation, Verdict::Proved, Some(off), words)
+            }
+            Err(words) => Finding::new(Check::Deformation, Verdict::False, None, words),
+        }];
+        let min_gap = roll.certificate.as_ref().map(|c| c.smallest_gap);
+        let row = Row { status: roll.status.clone(), links_ok: roll.links_ok, min_gap, ..Row::default() };
+        out.extend(gaps_and_links(&row, &here, &start, unit));
+        if certified {
+            out.extend(roll_forces(&here, &roll.contacts, &rates(roll, &start.sheet), unit));
+        }
+        Ok(out)
+    }
+}
+
+fn of_files(verdict: Verdict, words: impl Into<String>) -> Finding {
+    Finding::new(Check::Files, verdict, None, words)
+}
+
+/// Whether the table's figures are those of the states, bit for bit.
+fn table_fits(rolls: &[Roll], table: &str) -> Result<Finding, Unreadable> {
+    let mut reader = csv::Reader::from_reader(table.as_bytes());
+    let wrong = |line: usize, problem: String| Unreadable { file: TABLE, line, problem };
+    let mut known = rolls.iter();
+    for (k, row) in reader.deserialize::<BTreeMap<String, String>>().enumerate() {
+        let row = row.map_err(|e| wrong(k + 2, e.to_string()))?;
+        let Some(roll) = known.next() else {
+            return Ok(of_files(Verdict::False, format!("{TABLE}:{}: {STATES} has no such roll", k + 2)));
+        };
+        let number = |name: &str| row.get(name).and_then(|text| text.parse::<f64>().ok());
+        let figures = [
+            ("direction_deg", Some(roll.direction_deg)),
+            ("curvature", roll.curvature),
+            ("neutral_radius", roll.neutral_radius),
+            ("neutral_stretch", roll.neutral_stretch),
+            ("l2", roll.l2),
+        ];
+        let text = |name: &str| row.get(name).map(String::as_str);
+        let words = [("axis", &roll.axis), ("status", &roll.status), ("cell", &roll.cell)];
+        let other = figures.iter().find(|(name, written)| number(name) != *written).map(|(name, _)| *name);
+        let other = other.or(words.iter().find(|(name, written)| text(name) != Some(written)).map(|(name, _)| *name));
+        if let Some(name) = other {
+            return Ok(of_files(Verdict::False, format!("{TABLE}:{}: {name} is not that of {STATES}", k + 2)));
+        }
+    }
+    Ok(match known.next() {
+        Some(_) => of_files(Verdict::False, format!("{STATES} has rolls that {TABLE} lacks")),
+        None => of_files(Verdict::Proved, format!("{TABLE} has the figures of {STATES}")),
+    })
+}
+
+/// Whether the roll has what its status says.
+fn status(roll: &Roll, certified: bool) -> Finding {
+    let of = |verdict, words: &str| Finding::new(Check::Status, verdict, None, words);
+    if !STATUSES.contains(&roll.status.as_str()) {
+        return of(Verdict::Open, "nothing is derived of this status");
+    }
+    if !certified {
+        return of(Verdict::Proved, "the roll has what its status says");
+    }
+    let (Some(c), Some(_), Some(true)) = (&roll.certificate, roll.curvature, roll.links_ok) else {
+        return of(Verdict::False, "a certified roll lacks its certificate, its curvature or its links");
+    };
+    let small = [c.dual_residual, c.complementarity, -c.min_multiplier.unwrap_or(0.0), -c.smallest_gap];
+    if small.iter().any(|x| x.is_nan() || *x > CERTIFIED) || c.min_curvature.is_some_and(|x| x <= 0.0) {
+        return of(Verdict::False, "the figures of the certificate are out of their tolerance");
+    }
+    of(Verdict::Proved, "the roll has what its status says")
+}
+
+/// Compares the state with the roll's figures; gives the largest difference, or what does not fit.
+///
+/// With A the lattice vectors of the start and A′ of the state in columns, F = A′A⁻¹, θ the turns, u and w along and across the direction:
+/// θ = κ A′ᵀu at the written length, uᵀFw = 0, l2 = wᵀFw − 1, and ρ is the mean distance of the elements from the axis.
+fn deformation(roll: &Roll, here: &Sheet, start: &Sheet, unit: f64) -> Result<f64, String> {
+    let rolled = here.roll.as_ref().ok_or("the sheet is flat")?;
+    let inverse = sheet::columns(start.lattice).try_inverse().ok_or("the design's lattice vectors are parallel")?;
+    let f: Matrix2<f64> = sheet::columns(here.lattice) * inverse;
+    let (u, w) = axes(roll.direction_deg);
+    let turning = inverse.transpose() * Vector2::from(rolled.turn_rad);
+    let away = |position: &Vec3| {
+        let from = position + Vec3::z() * rolled.axis_distance(here.lattice);
+        from.cross(&rolled.axis()).norm()
+    };
+    let n = here.bodies.len() as f64;
+    let radius = here.bodies.iter().map(|body| away(&body.position)).sum::<f64>() / n;
+    let curvature = turning.dot(&u);
+    let mut largest = 0.0_f64;
+    let mut compare = |name: &str, written: Option<f64>, found: f64| {
+        let Some(written) = written else { return Ok(()) };
+        let off = (written - found).abs() / found.abs().max(1.0);
+        largest = largest.max(off);
+        if off <= SAME { Ok(()) } else { Err(format!("{name} is {written:?}, {found:?} in the state")) }
+    };
+    compare("the direction's x", Some(rolled.along.x), u.x)?;
+    compare("the direction's y", Some(rolled.along.y), u.y)?;
+    compare("the curvature times R", roll.curvature.map(|curvature| curvature * unit), curvature)?;
+    compare("the turn along the axis", Some(0.0), turning.dot(&w))?;
+    compare("the radius by R", roll.neutral_radius.map(|radius| radius / unit), radius)?;
+    compare("the stretch", roll.neutral_stretch, curvature.abs() * radius)?;
+    compare("l2", roll.l2, w.dot(&(f * w)) - 1.0)?;
+    compare("the lean of lines along the axis", Some(0.0), u.dot(&(f * w)))?;
+    if roll.lateral != "free" {
+        compare("l2", Some(0.0), w.dot(&(f * w)) - 1.0)?;
+    }
+    if roll.shear != "free" {
+        compare("the shear", Some(0.0), w.dot(&(f * u)))?;
+    }
+    if (curvature > 0.0) != (roll.axis == "below") {
+        return Err(format!("the axis is {}, and the curvature {curvature:?}", roll.axis));
+    }
+    Ok(largest)
+}
+
+/// κ with the sign of the axis first, then the length along u, and what is free.
+fn rates(roll: &Roll, start: &Sheet) -> Vec<Rate> {
+    let (u, w) = axes(roll.direction_deg);
+    let sign = if roll.axis == "below" { 1.0 } else { -1.0 };
+    let rate = |to: Vector2<f64>, of: Vector2<f64>| Rate {
+        lattice: start.lattice.map(|a| (to * of.dot(&a.xy())).push(0.0)),
+        turn_rad: [0.0; 2],
+    };
+    let curvature = Rate { lattice: [Vec3::zeros(); 2], turn_rad: start.lattice.map(|a| sign * u.dot(&a.xy())) };
+    let mut out = vec![curvature, rate(u, u)];
+    out.extend((roll.lateral == "free").then(|| rate(w, w)));
+    out.extend((roll.shear == "free").then(|| rate(w, u)));
+    out
+}

@@ -1,0 +1,107 @@
+//! Images of a rolled sheet: rotations about one axis, and shifts along it.
+//!
+//! With u the direction that is rolled, w = e_z × u, and α = a·u, β = a·w, θ of a lattice vector a, the axis lies along w through −h e_z,
+//! h = α/θ, which is one number for all of them. The image of a point is turned by θ about it and shifted by β w.
+//!
+//! An endless sheet lies on itself after a turn. Two elements count for each other where their places in the written sheet are at most
+//! half a turn apart.
+
+use crate::sheet::{Pair, Sheet, Vec3};
+use nalgebra::{Isometry3, Matrix2, Point3, Translation3, Unit, UnitQuaternion, Vector2};
+use std::f64::consts::PI;
+
+/// How far h of one lattice vector may be from that of the other, by its size.
+const ONE_AXIS: f64 = 1e-9;
+/// Half a turn, with what rounding may add.
+const HALF_RAD: f64 = PI * (1.0 + 1e-12);
+
+/// How the images of a sheet are turned.
+#[derive(Clone, Debug)]
+pub(crate) struct Rolled {
+    /// u.
+    pub along: Vec3,
+    /// θ of both lattice vectors.
+    pub turn_rad: [f64; 2],
+    /// The places of the elements in the written sheet, in lattice vectors.
+    pub places: Vec<[f64; 2]>,
+}
+
+impl Rolled {
+    /// w.
+    pub fn axis(&self) -> Vec3 {
+        Vec3::z().cross(&self.along)
+    }
+
+    fn turn(&self, at: [f64; 2]) -> f64 {
+        self.turn_rad[0] * at[0] + self.turn_rad[1] * at[1]
+    }
+
+    /// h, of the lattice vector that is turned most.
+    pub fn axis_distance(&self, lattice: [Vec3; 2]) -> f64 {
+        let k = usize::from(self.turn_rad[1].abs() > self.turn_rad[0].abs());
+        lattice[k].dot(&self.along) / self.turn_rad[k]
+    }
+
+    /// What makes these no motions about one axis, if something does.
+    pub fn contradiction(&self, lattice: [Vec3; 2]) -> Option<String> {
+        let h = self.axis_distance(lattice);
+        if !h.is_finite() {
+            return Some("no lattice vector is turned".into());
+        }
+        let off = |k: usize| (lattice[k].dot(&self.along) - h * self.turn_rad[k]).abs();
+        let worst = off(0).max(off(1)) / (lattice[0].norm() + lattice[1].norm());
+        (worst > ONE_AXIS).then(|| format!("the turns of the lattice vectors are about two axes, {worst:.1e} apart"))
+    }
+
+    /// The motion to the image `shift`.
+    pub fn image(&self, lattice: [Vec3; 2], shift: [i32; 2]) -> Isometry3<f64> {
+        let at = shift.map(f64::from);
+        let beside = (lattice[0] * at[0] + lattice[1] * at[1]).dot(&self.axis());
+        let turn = UnitQuaternion::from_axis_angle(&Unit::new_normalize(self.axis()), self.turn(at));
+        let center = Point3::from(-Vec3::z() * self.axis_distance(lattice));
+        let about = Isometry3::rotation_wrt_point(turn, center);
+        Translation3::from(self.axis() * beside) * about
+    }
+
+    /// As [`Sheet::pairs`]: with x = θ and y = β of the way to an image, |x| is at most half a turn and |y| at most the reach.
+    pub fn pairs(&self, sheet: &Sheet, more: impl Fn(usize, usize) -> f64) -> Result<Vec<Pair>, String> {
+        let beside = sheet.lattice.map(|a| a.dot(&self.axis()));
+        let [t1, t2] = self.turn_rad;
+        let Some(inverse) = Matrix2::new(t1, t2, beside[0], beside[1]).try_inverse() else {
+            return Err("the lattice vectors are parallel".into());
+        };
+        let center = |ring: usize| sheet.circle(ring, [0, 0]).center;
+        let centers: Vec<Vec3> = (0..sheet.rings.len()).map(center).collect();
+        let mut out = Vec::new();
+        for a in 0..centers.len() {
+            for b in a..centers.len() {
+                let (i, j) = (sheet.rings[a].element, sheet.rings[b].element);
+                let between = [0, 1].map(|k| self.places[j][k] - self.places[i][k]);
+                let reach = 1.001 * (sheet.rings[a].radius + sheet.rings[b].radius + more(a, b));
+                let mid = Vector2::new(-self.turn(between), -(centers[b] - centers[a]).dot(&self.axis()));
+                let range = |k: usize| {
+                    let half = inverse[(k, 0)].abs() * HALF_RAD + inverse[(k, 1)].abs() * reach;
+                    let mid = inverse.row(k).dot(&mid.transpose());
+                    (mid - half * 1.001 - 1e-6).ceil()..=(mid + half * 1.001 + 1e-6).floor()
+                };
+                let (m, n) = (range(0), range(1));
+                if (m.end() - m.start()) * (n.end() - n.start()) > 1e7 {
+                    return Err("more than ten million images are in range".into());
+                }
+                for p in *m.start() as i32..=*m.end() as i32 {
+                    for q in *n.start() as i32..=*n.end() as i32 {
+                        // A ring and its own image at s and at −s are one pair; rings of one element move as one.
+                        if (a == b && [p, q] <= [0, 0]) || (i == j && [p, q] == [0, 0]) {
+                            continue;
+                        }
+                        let turned = self.turn([f64::from(p) + between[0], f64::from(q) + between[1]]).abs();
+                        if turned <= HALF_RAD && (sheet.circle(b, [p, q]).center - centers[a]).norm() <= reach {
+                            out.push((a, b, [p, q]));
+                        }
+                    }
+                }
+            }
+        }
+        Ok(out)
+    }
+}
