@@ -1,8 +1,10 @@
 //! The forces of a rolled state: their balance, and the curvature of −Σ μ g on the motions that keep the loaded contacts.
 //!
-//! **Unknowns.** A translation and a turn of every element, and the rates of lattice and turns with what is free. g is the least distance of
-//! the two rings next to the recorded point, found anew at every displaced state; its derivatives are differences of fourth order. Motions that change
-//! nothing, about the axis and along it, and a change of height with l1, stay among the unknowns: their curvature is 0.
+//! **Unknowns.** A translation and a turn of every element, and the rates of lattice and turns with what is free. Motions that change
+//! nothing, about the axis and along it, and a change of height with l1, stay among them: their curvature is 0.
+//!
+//! **A contact.** The distance d(y, θ) of the point θ of ring b from the circle of ring a, as the unknowns move by y; derivatives are
+//! differences of fourth order. The least distance over θ has ∇²g = d_yy − d_yθ d_θy/d_θθ.
 
 use crate::{
     apart::Arc,
@@ -11,15 +13,15 @@ use crate::{
     record::Contact,
     report::{Check, Finding, Verdict},
     rolled::Rolled,
-    sheet::{Pair, Sheet, Vec3, frame},
+    sheet::{Pair, Sheet, Vec3, distance, frame},
 };
 use maille_geometry::Circle;
 use nalgebra::{DMatrix, DVector, Point3, Unit, UnitQuaternion};
 
-/// Step of first derivatives, in R and radians.
-const STEP: f64 = 1e-4;
+/// Step of first derivatives, in core distances and radians.
+const STEP: f64 = 1e-3;
 /// Step of second derivatives.
-const LONG_STEP: f64 = 2e-3;
+const LONG_STEP: f64 = 1e-2;
 /// Contacts that carry more are kept.
 const LOADED: f64 = 1e-8;
 /// A curvature below this share of the largest, with a minus, is no rounding.
@@ -37,6 +39,8 @@ pub(crate) struct Rate {
 /// A motion that one unknown makes.
 #[derive(Clone, Copy)]
 enum Unknown {
+    /// The point along ring b.
+    Point,
     Shift(usize, Vec3),
     Turn(usize, Vec3),
     Rate(Rate),
@@ -53,17 +57,8 @@ struct Held<'a> {
 }
 
 impl Held<'_> {
-    /// The least distance, less the minor radii, when the unknowns have moved by these steps.
+    /// The distance of the point, less the minor radii, when the unknowns have moved by these steps.
     fn gap(&self, steps: &[(Unknown, f64)]) -> f64 {
-        let (arc_a, other, point) = self.moved(steps);
-        let arc = Arc::new(&arc_a, &other);
-        let (u, v) = frame(&other.normal);
-        let angle = point.dot(&v).atan2(point.dot(&u));
-        arc.at(least(&arc, angle)).distance - self.sheet.touching(self.pair.0, self.pair.1)
-    }
-
-    /// Both circles, and the way from the centre of the second to the point that was closed.
-    fn moved(&self, steps: &[(Unknown, f64)]) -> (Circle, Circle, Vec3) {
         let (a, b, shift) = self.pair;
         let (mut lattice, mut roll) = (self.sheet.lattice, self.roll.clone());
         for (unknown, x) in steps {
@@ -89,11 +84,17 @@ impl Held<'_> {
         };
         let (center, _, normal, radius) = body(a);
         let one = Circle::new(center, Unit::new_normalize(normal), radius);
-        let (center, turn, normal, radius) = body(b);
+        let (center, turn, normal, _) = body(b);
+        let along = steps.iter().filter(|(unknown, _)| matches!(unknown, Unknown::Point)).map(|(_, x)| x).sum();
+        let forward = UnitQuaternion::from_axis_angle(&Unit::new_normalize(normal), along);
+        let point = Point3::from(center + forward * (turn * self.point));
         let image = roll.image(lattice, shift);
-        let center = (image * Point3::from(center)).coords;
-        let other = Circle::new(center, Unit::new_normalize(image.rotation * normal), radius);
-        (one, other, image.rotation * (turn * self.point))
+        distance(&(image * point).coords, &one) - self.sheet.touching(a, b)
+    }
+
+    /// A step of this share of the core distance.
+    fn step(&self, share: f64) -> f64 {
+        share * self.sheet.touching(self.pair.0, self.pair.1)
     }
 
     /// The unknowns that move the pair.
@@ -103,6 +104,7 @@ impl Held<'_> {
         let moves = |unknown: &Unknown| match unknown {
             Unknown::Shift(e, _) | Unknown::Turn(e, _) => elements.contains(e),
             Unknown::Rate(_) => shift != [0, 0],
+            Unknown::Point => false,
         };
         (0..unknowns.len()).filter(|&k| moves(&unknowns[k])).collect()
     }
@@ -128,6 +130,7 @@ pub(crate) fn roll_forces(sheet: &Sheet, contacts: &[Contact], rates: &[Rate], u
             let words = format!("rings {} and {} at {:?} touch along an arc", pair.0, pair.1, pair.2);
             return both(Verdict::Open, words);
         }
+        let angle = least(&arc, angle);
         let (u, v) = frame(&other.normal);
         let out = (u * angle.cos() + v * angle.sin()) * other.radius;
         let image = roll.image(sheet.lattice, pair.2);
@@ -156,8 +159,8 @@ fn unknowns(sheet: &Sheet, rates: &[Rate]) -> Vec<Unknown> {
 
 fn gradient(held: &Held<'_>, unknowns: &[Unknown]) -> Vec<(usize, f64)> {
     let slope = |k: usize| {
-        let g = |x: f64| held.gap(&[(unknowns[k], x)]);
-        (8.0 * (g(STEP) - g(-STEP)) - (g(2.0 * STEP) - g(-2.0 * STEP))) / (12.0 * STEP)
+        let (g, h) = (|x: f64| held.gap(&[(unknowns[k], x)]), held.step(STEP));
+        (8.0 * (g(h) - g(-h)) - (g(2.0 * h) - g(-2.0 * h))) / (12.0 * h)
     };
     held.own(unknowns).into_iter().map(|k| (k, slope(k))).collect()
 }
@@ -196,14 +199,15 @@ fn curvature(held: &[Held<'_>], gradients: &[Vec<(usize, f64)>], unknowns: &[Unk
             gradient.iter().for_each(|(j, y)| gram[(*i, *j)] += x * y);
         }
         let own = held.own(unknowns);
-        for (position, &i) in own.iter().enumerate() {
-            for &j in &own[..=position] {
-                // (4 D(h/2) − D(h))/3 has an error of fourth order.
-                let at = |h: f64| mixed(held, [unknowns[i], unknowns[j]], i == j, h);
-                let second = (4.0 * at(0.5 * LONG_STEP) - at(LONG_STEP)) / 3.0;
-                of_sum[(i, j)] -= held.force * second;
+        let bend = second(held, Unknown::Point, None);
+        let aside: Vec<f64> = own.iter().map(|&i| second(held, unknowns[i], Some(Unknown::Point))).collect();
+        for (p, &i) in own.iter().enumerate() {
+            for (q, &j) in own[..=p].iter().enumerate() {
+                let other = (i != j).then_some(unknowns[j]);
+                let term = held.force * (second(held, unknowns[i], other) - aside[p] * aside[q] / bend);
+                of_sum[(i, j)] -= term;
                 if i != j {
-                    of_sum[(j, i)] -= held.force * second;
+                    of_sum[(j, i)] -= term;
                 }
             }
         }
@@ -230,12 +234,19 @@ fn curvature(held: &[Held<'_>], gradients: &[Vec<(usize, f64)>], unknowns: &[Unk
     }
 }
 
-/// The second derivative along two unknowns by differences with the step h.
-fn mixed(held: &Held<'_>, [one, other]: [Unknown; 2], same: bool, h: f64) -> f64 {
-    if same {
-        let g = |x: f64| held.gap(&[(one, x)]);
-        return (g(h) - 2.0 * g(0.0) + g(-h)) / (h * h);
-    }
-    let g = |x: f64, y: f64| held.gap(&[(one, x), (other, y)]);
-    (g(h, h) - g(h, -h) - g(-h, h) + g(-h, -h)) / (4.0 * h * h)
+/// The second derivative of the distance along one unknown, or mixed along two. With D(h) the usual difference of second order,
+/// (4 D(h/2) − D(h))/3 has an error of fourth order.
+fn second(held: &Held<'_>, one: Unknown, other: Option<Unknown>) -> f64 {
+    let at = |h: f64| match other {
+        None => {
+            let g = |x: f64| held.gap(&[(one, x)]);
+            (g(h) - 2.0 * g(0.0) + g(-h)) / (h * h)
+        }
+        Some(other) => {
+            let g = |x: f64, y: f64| held.gap(&[(one, x), (other, y)]);
+            (g(h, h) - g(h, -h) - g(-h, h) + g(-h, -h)) / (4.0 * h * h)
+        }
+    };
+    let h = held.step(LONG_STEP);
+    (4.0 * at(0.5 * h) - at(h)) / 3.0
 }
