@@ -46,6 +46,18 @@ enum Unknown {
     Rate(Rate),
 }
 
+impl Unknown {
+    fn name(&self) -> String {
+        match self {
+            Unknown::Point => "a point".into(),
+            Unknown::Shift(e, _) => format!("a shift of element {e}"),
+            Unknown::Turn(e, _) => format!("a turn of element {e}"),
+            Unknown::Rate(rate) if rate.turn_rad != [0.0; 2] => "the curvature".into(),
+            Unknown::Rate(_) => "a strain that is free".into(),
+        }
+    }
+}
+
 /// A pair of rings next to a point at which they are closed.
 struct Held<'a> {
     sheet: &'a Sheet,
@@ -144,7 +156,7 @@ pub(crate) fn roll_forces(sheet: &Sheet, contacts: &[Contact], rates: &[Rate], u
     }
     let first_rate = unknowns.len() - rates.len();
     let gradients: Vec<Vec<(usize, f64)>> = held.iter().map(|held| gradient(held, &unknowns)).collect();
-    [balance(&held, &gradients, unknowns.len(), first_rate), curvature(&held, &gradients, &unknowns)]
+    [balance(&held, &gradients, &unknowns, first_rate), curvature(&held, &gradients, &unknowns)]
 }
 
 fn unknowns(sheet: &Sheet, rates: &[Rate]) -> Vec<Unknown> {
@@ -165,8 +177,8 @@ fn gradient(held: &Held<'_>, unknowns: &[Unknown]) -> Vec<(usize, f64)> {
     held.own(unknowns).into_iter().map(|k| (k, slope(k))).collect()
 }
 
-fn balance(held: &[Held<'_>], gradients: &[Vec<(usize, f64)>], n: usize, first_rate: usize) -> Finding {
-    let mut residual = DVector::zeros(n);
+fn balance(held: &[Held<'_>], gradients: &[Vec<(usize, f64)>], unknowns: &[Unknown], first_rate: usize) -> Finding {
+    let mut residual = DVector::zeros(unknowns.len());
     residual[first_rate] = 1.0;
     let (mut least_force, mut gap) = (f64::INFINITY, 0.0_f64);
     for (held, gradient) in held.iter().zip(gradients) {
@@ -182,7 +194,22 @@ fn balance(held: &[Held<'_>], gradients: &[Vec<(usize, f64)>], n: usize, first_r
             wrong(gap, format!("a contact that carries is not closed: force times gap is {gap:.3e}"))
         }
         () if left.is_nan() || left > RESIDUAL => {
-            wrong(left, format!("the recorded forces do not balance the roll: {left:.3e} is left"))
+            let what = unknowns[residual.iamax()].name();
+            if std::env::var("DBG").is_ok() {
+                for (k, u) in unknowns.iter().enumerate() {
+                    eprintln!("{} {:.3e}", u.name(), residual[k]);
+                }
+                for h in held {
+                    let (a, b, s) = h.pair;
+                    eprintln!(
+                        "{a} {b} {s:?} force {} gap {:.2e} bend {:.3e}",
+                        h.force,
+                        h.gap(&[]),
+                        second(h, Unknown::Point, None)
+                    );
+                }
+            }
+            wrong(left, format!("the recorded forces do not balance the roll: {left:.3e} is left on {what}"))
         }
         () => {
             let words = format!("the recorded forces push, on closed contacts, and balance the roll to {left:.1e}");
@@ -226,10 +253,14 @@ fn curvature(held: &[Held<'_>], gradients: &[Vec<(usize, f64)>], unknowns: &[Unk
             say(Verdict::Open, *lowest, format!("the least curvature, {lowest:.3e}, is too near to 0"))
         }
         _ => {
-            let least = values.iter().copied().find(|v| *v > ZERO_MODE * scale).unwrap_or(0.0);
-            let words =
-                format!("no motion bends the sheet further, to second order: the least curvature is {least:.3e}");
-            say(Verdict::Proved, least, words)
+            let least = values.iter().copied().find(|v| *v > ZERO_MODE * scale);
+            let words = match least {
+                Some(least) => {
+                    format!("no motion bends the sheet further, to second order: the least curvature is {least:.3e}")
+                }
+                None => "no motion that keeps the loaded contacts has a curvature".into(),
+            };
+            Finding::new(Check::Curvature, Verdict::Proved, least, words)
         }
     }
 }

@@ -126,13 +126,16 @@ impl Target for Curl {
         LatticeFamily { base, parameters, metric: None, roll: Some(Roll::flat(u)) }
     }
 
-    /// A flat state is brought to where it is rolled about: its elements around the origin.
+    /// A flat state is brought to where it is rolled about: its first element over the axis, as the place of that is held. Beside the axis it could
+    /// not come nearer to it than it is.
     fn enter(&self, model: &Model, start: Start, _: &AtomicBool) -> Entered {
         let mut state = start.state;
         if state.roll.is_none() {
             let own = |(pose, e): (&Pose, &crate::model::Element)| state.motion_to(e.anchor).back(&pose.position);
-            let middle = state.poses.iter().zip(&model.elements).map(own).sum::<Vec3>() / state.poses.len() as f64;
-            state.poses.iter_mut().for_each(|pose| pose.position -= middle);
+            let places: Vec<Vec3> = state.poses.iter().zip(&model.elements).map(own).collect();
+            let height = places.iter().map(|place| place.z).sum::<f64>() / places.len() as f64;
+            let origin = places[0].xy().push(height);
+            state.poses.iter_mut().for_each(|pose| pose.position -= origin);
         }
         let p = self.parameters(model, &state);
         Entered { at: Some((state, p)), iterations: 0 }

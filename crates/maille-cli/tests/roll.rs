@@ -1,0 +1,143 @@
+//! `maille roll`: its record goes on where it stopped, and no planted fault passes `maille verify`.
+
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+use std::{fs, path::Path, process::Command};
+
+fn maille(folder: &Path, line: &str) -> (i32, String, String) {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_maille"));
+    let done = command.current_dir(folder).args(line.split_whitespace()).output().unwrap();
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    (done.status.code().unwrap(), text(&done.stdout), text(&done.stderr))
+}
+
+fn read(folder: &Path, name: &str) -> String {
+    fs::read_to_string(folder.join(name)).unwrap()
+}
+
+/// The table without times.
+fn table(folder: &Path) -> Vec<String> {
+    let text = read(folder, "r/rolls.csv");
+    let column = text.lines().next().unwrap().split(',').position(|name| name == "wall_s").unwrap();
+    let without = |line: &str| {
+        let cells = line.split(',').enumerate().filter(|(k, _)| *k != column).map(|(_, cell)| cell);
+        cells.collect::<Vec<_>>().join(",")
+    };
+    text.lines().map(without).collect()
+}
+
+const ROLL: &str = "roll european-4-in-1 --out r --threads 1 --quiet --directions";
+
+#[test]
+fn rolls_go_on_and_are_read() {
+    let dir = tempfile::tempdir().unwrap();
+    let folder = dir.path();
+    assert_eq!(maille(folder, &format!("{ROLL} 0,90")).0, 0);
+    let first = table(folder);
+    assert_eq!(first.len(), 5);
+    // Cut off within its third roll.
+    let states = read(folder, "r/rolls.jsonl");
+    let third: usize = states.split_inclusive('\n').take(3).map(str::len).sum();
+    fs::write(folder.join("r/rolls.jsonl"), &states[..third + 20]).unwrap();
+    fs::remove_file(folder.join("r/roll.json")).unwrap();
+    let (code, _, problem) = maille(folder, "table r");
+    assert!(code == 4 && problem.contains("the same `maille roll` command writes it"), "{problem}");
+    assert_eq!(maille(folder, &format!("{ROLL} 0,90")).0, 0);
+    assert_eq!(table(folder), first);
+    // More directions: what is there stays, in its place.
+    assert_eq!(maille(folder, &format!("{ROLL} 45")).0, 0);
+    let more = table(folder);
+    assert_eq!((more.len(), &more[..3], &more[5..]), (7, &first[..3], &first[3..]));
+    let (code, said, _) = maille(folder, "verify r");
+    assert!(code == 0 && said.contains("6 of 6 certified ones proved"), "{said}");
+    assert_eq!(maille(folder, "table r --format csv").1, read(folder, "r/rolls.csv"));
+    let json: Value = serde_json::from_str(&maille(folder, "table r --format json --rows 2").1).unwrap();
+    assert_eq!(json["rolls"].as_array().unwrap().len(), 2);
+    assert_eq!(maille(folder, "plot r -o again.svg").0, 0);
+    assert_eq!(read(folder, "again.svg"), read(folder, "r/roll.svg"));
+    // Others of the same name are not mixed in.
+    let (code, _, problem) = maille(folder, &format!("{ROLL} 0 --free width"));
+    assert!(code == 4 && problem.contains("--overwrite"), "{problem}");
+    assert_eq!(maille(folder, &format!("{ROLL} 0 --free width --overwrite")).0, 0);
+    assert_eq!(table(folder).len(), 3);
+}
+
+/// Writes one line of the states anew, with the checksums that fit it and the table.
+fn forge(folder: &Path, change: impl Fn(&mut Value)) {
+    let states = read(folder, "good.jsonl");
+    let line = |(k, line): (usize, &str)| {
+        let mut value: Value = serde_json::from_str(line).unwrap();
+        if k == 1 {
+            change(&mut value);
+        }
+        value.to_string() + "\n"
+    };
+    let states: String = states.lines().enumerate().map(line).collect();
+    let mut rows: Vec<Vec<String>> =
+        read(folder, "good.csv").lines().map(|line| line.split(',').map(str::to_owned).collect()).collect();
+    let changed: Value = serde_json::from_str(states.lines().nth(1).unwrap()).unwrap();
+    for k in 0..rows[0].len() {
+        if let Some(number) = changed.get(&rows[0][k]).and_then(Value::as_f64) {
+            rows[1][k] = format!("{number:?}");
+        }
+    }
+    let table: String = rows.iter().map(|row| row.join(",") + "\n").collect();
+    let mut head: Value = serde_json::from_str(&read(folder, "good.json")).unwrap();
+    for (name, text) in [("rolls.jsonl", &states), ("rolls.csv", &table)] {
+        let sum: String = Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect();
+        head["files"][name] = sum.into();
+        fs::write(folder.join("r").join(name), text).unwrap();
+    }
+    fs::write(folder.join("r/roll.json"), head.to_string()).unwrap();
+}
+
+/// The checks that are false, each once.
+fn refuted(folder: &Path) -> Vec<String> {
+    let (code, said, _) = maille(folder, "verify r --json");
+    let found: Value = serde_json::from_str(&said).unwrap();
+    let mut out = Vec::new();
+    for roll in found["rolls"][0]["rolls"].as_array().unwrap() {
+        for finding in roll["findings"].as_array().unwrap().iter().filter(|f| f["verdict"] == "false") {
+            out.push(finding["check"].as_str().unwrap().to_owned());
+        }
+    }
+    out.dedup();
+    assert_eq!(code, if out.is_empty() { 0 } else { 4 }, "{found:#}");
+    out
+}
+
+fn add(value: &mut Value, more: f64) {
+    *value = (value.as_f64().unwrap() + more).into();
+}
+
+#[test]
+fn no_planted_fault_passes() {
+    let dir = tempfile::tempdir().unwrap();
+    let folder = dir.path();
+    assert_eq!(maille(folder, &format!("{ROLL} 90 --axis below")).0, 0);
+    for (name, copy) in [("rolls.jsonl", "good.jsonl"), ("rolls.csv", "good.csv"), ("roll.json", "good.json")] {
+        fs::copy(folder.join("r").join(name), folder.join(copy)).unwrap();
+    }
+    forge(folder, |_| ());
+    assert_eq!(refuted(folder), Vec::<String>::new());
+    let false_by = |change: &dyn Fn(&mut Value), check: &str| {
+        forge(folder, change);
+        let found = refuted(folder);
+        assert!(found.iter().any(|name| name == check), "{check}: {found:?}");
+    };
+    false_by(&|roll| add(&mut roll["curvature"], 1e-6), "deformation");
+    false_by(&|roll| add(&mut roll["neutral_radius"], 1e-6), "deformation");
+    false_by(&|roll| add(&mut roll["neutral_stretch"], 1e-6), "deformation");
+    false_by(&|roll| roll["axis"] = "above".into(), "deformation");
+    false_by(&|roll| add(&mut roll["a1"][0], 1e-6), "deformation");
+    // Bent further, with figures that fit: rings overlap.
+    false_by(&|roll| add(&mut roll["poses"][0]["position"][2], 1e-5), "overlap");
+    false_by(&|roll| add(&mut roll["contacts"][0]["force"], 1e-3), "balance");
+    false_by(&|roll| roll["contacts"] = Value::Array(Vec::new()), "balance");
+    false_by(&|roll| add(&mut roll["certificate"]["dual_residual"], 1e-6), "status");
+    false_by(&|roll| add(&mut roll["certificate"]["smallest_gap"], -1e-6), "status");
+    false_by(&|roll| roll["links_ok"] = Value::Bool(false), "status");
+    // One turn other than that of the curvature: two axes, or another curvature.
+    forge(folder, |roll| add(&mut roll["roll"]["turn_rad"][1], 1e-6));
+    assert!(!refuted(folder).is_empty());
+}
