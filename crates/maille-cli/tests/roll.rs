@@ -93,8 +93,8 @@ fn forge(folder: &Path, change: impl Fn(&mut Value)) {
 
 /// The checks that are false, each once.
 fn refuted(folder: &Path) -> Vec<String> {
-    let (code, said, _) = maille(folder, "verify r --json");
-    let found: Value = serde_json::from_str(&said).unwrap();
+    let (code, said, problem) = maille(folder, "verify r --json");
+    let found: Value = serde_json::from_str(&said).unwrap_or_else(|_| panic!("{problem}"));
     let mut out = Vec::new();
     for roll in found["rolls"][0]["rolls"].as_array().unwrap() {
         for finding in roll["findings"].as_array().unwrap().iter().filter(|f| f["verdict"] == "false") {

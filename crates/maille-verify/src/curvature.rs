@@ -328,6 +328,9 @@ pub(crate) fn kept(of_sum: &DMatrix<f64>, gram: &DMatrix<f64>) -> (Vec<f64>, usi
     let n = gram.nrows();
     let is_met = |k: &usize| gram[(*k, *k)] != 0.0 || of_sum.column(*k).iter().any(|x| *x != 0.0);
     let met: Vec<usize> = (0..n).filter(is_met).collect();
+    if met.is_empty() {
+        return (Vec::new(), n);
+    }
     let block = |of: &DMatrix<f64>| DMatrix::from_fn(met.len(), met.len(), |i, j| of[(met[i], met[j])]);
     let eigen = block(gram).symmetric_eigen();
     let largest = eigen.eigenvalues.amax();

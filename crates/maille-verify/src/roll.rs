@@ -74,6 +74,7 @@ struct Roll {
     roll: Option<Turns>,
     poses: Option<Vec<Pose>>,
     contacts: Vec<Contact>,
+    min_gap: Option<f64>,
     certificate: Option<Certificate>,
     links_ok: Option<bool>,
 }
@@ -184,8 +185,9 @@ impl RollVerifier {
             }
             Err(words) => Finding::new(Check::Deformation, Verdict::False, None, words),
         }];
-        let min_gap = roll.certificate.as_ref().map(|c| c.smallest_gap);
-        let row = Row { status: roll.status.clone(), links_ok: roll.links_ok, min_gap, ..Row::default() };
+        let min_gap = roll.min_gap;
+        let max_overlap = min_gap.map(|gap| (-gap).max(0.0));
+        let row = Row { status: roll.status.clone(), links_ok: roll.links_ok, min_gap, max_overlap, ..Row::default() };
         out.extend(gaps_and_links(&row, &here, &start, unit));
         if certified {
             out.extend(roll_forces(&here, &roll.contacts, &rates(roll, &start.sheet), unit));
@@ -215,6 +217,7 @@ fn table_fits(rolls: &[Roll], table: &str) -> Result<Finding, Unreadable> {
             ("neutral_radius", roll.neutral_radius),
             ("neutral_stretch", roll.neutral_stretch),
             ("l2", roll.l2),
+            ("min_gap", roll.min_gap),
         ];
         let text = |name: &str| row.get(name).map(String::as_str);
         let words = [("axis", &roll.axis), ("status", &roll.status), ("cell", &roll.cell)];

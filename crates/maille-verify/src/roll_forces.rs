@@ -195,20 +195,6 @@ fn balance(held: &[Held<'_>], gradients: &[Vec<(usize, f64)>], unknowns: &[Unkno
         }
         () if left.is_nan() || left > RESIDUAL => {
             let what = unknowns[residual.iamax()].name();
-            if std::env::var("DBG").is_ok() {
-                for (k, u) in unknowns.iter().enumerate() {
-                    eprintln!("{} {:.3e}", u.name(), residual[k]);
-                }
-                for h in held {
-                    let (a, b, s) = h.pair;
-                    eprintln!(
-                        "{a} {b} {s:?} force {} gap {:.2e} bend {:.3e}",
-                        h.force,
-                        h.gap(&[]),
-                        second(h, Unknown::Point, None)
-                    );
-                }
-            }
             wrong(left, format!("the recorded forces do not balance the roll: {left:.3e} is left on {what}"))
         }
         () => {
