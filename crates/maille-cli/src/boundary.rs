@@ -50,7 +50,7 @@ Examples:
   maille boundary european-4-in-1
   maille boundary european-4-in-1 --tolerance 3e-4 --vertices 20000   finer, from the rays that are there
   maille boundary 1.1 --tolerance 0.005 --vertices 500 --out results/surface-1.1
-  maille boundary european-4-in-1 --cell auto --out folded   with folds in larger cells, takes minutes
+  maille boundary european-4-in-1 --cell auto --out folded   with folds in larger cells, takes a minute
   maille plot european-4-in-1-boundary --style paper -o fig.pdf   its figure, for print
   maille verify european-4-in-1-boundary   its states derived anew
 

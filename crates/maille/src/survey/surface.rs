@@ -196,8 +196,8 @@ impl<'a> RaySolver<'a> {
 }
 
 /// Finds the surface on the current thread pool; the result does not depend on the number of threads. `known` are vertices of
-/// an earlier run, perhaps of another tolerance: a ray depends on its direction alone, and on the rays between which it was
-/// put. `found` gets each new one, `planned` the number of rays of a pass before it begins.
+/// an earlier run. Of the same tolerance it goes on as if it had not been stopped; of another, rays may start from other neighbours, and
+/// end in other folds, than in a run of its own. `found` gets each new one, `planned` the number of rays of a pass before it begins.
 pub fn boundary(
     model: &Model,
     options: &BoundaryOptions,
