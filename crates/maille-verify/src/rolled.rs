@@ -6,9 +6,10 @@
 //! An endless sheet lies on itself after a turn. Two elements count for each other where their places in the written sheet are at most
 //! half a turn apart.
 
-use crate::sheet::{Pair, Sheet, Vec3};
-use nalgebra::{Isometry3, Matrix2, Point3, Translation3, Unit, UnitQuaternion, Vector2};
+use nalgebra::{Isometry3, Matrix2, Point3, Translation3, Unit, UnitQuaternion, Vector2, Vector3};
 use std::f64::consts::PI;
+
+type Vec3 = Vector3<f64>;
 
 /// How far h of one lattice vector may be from that of the other, by its size.
 const ONE_AXIS: f64 = 1e-9;
@@ -63,45 +64,34 @@ impl Rolled {
         Translation3::from(self.axis() * beside) * about
     }
 
-    /// As [`Sheet::pairs`]: with x = θ and y = β of the way to an image, |x| is at most half a turn and |y| at most the reach.
-    pub fn pairs(&self, sheet: &Sheet, more: impl Fn(usize, usize) -> f64) -> Result<Vec<Pair>, String> {
-        let beside = sheet.lattice.map(|a| a.dot(&self.axis()));
+    /// Shifts of the images of element j that count for element i and may be within `reach` of it, `beside` being the way along the axis from the
+    /// one ring's centre to the other's: with x = θ and y = β of the way to an image, |x| is at most half a turn and |y| at most the reach.
+    pub fn shifts(
+        &self,
+        lattice: [Vec3; 2],
+        [i, j]: [usize; 2],
+        beside: f64,
+        reach: f64,
+    ) -> Result<Vec<[i32; 2]>, String> {
+        let [b1, b2] = lattice.map(|a| a.dot(&self.axis()));
         let [t1, t2] = self.turn_rad;
-        let Some(inverse) = Matrix2::new(t1, t2, beside[0], beside[1]).try_inverse() else {
-            return Err("the lattice vectors are parallel".into());
+        let inverse = Matrix2::new(t1, t2, b1, b2).try_inverse().ok_or("the lattice vectors are parallel")?;
+        let between = [0, 1].map(|k| self.places[j][k] - self.places[i][k]);
+        let mid = inverse * Vector2::new(-self.turn(between), -beside);
+        let range = |k: usize| {
+            let half = inverse[(k, 0)].abs() * HALF_RAD + inverse[(k, 1)].abs() * reach;
+            (mid[k] - half * 1.001 - 1e-6).ceil()..=(mid[k] + half * 1.001 + 1e-6).floor()
         };
-        let center = |ring: usize| sheet.circle(ring, [0, 0]).center;
-        let centers: Vec<Vec3> = (0..sheet.rings.len()).map(center).collect();
-        let mut out = Vec::new();
-        for a in 0..centers.len() {
-            for b in a..centers.len() {
-                let (i, j) = (sheet.rings[a].element, sheet.rings[b].element);
-                let between = [0, 1].map(|k| self.places[j][k] - self.places[i][k]);
-                let reach = 1.001 * (sheet.rings[a].radius + sheet.rings[b].radius + more(a, b));
-                let mid = Vector2::new(-self.turn(between), -(centers[b] - centers[a]).dot(&self.axis()));
-                let range = |k: usize| {
-                    let half = inverse[(k, 0)].abs() * HALF_RAD + inverse[(k, 1)].abs() * reach;
-                    let mid = inverse.row(k).dot(&mid.transpose());
-                    (mid - half * 1.001 - 1e-6).ceil()..=(mid + half * 1.001 + 1e-6).floor()
-                };
-                let (m, n) = (range(0), range(1));
-                if (m.end() - m.start()) * (n.end() - n.start()) > 1e7 {
-                    return Err("more than ten million images are in range".into());
-                }
-                for p in *m.start() as i32..=*m.end() as i32 {
-                    for q in *n.start() as i32..=*n.end() as i32 {
-                        // A ring and its own image at s and at −s are one pair; rings of one element move as one.
-                        if (a == b && [p, q] <= [0, 0]) || (i == j && [p, q] == [0, 0]) {
-                            continue;
-                        }
-                        let turned = self.turn([f64::from(p) + between[0], f64::from(q) + between[1]]).abs();
-                        if turned <= HALF_RAD && (sheet.circle(b, [p, q]).center - centers[a]).norm() <= reach {
-                            out.push((a, b, [p, q]));
-                        }
-                    }
-                }
-            }
+        let (m, n) = (range(0), range(1));
+        if (m.end() - m.start()) * (n.end() - n.start()) > 1e7 {
+            return Err("more than ten million images are in range".into());
         }
-        Ok(out)
+        let rows = *m.start() as i32..=*m.end() as i32;
+        let all = rows.flat_map(|p| (*n.start() as i32..=*n.end() as i32).map(move |q| [p, q]));
+        let counts = |shift: &[i32; 2]| {
+            let turned = self.turn([0, 1].map(|k| f64::from(shift[k]) + between[k]));
+            turned.abs() <= HALF_RAD
+        };
+        Ok(all.filter(counts).collect())
     }
 }

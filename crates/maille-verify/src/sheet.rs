@@ -230,7 +230,7 @@ impl Sheet {
     /// With dual vectors b_k (b_k · a_l = δ_kl), a shift s with |x + s₁ a₁ + s₂ a₂| ≤ d has |s_k + b_k · x| ≤ d |b_k|.
     pub fn pairs(&self, more: impl Fn(usize, usize) -> f64) -> Result<Vec<Pair>, String> {
         if let Some(roll) = &self.roll {
-            return roll.pairs(self, more);
+            return self.rolled_pairs(roll, more);
         }
         let [a1, a2] = self.lattice;
         let area = a1.cross(&a2);
@@ -263,6 +263,28 @@ impl Sheet {
                         if (x + self.translation([i, j])).norm() <= reach {
                             out.push((a, b, [i, j]));
                         }
+                    }
+                }
+            }
+        }
+        Ok(out)
+    }
+
+    fn rolled_pairs(&self, roll: &Rolled, more: impl Fn(usize, usize) -> f64) -> Result<Vec<Pair>, String> {
+        let center = |ring: usize| self.circle(ring, [0, 0]).center;
+        let centers: Vec<Vec3> = (0..self.rings.len()).map(center).collect();
+        let mut out = Vec::new();
+        for a in 0..centers.len() {
+            for b in a..centers.len() {
+                let elements = [a, b].map(|ring| self.rings[ring].element);
+                let reach = 1.001 * (self.rings[a].radius + self.rings[b].radius + more(a, b));
+                let beside = (centers[b] - centers[a]).dot(&roll.axis());
+                for shift in roll.shifts(self.lattice, elements, beside, reach)? {
+                    // As in `pairs`.
+                    let same = elements[0] == elements[1];
+                    let counted = !((a == b && shift <= [0, 0]) || (same && shift == [0, 0]));
+                    if counted && (self.circle(b, shift).center - centers[a]).norm() <= reach {
+                        out.push((a, b, shift));
                     }
                 }
             }

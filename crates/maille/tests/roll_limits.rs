@@ -16,6 +16,9 @@ fn a_mirror_symmetric_sheet_bends_both_ways_alike() {
         ("european-4-in-1", 90.0, Across::HELD),
         ("european-4-in-1", 90.0, FREE),
         ("european-4-in-1", 0.0, Across::HELD),
+        // An element that is held beside the axis ended these.
+        ("2", 0.0, Across::HELD),
+        ("2", 45.0, Across::HELD),
     ] {
         let sheet = sheet(name, "1x1");
         let [below, above] = [1.0, -1.0].map(|sign| {
