@@ -62,8 +62,8 @@ designs! {
     japanese_6_in_1: "japanese-6-in-1", 0 other contacts, 0 no limit;
     #[ignore = "many minutes"]
     japanese_8_in_2: "japanese-8-in-2", 0 other contacts, 48 no limit;
-    #[ignore = "many minutes; not yet run to its end, the counts are not known"]
-    japanese_12_in_2: "japanese-12-in-2", 0 other contacts, 0 no limit;
+    #[ignore = "many minutes"]
+    japanese_12_in_2: "japanese-12-in-2", 0 other contacts, 48 no limit;
     #[ignore = "minutes"]
     kings_mail: "kings-mail", 0 other contacts, 0 no limit;
     design_1_1_chapter6: "1.1-chapter6", 0 other contacts, 0 no limit;
