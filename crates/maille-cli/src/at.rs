@@ -1,6 +1,7 @@
 //! `--at direction=30,l2=-0.125`: a row of a record; `--at roomiest`: a state that is found now.
 
 use maille::search::extreme::Extreme;
+use maille_io::roll::Axis;
 use std::fmt;
 
 /// Which row of a record is meant.
@@ -12,6 +13,8 @@ pub struct At {
     pub l2: Option<f64>,
     /// Frame of a simulation, from 0.
     pub frame: Option<usize>,
+    /// Where the axis of a roll is.
+    pub axis: Option<Axis>,
 }
 
 /// What is to be shown: a row of a record or a frame, or an extreme of the design.
@@ -43,6 +46,14 @@ pub fn parse_at(text: &str) -> Result<At, String> {
             }
             continue;
         }
+        if key.trim() == "axis" {
+            let axis = Axis::BOTH.into_iter().find(|axis| axis.name() == value.trim());
+            let axis = axis.ok_or_else(|| format!("\"{part}\" is not an axis; give axis=below or axis=above"))?;
+            if at.axis.replace(axis).is_some() {
+                return Err("axis is given twice".into());
+            }
+            continue;
+        }
         let value: f64 = value.trim().parse().ok().filter(|x: &f64| x.is_finite()).ok_or_else(wrong)?;
         let slot = match key.trim() {
             "direction" => &mut at.direction,
@@ -59,18 +70,24 @@ pub fn parse_at(text: &str) -> Result<At, String> {
 impl At {
     /// Whether a row of this direction and l2 is meant.
     pub fn fits(&self, direction_deg: f64, l2: f64) -> bool {
-        let same = |wanted: Option<f64>, x: f64| wanted.is_none_or(|w| (w - x).abs() < 1e-9);
-        same(self.direction, direction_deg) && same(self.l2, l2)
+        same(self.direction, direction_deg) && same(self.l2, l2) && self.axis.is_none()
     }
+
+    /// Whether a roll of this direction and axis is meant.
+    pub fn fits_roll(&self, direction_deg: f64, axis: Axis) -> bool {
+        same(self.direction, direction_deg) && self.axis.is_none_or(|wanted| wanted == axis)
+    }
+}
+
+fn same(wanted: Option<f64>, x: f64) -> bool {
+    wanted.is_none_or(|w| (w - x).abs() < 1e-9)
 }
 
 impl fmt::Display for At {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match (self.direction, self.l2) {
-            (Some(d), Some(l2)) => write!(f, "direction={d},l2={l2}"),
-            (Some(d), None) => write!(f, "direction={d}"),
-            (None, Some(l2)) => write!(f, "l2={l2}"),
-            (None, None) => write!(f, "any place"),
-        }
+        let numbers = [("direction", self.direction), ("l2", self.l2)];
+        let numbers = numbers.into_iter().filter_map(|(key, value)| Some(format!("{key}={}", value?)));
+        let parts: Vec<String> = numbers.chain(self.axis.map(|axis| format!("axis={}", axis.name()))).collect();
+        f.write_str(if parts.is_empty() { "any place".to_owned() } else { parts.join(",") }.as_str())
     }
 }

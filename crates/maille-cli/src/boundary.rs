@@ -39,7 +39,8 @@ use std::{
 /// The closed surface of all in-plane strains that a sheet can have
 ///
 /// Rays from the written lattice in the space of Green strains (E_xx, E_yy, E_xy, the tensor shear), each to the farthest
-/// certified state, with the proven outer bound; more rays where the surface bends. Writes a folder with boundary.csv (one row
+/// certified state, with the proven outer bound; more rays where the surface bends. The first 162 rays are searched as --effort says; later ones
+/// begin with their neighbours' states, and draw starts only until two lead to the best. Writes a folder with boundary.csv (one row
 /// for each vertex: where the straight way is first stopped, and the farthest state), boundary.obj and boundary.ply (the mesh),
 /// boundary.svg and boundary.png (three sections and a view), boundary.jsonl (from which an interrupted run continues),
 /// surface.json and surface.jsonl (what it is of, and every state). `maille table`, `maille plot` and `maille verify` read the

@@ -307,6 +307,13 @@ fn draw(args: &Args, subjects: &[Subject<'_>], options: &RenderOptions) -> Resul
 /// What limit a picture shows.
 fn caption(source: &Source) -> Option<Caption> {
     let (state, _) = source.locked.as_ref()?;
+    if let Some(roll) = &source.rolled {
+        let unit = source.design.unit.as_deref().map_or(String::new(), |unit| format!(" {unit}"));
+        let radius = roll.neutral_radius.map_or(String::new(), |radius| format!(", radius {radius:.4}{unit}"));
+        let (name, axis) = (&source.design.name, roll.axis.name());
+        let text = format!("{name}, rolled along {}°, axis {axis}{radius}", roll.direction_deg);
+        return Some(Caption { text, pull_deg: None });
+    }
     let [l1, l2] = Direction::of_degrees(state.direction_deg).stretches(&state.deformation_gradient);
     let text = format!("{}, pulled along {}°, l₂ = {l2:.4}, l₁ = {l1:.4}", source.design.name, state.direction_deg);
     Some(Caption { text: text.replace("= -", "= −"), pull_deg: Some(state.direction_deg) })

@@ -1,16 +1,18 @@
 //! `maille roll`: how tightly a sheet can be rolled along each direction, both ways, as a record.
 
 use crate::{
-    exit::{self, refused},
+    exit::{self, refused, wrong},
     input::{DesignArgs, Input, file_name},
     interrupt,
     map::{RunArgs, pool},
     numbers::{Numbers, parse, read},
     output::{self, counted, say},
     progress::Progress,
+    records::holds_record,
 };
 use maille::{Across, Design, question::Effort, record::Status, survey::CellChoice};
 use maille_io::{
+    boundary::SURFACE,
     plot::{Layout, roll_svg, svg_to_png},
     roll::{Axis, ROLL, Roll, RollFolder, RollQuestion, in_order, rolls_json},
 };
@@ -121,6 +123,10 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let usual = || PathBuf::from("maille-out").join(format!("{}-roll", file_name(&input.design.name)));
     let out = args.out.clone().unwrap_or_else(usual);
     output::folder(&out, "the rolls are a folder")?;
+    if holds_record(&out) || out.join(SURFACE).is_file() {
+        let problem = format!("{} holds a record of another kind", out.display());
+        return Err(wrong(exit::RECORD, problem, "name another folder with --out"));
+    }
     let (mut folder, mut rolls) = RollFolder::open(&out, &input.design, &question, args.run.overwrite)?;
     // Until all files are of this run, there is nothing to read.
     match fs::remove_file(out.join(ROLL)) {
@@ -130,10 +136,8 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         _ => {}
     }
     let asked = question.rolls();
-    let is_known = |rolls: &[Roll], &(direction_deg, axis): &(f64, Axis)| {
-        rolls.iter().any(|roll| roll.direction_deg == direction_deg && roll.axis == axis)
-    };
-    let missing: Vec<(f64, Axis)> = asked.iter().copied().filter(|roll| !is_known(&rolls, roll)).collect();
+    let is_known = |asked: &(f64, Axis)| rolls.iter().any(|roll| roll.key() == *asked);
+    let missing: Vec<(f64, Axis)> = asked.iter().copied().filter(|asked| !is_known(asked)).collect();
     let known = asked.len() - missing.len();
     let (cancel, pool) = (interrupt::flag(args.quiet)?, pool(args.run.threads)?);
     let begun = Instant::now();
@@ -156,7 +160,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     write(&out, &folder, &input, &question, &rolls)?;
     let wall_s = begun.elapsed().as_secs_f64();
     let interrupted = stopped(&cancel);
-    let shown: Vec<Roll> = rolls.into_iter().filter(|roll| asked.contains(&(roll.direction_deg, roll.axis))).collect();
+    let shown: Vec<Roll> = rolls.into_iter().filter(|roll| asked.contains(&roll.key())).collect();
     if args.json {
         output::print_json(&output::timed(rolls_json(&input.design, &shown), wall_s))?;
     } else if !args.quiet {

@@ -22,6 +22,7 @@ use maille::{
 use maille_io::{
     mesh,
     record::{Record, SIMULATION, SimulationFiles, open_simulation},
+    roll::{ROLL, Roll, open_rolls},
 };
 use miette::{Report, Result};
 use std::path::{Path, PathBuf};
@@ -32,11 +33,11 @@ pub struct SourceArgs {
     /// A built-in design (see `maille designs`), a TOML file, or - for standard input; may be left out with --from
     #[arg(required_unless_present = "from")]
     pub design: Option<String>,
-    /// Folder of a record or of a simulation: take one of its states [default with --at: maille-out/DESIGN]
+    /// Folder of a record, of a simulation or of rolls: take one of its states [default with --at: maille-out/DESIGN]
     #[arg(long, value_name = "RECORD")]
     pub from: Option<PathBuf>,
     /// Which state of the record, as direction=30,l2=-0.125; what only one state fits may be left out. Of a simulation:
-    /// frame=12 [default: the last]. Or roomiest, the state of the design with the widest gaps, and tightest, that with the
+    /// frame=12 [default: the last]. Of rolls: direction=0,axis=below. Or roomiest, the state of the design with the widest gaps, and tightest, that with the
     /// thickest wire: found now, as `maille roomiest` and `maille tightest` do
     #[arg(long, value_parser = parse_place, allow_hyphen_values = true)]
     pub at: Option<Place>,
@@ -63,6 +64,8 @@ pub struct Source {
     pub simulated: Option<(Vec<State>, usize)>,
     /// The extreme state that the design now starts from: for the names of files, and in words.
     pub extreme: Option<(&'static str, String)>,
+    /// The roll that the state is of.
+    pub rolled: Option<Roll>,
 }
 
 /// What else a command asks of its source.
@@ -100,15 +103,16 @@ impl SourceArgs {
                 let design = input.design.clone();
                 let compiled = if wanted.overlaps { &tolerant(&design) } else { &design };
                 let model = input.compile(compiled, Cell::PRIMITIVE)?;
-                return Ok(Source { design, model, locked: None, simulated: None, extreme: None });
+                return Ok(Source { design, model, locked: None, simulated: None, extreme: None, rolled: None });
             }
             (None, None) => {
                 return Err(wrong(exit::USAGE, "there is neither a design nor a record", "name one of them"));
             }
         };
-        match folder.join(SIMULATION[0]).is_file() {
-            true => self.of_simulation(at, &folder),
-            false => self.of_record(at.unwrap_or_default(), input.as_ref(), &folder),
+        match () {
+            () if folder.join(SIMULATION[0]).is_file() => self.of_simulation(at, &folder),
+            () if folder.join(ROLL).is_file() => self.of_rolls(at.unwrap_or_default(), input.as_ref(), &folder),
+            () => self.of_record(at.unwrap_or_default(), input.as_ref(), &folder),
         }
     }
 
@@ -135,7 +139,14 @@ impl SourceArgs {
         let design = Design { name: input.design.name.clone(), ..design };
         // Rings that touch may overlap by a rounding.
         let model = input.compile(&tolerant(&design), Cell::PRIMITIVE)?;
-        Ok(Source { design, model, locked: None, simulated: None, extreme: Some((extreme_word(what), words)) })
+        Ok(Source {
+            design,
+            model,
+            locked: None,
+            simulated: None,
+            extreme: Some((extreme_word(what), words)),
+            rolled: None,
+        })
     }
 
     fn of_simulation(&self, at: Option<At>, folder: &Path) -> Result<Source> {
@@ -165,7 +176,14 @@ impl SourceArgs {
                 ));
             }
         };
-        Ok(Source { design: record.design, model, locked: None, simulated: Some((states, shown)), extreme: None })
+        Ok(Source {
+            design: record.design,
+            model,
+            locked: None,
+            simulated: Some((states, shown)),
+            extreme: None,
+            rolled: None,
+        })
     }
 
     fn of_record(&self, at: At, input: Option<&Input>, folder: &Path) -> Result<Source> {
@@ -222,6 +240,51 @@ impl SourceArgs {
         Ok(Source {
             design: design.clone(),
             locked: Some((state.clone(), locked)),
+            model,
+            simulated: None,
+            extreme: None,
+            rolled: None,
+        })
+    }
+
+    fn of_rolls(&self, at: At, input: Option<&Input>, folder: &Path) -> Result<Source> {
+        let (record, rolls) = open_rolls(folder)?;
+        let named = folder.display();
+        if at.frame.is_some() || at.l2.is_some() {
+            let help = "name one as --at direction=0,axis=below";
+            return Err(wrong(exit::USAGE, format!("{named} holds rolls: they have no frame and no l2"), help));
+        }
+        if input.is_some_and(|input| input.design != record.design) {
+            let problem = format!("the rolls in {named} are of another design: \"{}\"", record.design.name);
+            return Err(wrong(exit::RECORD, problem, "leave the design out to show what the folder holds"));
+        }
+        let found: Vec<(&Roll, StateRecord)> = rolls
+            .iter()
+            .filter(|roll| at.fits_roll(roll.direction_deg, roll.axis))
+            .filter_map(|roll| Some((roll, roll.state()?)))
+            .collect();
+        let [(roll, state)] = &found[..] else {
+            let all =
+                rolls.iter().map(|roll| format!("  --at direction={},axis={}", roll.direction_deg, roll.axis.name()));
+            let problem = match found.len() {
+                0 => format!("{named} has no roll with a state at {at}"),
+                n => format!("{n} rolls of {named} fit"),
+            };
+            let help = format!("name one:\n{}", all.collect::<Vec<_>>().join("\n"));
+            return Err(wrong(exit::USAGE, problem, help));
+        };
+        let unusable = |problem: String| {
+            let help = "its files were edited or do not belong together: compute it again with --overwrite";
+            wrong(exit::RECORD, format!("the rolls in {named} cannot be used: {problem}"), help)
+        };
+        let cell: Cell = roll.cell.parse().map_err(|e: InvalidInput| unusable(e.problem))?;
+        let model = Model::compile(&tolerant(&record.design), cell)
+            .map_err(|problems| unusable(problems.iter().map(|p| p.problem.clone()).collect::<Vec<_>>().join("; ")))?;
+        let locked = mesh::state_of(&model, state)?;
+        Ok(Source {
+            locked: Some((state.clone(), locked)),
+            rolled: Some((*roll).clone()),
+            design: record.design,
             model,
             simulated: None,
             extreme: None,
@@ -328,6 +391,9 @@ impl Source {
         }
         if let Some((word, _)) = self.extreme {
             return format!("{name}-{word}");
+        }
+        if let Some(roll) = &self.rolled {
+            return format!("{name}-roll_{}_{}", roll.direction_deg, roll.axis.name());
         }
         self.locked.as_ref().map_or(name.clone(), |(s, _)| name + &place(Some(s.direction_deg), Some(s.l2)))
     }

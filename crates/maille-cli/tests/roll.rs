@@ -55,6 +55,12 @@ fn rolls_go_on_and_are_read() {
     assert_eq!(json["rolls"].as_array().unwrap().len(), 2);
     assert_eq!(maille(folder, "plot r -o again.svg").0, 0);
     assert_eq!(read(folder, "again.svg"), read(folder, "r/roll.svg"));
+    // Printed and shown.
+    let place = "--from r --at direction=90,axis=below --tile 2x3 --quiet";
+    assert_eq!(maille(folder, &format!("export {place} --out roll.stl")).0, 0);
+    assert_eq!(maille(folder, &format!("render {place} --size 80x60 --out roll.png")).0, 0);
+    let (code, _, problem) = maille(folder, "export --from r --at direction=90 --out two.stl");
+    assert!(code == 2 && problem.contains("--at direction=90,axis=above"), "{problem}");
     // Others of the same name are not mixed in.
     let (code, _, problem) = maille(folder, &format!("{ROLL} 0 --free width"));
     assert!(code == 4 && problem.contains("--overwrite"), "{problem}");
@@ -70,22 +76,29 @@ fn forge(folder: &Path, change: impl Fn(&mut Value)) {
         if k == 1 {
             change(&mut value);
         }
-        value.to_string() + "\n"
+        // The line's own sum comes last.
+        value.as_object_mut().unwrap().remove("sum");
+        let object = value.to_string();
+        format!("{},\"sum\":\"{}\"}}\n", &object[..object.len() - 1], &sum(&object)[..16])
     };
     let states: String = states.lines().enumerate().map(line).collect();
     let mut rows: Vec<Vec<String>> =
         read(folder, "good.csv").lines().map(|line| line.split(',').map(str::to_owned).collect()).collect();
     let changed: Value = serde_json::from_str(states.lines().nth(1).unwrap()).unwrap();
     for k in 0..rows[0].len() {
-        if let Some(number) = changed.get(&rows[0][k]).and_then(Value::as_f64) {
-            rows[1][k] = format!("{number:?}");
+        let name = &rows[0][k];
+        match changed.get(name).or(changed["certificate"].get(name)) {
+            Some(Value::Number(number)) if number.is_f64() => rows[1][k] = format!("{:?}", number.as_f64().unwrap()),
+            Some(Value::String(text)) => rows[1][k] = text.clone(),
+            Some(Value::Null) => rows[1][k].clear(),
+            Some(other) => rows[1][k] = other.to_string(),
+            None => {}
         }
     }
     let table: String = rows.iter().map(|row| row.join(",") + "\n").collect();
     let mut head: Value = serde_json::from_str(&read(folder, "good.json")).unwrap();
     for (name, text) in [("rolls.jsonl", &states), ("rolls.csv", &table)] {
-        let sum: String = Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect();
-        head["files"][name] = sum.into();
+        head["files"][name] = sum(text).into();
         fs::write(folder.join("r").join(name), text).unwrap();
     }
     fs::write(folder.join("r/roll.json"), head.to_string()).unwrap();
@@ -137,7 +150,47 @@ fn no_planted_fault_passes() {
     false_by(&|roll| add(&mut roll["certificate"]["dual_residual"], 1e-6), "status");
     false_by(&|roll| add(&mut roll["certificate"]["smallest_gap"], -1e-6), "status");
     false_by(&|roll| roll["links_ok"] = Value::Bool(false), "status");
+    false_by(&|roll| add(&mut roll["certificate"]["smallest_gap"], 5.0), "status");
+    false_by(&|roll| add(&mut roll["certificate"]["min_curvature"], 1.0), "curvature");
+    false_by(&|roll| roll["certificate"]["zero_modes"] = 99.into(), "curvature");
+    false_by(&|roll| add(&mut roll["certificate"]["min_multiplier"], 1.0), "balance");
+    false_by(&|roll| roll["min_gap"] = Value::Null, "status");
+    false_by(&|roll| add(&mut roll["min_gap"], 1e-6), "overlap");
+    false_by(&|roll| roll["contacts"][0]["shift"] = serde_json::json!([0, 40]), "balance");
     // One turn other than that of the curvature: two axes, or another curvature.
     forge(folder, |roll| add(&mut roll["roll"]["turn_rad"][1], 1e-6));
     assert!(!refuted(folder).is_empty());
+    // Turns that hardly turn: no end of images.
+    forge(folder, |roll| roll["roll"]["turn_rad"] = serde_json::json!([0.0, 1e-13]));
+    assert!(!refuted(folder).is_empty());
+    // Files that do not belong together, with checksums that fit.
+    let files = |head: &dyn Fn(&mut Value), states: &dyn Fn(&str) -> String, table: &dyn Fn(&str) -> String| {
+        let mut value: Value = serde_json::from_str(&read(folder, "good.json")).unwrap();
+        head(&mut value);
+        let texts =
+            [("rolls.jsonl", states(&read(folder, "good.jsonl"))), ("rolls.csv", table(&read(folder, "good.csv")))];
+        for (name, text) in texts {
+            value["files"][name] = sum(&text).into();
+            fs::write(folder.join("r").join(name), text).unwrap();
+        }
+        fs::write(folder.join("r/roll.json"), value.to_string()).unwrap();
+        maille(folder, "verify r").0
+    };
+    let same = |text: &str| text.to_owned();
+    assert_eq!(files(&|_| (), &same, &same), 0);
+    assert_eq!(files(&|head| head["schema"] = 9.into(), &same, &same), 4);
+    assert_eq!(files(&|head| head["input_hash"] = "0".into(), &same, &same), 4);
+    assert_eq!(files(&|head| head["question"]["free"]["shear_free"] = true.into(), &same, &same), 4);
+    assert_eq!(files(&|head| head["question"]["directions_deg"] = serde_json::json!([30.0]), &same, &same), 4);
+    assert_eq!(files(&|head| head["design"]["reference_radius"] = (-1.0).into(), &same, &same), 4);
+    let twice = |text: &str| text.to_owned() + text.lines().last().unwrap() + "\n";
+    assert_eq!(files(&|_| (), &twice, &twice), 4);
+    let free = |text: &str| text.replace("fixed", "free");
+    assert_eq!(files(&|_| (), &same, &free), 4);
+    let digit = |text: &str| text.replace("\"n_starts\":", "\"n_starts\":1");
+    assert_eq!(files(&|_| (), &digit, &same), 4);
+}
+
+fn sum(text: &str) -> String {
+    Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -11,6 +11,7 @@ use maille::{
     solver::certificate::Certificate,
 };
 use maille_geometry::Vec3;
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
 /// A question on one strain, and what came of it.
@@ -145,14 +146,38 @@ fn length(model: &Model, a: Vec3) -> [f64; 3] {
     (a * model.unit).into()
 }
 
-/// Figures of a certificate; the gap in the file's unit, of which R is `unit`.
+/// Figures of a certificate; the gap in the file's unit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CertificateRecord {
+    /// Smallest gap of two rings.
+    pub smallest_gap: f64,
+    /// Largest component of the unbalanced force, for a unit pull.
+    pub dual_residual: f64,
+    /// Largest product of a force and its gap.
+    pub complementarity: f64,
+    /// Smallest force; none where no contact carries.
+    pub min_multiplier: Option<f64>,
+    /// Smallest curvature on the motions that keep the loaded contacts.
+    pub min_curvature: Option<f64>,
+    /// Motions without curvature.
+    pub zero_modes: usize,
+}
+
+impl CertificateRecord {
+    /// That of a certificate, where R is `unit`.
+    pub fn new(c: &Certificate, unit: f64) -> Self {
+        CertificateRecord {
+            smallest_gap: c.smallest_gap * unit,
+            dual_residual: c.dual_residual,
+            complementarity: c.complementarity,
+            min_multiplier: Some(c.min_multiplier).filter(|x| x.is_finite()),
+            min_curvature: c.min_curvature.filter(|x| x.is_finite()),
+            zero_modes: c.zero_modes,
+        }
+    }
+}
+
 fn certificate(c: &Certificate, unit: f64) -> Value {
-    json!({
-        "smallest_gap": c.smallest_gap * unit,
-        "dual_residual": c.dual_residual,
-        "complementarity": c.complementarity,
-        "min_multiplier": c.min_multiplier,
-        "min_curvature": c.min_curvature,
-        "zero_modes": c.zero_modes,
-    })
+    json!(CertificateRecord::new(c, unit))
 }

@@ -7,7 +7,10 @@ mod folder;
 
 pub use folder::{ROLL, ROLLS, ROLLS_TABLE, RollFolder, RollRecordFile, in_order, open_rolls};
 
-use crate::record::{csv_number, csv_text};
+use crate::{
+    answer::CertificateRecord,
+    record::{csv_number, csv_text},
+};
 use maille::{
     answer::Answer,
     design::Design,
@@ -15,8 +18,7 @@ use maille::{
     lattice::{Across, Direction},
     model::Model,
     question::{Effort, Goal, Question, Sense, Strain},
-    record::{ContactRecord, PoseRecord, RollRecord, Status, contact_records, pose_records},
-    solver::certificate::Certificate,
+    record::{ContactRecord, PoseRecord, RollRecord, StateRecord, Status, contact_records, pose_records},
     survey::CellChoice,
 };
 use serde::{Deserialize, Serialize};
@@ -87,38 +89,6 @@ impl RollQuestion {
             return Err(InvalidInput::new("directions", "there is none", "give one or more"));
         }
         self.rolls().into_iter().try_for_each(|roll| self.question(roll).check())
-    }
-}
-
-/// Figures of a certificate; the gap in the file's unit.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct CertificateRecord {
-    /// Smallest gap of two rings.
-    pub smallest_gap: f64,
-    /// Largest component of the unbalanced force, for a unit pull.
-    pub dual_residual: f64,
-    /// Largest product of a force and its gap.
-    pub complementarity: f64,
-    /// Smallest force; none where no contact carries.
-    pub min_multiplier: Option<f64>,
-    /// Smallest curvature on the motions that keep the loaded contacts.
-    pub min_curvature: Option<f64>,
-    /// Motions without curvature.
-    pub zero_modes: usize,
-}
-
-impl CertificateRecord {
-    /// That of a certificate, where R is `unit`.
-    pub fn new(c: &Certificate, unit: f64) -> Self {
-        CertificateRecord {
-            smallest_gap: c.smallest_gap * unit,
-            dual_residual: c.dual_residual,
-            complementarity: c.complementarity,
-            min_multiplier: Some(c.min_multiplier).filter(|x| x.is_finite()),
-            min_curvature: c.min_curvature.filter(|x| x.is_finite()),
-            zero_modes: c.zero_modes,
-        }
     }
 }
 
@@ -209,6 +179,26 @@ impl Roll {
             n_distinct: found.n_distinct,
             better_chance: found.better_chance,
             wall_s,
+        })
+    }
+
+    /// Its direction and axis: what tells it from the others of its folder.
+    pub fn key(&self) -> (f64, Axis) {
+        (self.direction_deg, self.axis)
+    }
+
+    /// Its state, as exports and pictures read one; `None` where nothing was found.
+    pub fn state(&self) -> Option<StateRecord> {
+        Some(StateRecord {
+            direction_deg: self.direction_deg,
+            l2: self.l2?,
+            status: self.status,
+            a1: self.a1?,
+            a2: self.a2?,
+            roll: Some(self.roll?),
+            poses: self.poses.clone()?,
+            contacts: self.contacts.clone(),
+            ..StateRecord::default()
         })
     }
 

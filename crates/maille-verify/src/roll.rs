@@ -5,7 +5,7 @@ use crate::{
     gaps::gaps_and_links,
     record::{Contact, Design, Pose, Row, State, Unreadable, json},
     report::{Check, Finding, Verdict},
-    roll_forces::{Rate, roll_forces},
+    roll_forces::{Rate, Written, roll_forces},
     rolled::Rolled,
     sheet::{self, Sheet, Vec3},
     start::{Start, names, start},
@@ -13,6 +13,7 @@ use crate::{
 };
 use nalgebra::{Matrix2, Vector2};
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use std::collections::BTreeMap;
 
 const HEAD: &str = "roll.json";
@@ -22,6 +23,8 @@ const TABLE: &str = "rolls.csv";
 const SAME: f64 = 1e-9;
 /// Tolerance of the figures of a certificate.
 const CERTIFIED: f64 = 1e-9;
+/// Version of the files.
+const SCHEMA: u64 = 1;
 /// Statuses of a roll.
 const STATUSES: [&str; 3] = ["local", "uncertified", "not-converged"];
 
@@ -38,8 +41,34 @@ pub struct RollTexts<'a> {
 
 #[derive(Deserialize)]
 struct Head {
+    schema: u64,
+    program_version: String,
+    input_hash: String,
     design: Design,
+    question: Question,
+    complete: bool,
     files: BTreeMap<String, String>,
+}
+
+#[derive(Deserialize)]
+struct Question {
+    directions_deg: Vec<f64>,
+    axes: Vec<String>,
+    free: Free,
+}
+
+#[derive(Deserialize)]
+struct Free {
+    lateral_free: bool,
+    shear_free: bool,
+}
+
+/// The first line of the states.
+#[derive(Deserialize)]
+struct FirstLine {
+    program_version: String,
+    input_hash: String,
+    design: String,
 }
 
 #[derive(Deserialize)]
@@ -49,6 +78,7 @@ struct Certificate {
     complementarity: f64,
     min_multiplier: Option<f64>,
     min_curvature: Option<f64>,
+    zero_modes: u64,
 }
 
 #[derive(Deserialize)]
@@ -108,12 +138,23 @@ impl RollVerifier {
     /// Where one cannot be read as what it should be.
     pub fn new(texts: &RollTexts<'_>) -> Result<Self, Unreadable> {
         let head: Head = json(HEAD, 0, texts.head)?;
-        // The first line says what the rolls are of.
-        let lines = texts.states.lines().enumerate().skip(1);
-        let mut rolls: Vec<Roll> = lines.map(|(k, line)| json(STATES, k + 1, line)).collect::<Result<_, _>>()?;
+        let unreadable = |file, problem: String| Unreadable { file, line: 1, problem };
+        if head.schema != SCHEMA {
+            return Err(unreadable(HEAD, format!("schema {}; this program reads schema {SCHEMA}", head.schema)));
+        }
+        let sizes = head.design.elements.iter().flat_map(|e| &e.rings).map(|ring| ring.major_radius);
+        if let Some(size) = sizes.chain([head.design.reference_radius]).find(|size| !(size.is_finite() && *size > 0.0))
+        {
+            return Err(unreadable(HEAD, format!("a radius of {size}")));
+        }
+        let mut lines = texts.states.lines();
+        let first: FirstLine = json(STATES, 1, lines.next().unwrap_or_default())?;
+        let read = |(k, line): (usize, &str)| Ok((json(STATES, k + 2, line)?, json(STATES, k + 2, line)?));
+        let mut both: Vec<(Roll, Value)> = lines.enumerate().map(read).collect::<Result<_, _>>()?;
         // As the table: the axis below comes first.
-        rolls.sort_by(|a, b| a.direction_deg.total_cmp(&b.direction_deg).then(b.axis.cmp(&a.axis)));
-        let mut files = Vec::new();
+        both.sort_by(|(a, _), (b, _)| a.direction_deg.total_cmp(&b.direction_deg).then(b.axis.cmp(&a.axis)));
+        let (rolls, values): (Vec<Roll>, Vec<Value>) = both.into_iter().unzip();
+        let mut files = vec![belongs(&head, &first, &rolls), line_sums(texts.states)];
         for (name, text) in [(STATES, texts.states), (TABLE, texts.table)] {
             let found = sha256(text.as_bytes());
             files.push(match head.files.get(name) {
@@ -126,7 +167,7 @@ impl RollVerifier {
                 None => of_files(Verdict::Open, format!("{name} has no checksum in {HEAD}")),
             });
         }
-        files.push(table_fits(&rolls, texts.table)?);
+        files.push(table_fits(&values, texts.table)?);
         Ok(RollVerifier { design: head.design, rolls, files })
     }
 
@@ -154,7 +195,7 @@ impl RollVerifier {
     pub fn roll(&self, k: usize) -> RollReport {
         let roll = &self.rolls[k];
         let certified = roll.status == "local";
-        let mut findings = vec![status(roll, certified)];
+        let mut findings = vec![status(roll, certified, self.design.reference_radius)];
         if roll.curvature.is_some() {
             findings
                 .extend(self.of_state(roll, certified).unwrap_or_else(|words| vec![of_files(Verdict::False, words)]));
@@ -190,7 +231,12 @@ impl RollVerifier {
         let row = Row { status: roll.status.clone(), links_ok: roll.links_ok, min_gap, max_overlap, ..Row::default() };
         out.extend(gaps_and_links(&row, &here, &start, unit));
         if certified {
-            out.extend(roll_forces(&here, &roll.contacts, &rates(roll, &start.sheet), unit));
+            let written = roll.certificate.as_ref().map(|c| Written {
+                min_multiplier: c.min_multiplier,
+                min_curvature: c.min_curvature,
+                zero_modes: c.zero_modes,
+            });
+            out.extend(roll_forces(&here, &roll.contacts, &rates(roll, &start.sheet), unit, written.as_ref()));
         }
         Ok(out)
     }
@@ -200,8 +246,48 @@ fn of_files(verdict: Verdict, words: impl Into<String>) -> Finding {
     Finding::new(Check::Files, verdict, None, words)
 }
 
-/// Whether the table's figures are those of the states, bit for bit.
-fn table_fits(rolls: &[Roll], table: &str) -> Result<Finding, Unreadable> {
+/// Whether the rolls are those of the head: of its design and version, of what it holds, each once, and as many as it says.
+fn belongs(head: &Head, first: &FirstLine, rolls: &[Roll]) -> Finding {
+    let wrong = |words: String| of_files(Verdict::False, words);
+    let of_first = [&first.program_version, &first.input_hash, &first.design];
+    if of_first != [&head.program_version, &head.input_hash, &head.design.name] {
+        return wrong(format!("the first line of {STATES} is not of the run of {HEAD}"));
+    }
+    let word = |free: bool| if free { "free" } else { "fixed" };
+    let held = [head.question.free.lateral_free, head.question.free.shear_free].map(word);
+    if let Some(roll) = rolls.iter().find(|roll| [roll.lateral.as_str(), roll.shear.as_str()] != held) {
+        return wrong(format!("width and shear of the roll along {}° are not held as {HEAD} says", roll.direction_deg));
+    }
+    let key = |roll: &Roll| (roll.direction_deg.to_bits(), roll.axis.clone());
+    if let Some(pair) = rolls.windows(2).find(|pair| key(&pair[0]) == key(&pair[1])) {
+        return wrong(format!("the roll along {}°, axis {}, is there twice", pair[0].direction_deg, pair[0].axis));
+    }
+    let asked =
+        head.question.directions_deg.iter().flat_map(|d| head.question.axes.iter().map(|a| (d.to_bits(), a.clone())));
+    let missing = asked.filter(|asked| !rolls.iter().any(|roll| key(roll) == *asked)).count();
+    match (missing, head.complete) {
+        (0, true) => of_files(Verdict::Proved, format!("all rolls that {HEAD} asks are there")),
+        (0, false) => wrong(format!("{HEAD} says that rolls are missing, and none is")),
+        (n, true) => wrong(format!("{HEAD} says that all rolls are there, and {n} are not")),
+        (n, false) => of_files(Verdict::Open, format!("{n} of the rolls that {HEAD} asks are not there yet")),
+    }
+}
+
+/// Whether each line of the states has its own checksum: the first digits of the SHA-256 of the object without it.
+fn line_sums(states: &str) -> Finding {
+    let fits = |line: &str| {
+        let (open, sum) = line.rsplit_once(",\"sum\":\"")?;
+        let sum = sum.strip_suffix("\"}")?;
+        (!sum.is_empty() && sha256(format!("{open}}}").as_bytes()).starts_with(sum)).then_some(())
+    };
+    match states.lines().position(|line| fits(line).is_none()) {
+        Some(k) => of_files(Verdict::False, format!("{STATES}:{}: the checksum of the line does not fit", k + 1)),
+        None => of_files(Verdict::Proved, format!("each line of {STATES} has its checksum")),
+    }
+}
+
+/// Whether the table's entries are those of the states, bit for bit; a value that is not there is an empty cell.
+fn table_fits(rolls: &[Value], table: &str) -> Result<Finding, Unreadable> {
     let mut reader = csv::Reader::from_reader(table.as_bytes());
     let wrong = |line: usize, problem: String| Unreadable { file: TABLE, line, problem };
     let mut known = rolls.iter();
@@ -210,20 +296,14 @@ fn table_fits(rolls: &[Roll], table: &str) -> Result<Finding, Unreadable> {
         let Some(roll) = known.next() else {
             return Ok(of_files(Verdict::False, format!("{TABLE}:{}: {STATES} has no such roll", k + 2)));
         };
-        let number = |name: &str| row.get(name).and_then(|text| text.parse::<f64>().ok());
-        let figures = [
-            ("direction_deg", Some(roll.direction_deg)),
-            ("curvature", roll.curvature),
-            ("neutral_radius", roll.neutral_radius),
-            ("neutral_stretch", roll.neutral_stretch),
-            ("l2", roll.l2),
-            ("min_gap", roll.min_gap),
-        ];
-        let text = |name: &str| row.get(name).map(String::as_str);
-        let words = [("axis", &roll.axis), ("status", &roll.status), ("cell", &roll.cell)];
-        let other = figures.iter().find(|(name, written)| number(name) != *written).map(|(name, _)| *name);
-        let other = other.or(words.iter().find(|(name, written)| text(name) != Some(written)).map(|(name, _)| *name));
-        if let Some(name) = other {
+        let same = |(name, text): &(&String, &String)| match roll.get(*name).or_else(|| roll["certificate"].get(*name))
+        {
+            None | Some(Value::Null) => text.is_empty(),
+            Some(Value::Number(number)) => number.as_f64().is_some_and(|x| text.parse() == Ok(x)),
+            Some(Value::String(written)) => text == &written,
+            Some(other) => **text == other.to_string(),
+        };
+        if let Some((name, _)) = row.iter().find(|entry| !same(entry)) {
             return Ok(of_files(Verdict::False, format!("{TABLE}:{}: {name} is not that of {STATES}", k + 2)));
         }
     }
@@ -234,10 +314,14 @@ fn table_fits(rolls: &[Roll], table: &str) -> Result<Finding, Unreadable> {
 }
 
 /// Whether the roll has what its status says.
-fn status(roll: &Roll, certified: bool) -> Finding {
+fn status(roll: &Roll, certified: bool, unit: f64) -> Finding {
     let of = |verdict, words: &str| Finding::new(Check::Status, verdict, None, words);
     if !STATUSES.contains(&roll.status.as_str()) {
         return of(Verdict::Open, "nothing is derived of this status");
+    }
+    let figures = [roll.neutral_radius, roll.neutral_stretch, roll.l2, roll.min_gap];
+    if figures.iter().any(|figure| figure.is_some() != roll.curvature.is_some()) {
+        return of(Verdict::False, "some of curvature, radius, stretch, l2 and min_gap are there, and others are not");
     }
     if !certified {
         return of(Verdict::Proved, "the roll has what its status says");
@@ -245,8 +329,10 @@ fn status(roll: &Roll, certified: bool) -> Finding {
     let (Some(c), Some(_), Some(true)) = (&roll.certificate, roll.curvature, roll.links_ok) else {
         return of(Verdict::False, "a certified roll lacks its certificate, its curvature or its links");
     };
-    let small = [c.dual_residual, c.complementarity, -c.min_multiplier.unwrap_or(0.0), -c.smallest_gap];
-    if small.iter().any(|x| x.is_nan() || *x > CERTIFIED) || c.min_curvature.is_some_and(|x| x <= 0.0) {
+    let small = [c.dual_residual, c.complementarity, (c.smallest_gap / unit).abs()];
+    let within = |x: &f64| (0.0..=CERTIFIED).contains(x);
+    let negative = c.min_multiplier.is_some_and(|x| x < -CERTIFIED) || c.min_curvature.is_some_and(|x| x <= 0.0);
+    if !small.iter().all(within) || negative {
         return of(Verdict::False, "the figures of the certificate are out of their tolerance");
     }
     of(Verdict::Proved, "the roll has what its status says")

@@ -76,22 +76,28 @@ impl Rolled {
         let [b1, b2] = lattice.map(|a| a.dot(&self.axis()));
         let [t1, t2] = self.turn_rad;
         let inverse = Matrix2::new(t1, t2, b1, b2).try_inverse().ok_or("the lattice vectors are parallel")?;
-        let between = [0, 1].map(|k| self.places[j][k] - self.places[i][k]);
+        let between = self.between([i, j]);
         let mid = inverse * Vector2::new(-self.turn(between), -beside);
         let range = |k: usize| {
             let half = inverse[(k, 0)].abs() * HALF_RAD + inverse[(k, 1)].abs() * reach;
             (mid[k] - half * 1.001 - 1e-6).ceil()..=(mid[k] + half * 1.001 + 1e-6).floor()
         };
         let (m, n) = (range(0), range(1));
-        if (m.end() - m.start()) * (n.end() - n.start()) > 1e7 {
+        if (m.end() - m.start() + 1.0) * (n.end() - n.start() + 1.0) > 1e7 {
             return Err("more than ten million images are in range".into());
         }
         let rows = *m.start() as i32..=*m.end() as i32;
         let all = rows.flat_map(|p| (*n.start() as i32..=*n.end() as i32).map(move |q| [p, q]));
-        let counts = |shift: &[i32; 2]| {
-            let turned = self.turn([0, 1].map(|k| f64::from(shift[k]) + between[k]));
-            turned.abs() <= HALF_RAD
-        };
-        Ok(all.filter(counts).collect())
+        Ok(all.filter(|shift| self.counts([i, j], *shift)).collect())
+    }
+
+    fn between(&self, [i, j]: [usize; 2]) -> [f64; 2] {
+        [0, 1].map(|k| self.places[j][k] - self.places[i][k])
+    }
+
+    /// Whether the image of element j counts for element i.
+    pub fn counts(&self, elements: [usize; 2], shift: [i32; 2]) -> bool {
+        let between = self.between(elements);
+        self.turn([0, 1].map(|k| f64::from(shift[k]) + between[k])).abs() <= HALF_RAD
     }
 }

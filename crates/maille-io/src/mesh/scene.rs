@@ -303,6 +303,7 @@ pub fn state_of(model: &Model, record: &StateRecord) -> Result<State, MeshError>
 pub fn state_words(record: Option<&StateRecord>) -> String {
     match record {
         None => "starting state".into(),
+        Some(r) if r.roll.is_some() => format!("rolled along {}°, {}", r.direction_deg, r.status.name()),
         Some(r) => format!("direction {}°, l2 {}, {}", r.direction_deg, r.l2, r.status.name()),
     }
 }

@@ -11,7 +11,7 @@ use crate::{
 };
 use maille::design::Design;
 use serde::{Deserialize, Serialize};
-use serde_json::json;
+use serde_json::{Value, json};
 use std::{collections::BTreeMap, fs, path::Path};
 
 /// Name of the file that says what the rolls are of.
@@ -87,8 +87,8 @@ impl<'a> RollFolder<'a> {
         let (path, head) = (folder.join(ROLLS), Head::new(design, question));
         let mut known = Vec::new();
         if !overwrite && path.exists() {
-            let (old, rolls) = read(&path)?;
-            if old != head {
+            let (old, rolls) = read(&path, Some(&head))?;
+            if let Some(old) = old.filter(|old| *old != head) {
                 let difference = match old.program_version == head.program_version {
                     true => format!("its inputs have the hash {:.12}…", old.input_hash),
                     false => {
@@ -98,6 +98,8 @@ impl<'a> RollFolder<'a> {
                 return Err(RecordError::OtherInputs { folder: folder.into(), difference });
             }
             known = rolls;
+            in_order(&mut known);
+            known.dedup_by_key(|roll| roll.key());
         }
         // Written anew, so that a line that was cut off does not stay.
         let text = line(&head) + &known.iter().map(line).collect::<String>();
@@ -127,7 +129,7 @@ impl<'a> RollFolder<'a> {
         let path = self.folder.join(ROLLS);
         let states = fs::read(&path).map_err(RecordError::io("read", &path))?;
         let Head { program_version, input_hash, .. } = Head::new(design, question);
-        let known = |roll: &(f64, super::Axis)| rolls.iter().any(|r| (r.direction_deg, r.axis) == *roll);
+        let known = |asked: &(f64, super::Axis)| rolls.iter().any(|roll| roll.key() == *asked);
         let record = RollRecordFile {
             schema: SCHEMA,
             program_version,
@@ -142,23 +144,21 @@ impl<'a> RollFolder<'a> {
     }
 }
 
-fn read(path: &Path) -> Result<(Head, Vec<Roll>), RecordError> {
-    #[derive(Deserialize)]
-    #[serde(untagged)]
-    enum Line {
-        Head(Head),
-        Roll(Box<Roll>),
-    }
+/// The first line and the rolls; neither where no line is whole. Of another run than `wanted` the first line alone is read: its rolls may have
+/// other keys.
+fn read(path: &Path, wanted: Option<&Head>) -> Result<(Option<Head>, Vec<Roll>), RecordError> {
     let file = path.display().to_string();
     let bytes = fs::read(path).map_err(RecordError::io("read", path))?;
-    let malformed = |line, problem: &str| RecordError::malformed(&file, line, problem);
-    let mut lines = parse::<Line>(&file, &bytes)?.into_iter();
-    let Some(Line::Head(head)) = lines.next() else { return Err(malformed(1, "no head of rolls")) };
-    let roll = |(number, line)| match line {
-        Line::Roll(roll) => Ok(*roll),
-        Line::Head(_) => Err(malformed(number + 2, "a second head")),
-    };
-    Ok((head, lines.enumerate().map(roll).collect::<Result<_, _>>()?))
+    let mut lines = parse::<Value>(&file, &bytes)?.into_iter();
+    let malformed = |line: usize, e: serde_json::Error| RecordError::malformed(&file, line, e.to_string());
+    let Some(first) = lines.next() else { return Ok((None, Vec::new())) };
+    let head: Head = serde_json::from_value(first).map_err(|e| malformed(1, e))?;
+    if wanted.is_some_and(|wanted| *wanted != head) {
+        return Ok((Some(head), Vec::new()));
+    }
+    let roll = |(k, line): (usize, Value)| serde_json::from_value(line).map_err(|e| malformed(k + 2, e));
+    let rolls = lines.enumerate().map(roll).collect::<Result<_, _>>()?;
+    Ok((Some(head), rolls))
 }
 
 /// Reads a folder of rolls, and checks that its files are those that were written.
@@ -184,7 +184,7 @@ pub fn open_rolls(folder: &Path) -> Result<(RollRecordFile, Vec<Roll>), RecordEr
             return Err(RecordError::Edited { file, found, expected, by: ROLL });
         }
     }
-    let (_, mut rolls) = read(&folder.join(ROLLS))?;
+    let (_, mut rolls) = read(&folder.join(ROLLS), None)?;
     in_order(&mut rolls);
     Ok((record, rolls))
 }

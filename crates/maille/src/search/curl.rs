@@ -2,7 +2,7 @@
 //!
 //! Images are turned about one axis across the direction u (`docs/theory/roll.md`). κ is the turn for each unit of length of the written
 //! sheet along u, and F = (1 + l1) u uᵀ + (1 + l2) w wᵀ + γ w uᵀ: lines of the sheet along the axis w stay along it. The height of the
-//! elements and l1 with κ are one geometry in many ways, so the first element's height is held and l1 is free in any case. l2 and γ
+//! elements and l1 with κ are one geometry in many ways, so the first element's place is held, over the axis, and l1 is free in any case. l2 and γ
 //! are held at 0 or left to the sheet. Nothing bounds κ by links: where it stops rings crowd each other, and the most that is claimed is
 //! `local`.
 //!
@@ -126,8 +126,8 @@ impl Target for Curl {
         LatticeFamily { base, parameters, metric: None, roll: Some(Roll::flat(u)) }
     }
 
-    /// A flat state is brought to where it is rolled about: its first element over the axis, as the place of that is held. Beside the axis it could
-    /// not come nearer to it than it is.
+    /// A flat state is brought to where it is rolled about. The first element's place is held, so it is put over the axis: held beside the axis it could
+    /// not come nearer to it than it is then.
     fn enter(&self, model: &Model, start: Start, _: &AtomicBool) -> Entered {
         let mut state = start.state;
         if state.roll.is_none() {

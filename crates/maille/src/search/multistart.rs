@@ -169,8 +169,8 @@ impl<T: Target> Multistart<'_, T> {
             // States without a certificate are no reason to stop.
             let chance = if result.lacks_certificate() { 1.0 } else { result.better_chance() };
             let left = rule.left(result.starts, chance, began.elapsed().as_secs_f64());
-            let agreed = starts.is_empty() && result.times_of_best() > 1;
-            let own = match rule.trusts_given && (agreed || !starts.is_empty()) {
+            let found_twice = starts.is_empty() && result.times_of_best() > 1;
+            let own = match rule.until_found_twice && (found_twice || !starts.is_empty()) {
                 true => 0,
                 false => batch.min(left as usize).saturating_sub(starts.len()),
             };

@@ -24,8 +24,8 @@ pub(super) struct StopRule {
     pub chance: f64,
     /// After this time no start begins.
     pub seconds: f64,
-    /// No start is drawn where two that are given lead to the best.
-    pub trusts_given: bool,
+    /// No start is drawn once two starts, given ones among them, lead to the best.
+    pub until_found_twice: bool,
 }
 
 impl StopRule {
@@ -34,14 +34,14 @@ impl StopRule {
         Self::exactly(0)
     }
 
-    /// The same, but with no drawn starts where two that are given lead to the best.
-    pub(super) fn trusting_given(self) -> Self {
-        StopRule { trusts_given: true, ..self }
+    /// The same, but with no drawn starts once two starts, given ones among them, lead to the best.
+    pub(super) fn until_found_twice(self) -> Self {
+        StopRule { until_found_twice: true, ..self }
     }
 
     /// This many starts, those that are given counted; all of these are solved.
     pub(super) fn exactly(starts: u64) -> Self {
-        StopRule { least: starts, most: starts, chance: 0.0, seconds: f64::INFINITY, trusts_given: false }
+        StopRule { least: starts, most: starts, chance: 0.0, seconds: f64::INFINITY, until_found_twice: false }
     }
 
     /// That of an effort, or of a number of starts.

@@ -53,15 +53,14 @@ impl Default for StrainOptions {
 }
 
 /// Which starts a query gets beside the states of its neighbours.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum OtherStarts {
     /// The straight way, and drawn ones as the effort says.
-    #[default]
     Usual,
     /// The same, and where waves are followed one unstable wave into each cell.
     AndEveryWave,
-    /// The straight way; drawn ones where no two of the others lead to the best.
+    /// The straight way, and drawn ones until two starts lead to the best; none where all states are of larger cells.
     WhereNeighboursDiffer,
     /// None, and only a value above this is of interest.
     NoneAndBeyond(f64),
@@ -175,7 +174,7 @@ impl<'a> StrainMethod<'a> {
             {
                 StopRule::given_only()
             }
-            OtherStarts::WhereNeighboursDiffer => StopRule::of(effort, starts).trusting_given(),
+            OtherStarts::WhereNeighboursDiffer => StopRule::of(effort, starts).until_found_twice(),
             OtherStarts::NoneAndBeyond(_) => StopRule::given_only(),
         };
         let search = Multistart { target: query, upper_bound, seed, cancel };

@@ -6,7 +6,7 @@
 //! vertex. Where the two differ the ray has left and entered the set again, or the straight way is blocked.
 //!
 //! The first rays are searched as the effort says. A later one starts from the states of the two rays that it was put between, and
-//! from drawn ones only where no two starts lead to the best. A ray may still end in a worse fold than a neighbour found. So
+//! draws starts only until two lead to the best; none where both states are of larger cells. A ray may still end in a worse fold than a neighbour found. So
 //! after each pass states are handed on along the edges at which the surface bends more than it should, until no ray gains by it;
 //! what bends then is divided.
 
@@ -298,9 +298,9 @@ fn hand_on(
         let mut tasks: BTreeMap<usize, Ray> = BTreeMap::new();
         for Bent { edge: [a, b], .. } in sphere.bent(&points(vertices), tolerance) {
             for (k, other) in [(a, b), (b, a)] {
-                let Some(distance) = vertices[other].distance else { continue };
+                let (Some(own), Some(distance)) = (vertices[k].distance, vertices[other].distance) else { continue };
                 if tried.insert((k, other, distance.to_bits())) {
-                    let others = OtherStarts::NoneAndBeyond(vertices[k].distance.unwrap_or(f64::NEG_INFINITY));
+                    let others = OtherStarts::NoneAndBeyond(own);
                     let ray = || Ray { direction: sphere.directions[k].into(), from: Vec::new(), others };
                     tasks.entry(k).or_insert_with(ray).from.push(vertices[other].clone());
                 }

@@ -56,10 +56,14 @@ fn words(axis: Axis) -> String {
     format!("{} the sheet", axis.name())
 }
 
+fn held(word: &str) -> &str {
+    if word == "fixed" { "held" } else { word }
+}
+
 /// What the plot is of, and its tightest roll each way.
 fn caption(design: &Design, rolls: &[Roll]) -> Vec<String> {
     let unit = design.unit.as_deref().map_or(String::new(), |unit| format!(" {unit}"));
-    let held = rolls.first().map(|roll| format!("Width {}, shear {}.", roll.lateral, roll.shear));
+    let held = rolls.first().map(|roll| format!("Width {}, shear {}.", held(&roll.lateral), held(&roll.shear)));
     let tightest = |axis: Axis| {
         let of_axis = rolls.iter().filter(|roll| roll.axis == axis && roll.is_certified());
         let radii = of_axis.filter_map(|roll| Some((roll.neutral_radius?, roll.direction_deg)));
@@ -68,7 +72,7 @@ fn caption(design: &Design, rolls: &[Roll]) -> Vec<String> {
     };
     let gauge = format!(
         "ρ: radius of the neutral surface, at the mean distance of the elements from the axis; R = {}{unit}. No bound is known: \
-         that no state bends further is not proved. A roll along D is the same roll along −D.",
+         that no state bends further is not proved. Opposite directions are one roll.",
         design.reference_radius
     );
     held.into_iter().chain(Axis::BOTH.into_iter().filter_map(tightest)).chain([gauge]).collect()
