@@ -301,7 +301,8 @@ fn table_fits(rolls: &[Value], table: &str) -> Result<Finding, Unreadable> {
             None | Some(Value::Null) => text.is_empty(),
             Some(Value::Number(number)) => number.as_f64().is_some_and(|x| text.parse() == Ok(x)),
             Some(Value::String(written)) => text == &written,
-            Some(other) => **text == other.to_string(),
+            Some(Value::Bool(written)) => text.parse() == Ok(*written),
+            Some(_) => false,
         };
         if let Some((name, _)) = row.iter().find(|entry| !same(entry)) {
             return Ok(of_files(Verdict::False, format!("{TABLE}:{}: {name} is not that of {STATES}", k + 2)));
