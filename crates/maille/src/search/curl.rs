@@ -41,6 +41,8 @@ pub(crate) struct Curl {
     pub free: Across,
 }
 
+/// Nearer to the axis than this an element lies on it, in R.
+const ON_AXIS: f64 = 1e-6;
 /// A curvature within this of the largest that links can have is theirs, not a limit.
 const AT_MOST: f64 = 1e-9;
 
@@ -184,12 +186,21 @@ impl Curl {
             return counted(Answer::new(model, status));
         };
         let at_most = best.value() >= self.most(model) - AT_MOST;
+        // There its place is no longer held without loss.
+        let from_axis = best.state.from_axis(0, model.elements[0].anchor);
+        let on_axis = from_axis.is_some_and(|away| away < ON_AXIS);
         let status = match () {
             () if interrupted => Status::Interrupted,
-            () if at_most => Status::Uncertified,
+            () if at_most || on_axis => Status::Uncertified,
             () => verdict(&best, f64::INFINITY),
         };
-        let note = at_most.then(|| "linked elements are half a turn apart: nothing else stops the roll".to_owned());
+        let note = match () {
+            () if at_most => Some("linked elements are half a turn apart: nothing else stops the roll".to_owned()),
+            () if on_axis => {
+                Some("the first element lies on the axis: whether it could move off it is not known".to_owned())
+            }
+            () => None,
+        };
         let value = Some(self.sign * best.value());
         let gradient = best.state.deformation_gradient(model);
         counted(Answer { value, gradient, note, ..Answer::new(model, status) }).with_solution(model, best)

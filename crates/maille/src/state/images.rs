@@ -108,16 +108,21 @@ impl State {
     /// The neutral surface of a rolled state, whose elements are anchored at `anchors` and whose reference lattice has this inverse; `None`
     /// where nothing turns.
     pub fn neutral_surface(&self, anchors: &[[f64; 2]], reference_inverse: &Matrix2<f64>) -> Option<NeutralSurface> {
+        let away = anchors.iter().enumerate().map(|(e, anchor)| self.from_axis(e, *anchor));
+        let radius = away.sum::<Option<f64>>()? / self.poses.len() as f64;
+        let stretch = self.roll?.curvature(reference_inverse).abs() * radius;
+        Some(NeutralSurface { radius, stretch })
+    }
+
+    /// Distance from the axis of element `e`, which is anchored at `anchor`; `None` where nothing turns.
+    pub(crate) fn from_axis(&self, e: usize, anchor: [f64; 2]) -> Option<f64> {
         let roll = self.roll?;
         let k = usize::from(roll.turn_rad[1].abs() > roll.turn_rad[0].abs());
         let turn = roll.turn_rad[k];
         // The axis goes through −(α/θ) e_z.
         let axis = -Vec3::z() * ([self.a1, self.a2][k].dot(&roll.along) / turn);
-        let own = |(pose, anchor): (&Pose, &[f64; 2])| self.motion_to(*anchor).back(&pose.position);
-        let away = |p: Vec3| (p - axis).cross(&roll.axis()).norm();
-        let radius = self.poses.iter().zip(anchors).map(own).map(away).sum::<f64>() / self.poses.len() as f64;
-        let stretch = roll.curvature(reference_inverse).abs() * radius;
-        (turn != 0.0).then_some(NeutralSurface { radius, stretch })
+        let own = self.motion_to(anchor).back(&self.poses[e].position);
+        (turn != 0.0).then(|| (own - axis).cross(&roll.axis()).norm())
     }
 
     /// Element `e`, which is anchored at `anchor`, in the image `shift`, as `roll` carries it.
