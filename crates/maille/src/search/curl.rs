@@ -187,8 +187,8 @@ impl Curl {
         };
         let at_most = best.value() >= self.most(model) - AT_MOST;
         // There its place is no longer held without loss.
-        let from_axis = best.state.from_axis(0, model.elements[0].anchor);
-        let on_axis = from_axis.is_some_and(|away| away < ON_AXIS);
+        let away = best.state.axis_distance(0, model.elements[0].anchor);
+        let on_axis = away.is_some_and(|away| away < ON_AXIS);
         let status = match () {
             () if interrupted => Status::Interrupted,
             () if at_most || on_axis => Status::Uncertified,

@@ -108,14 +108,14 @@ impl State {
     /// The neutral surface of a rolled state, whose elements are anchored at `anchors` and whose reference lattice has this inverse; `None`
     /// where nothing turns.
     pub fn neutral_surface(&self, anchors: &[[f64; 2]], reference_inverse: &Matrix2<f64>) -> Option<NeutralSurface> {
-        let away = anchors.iter().enumerate().map(|(e, anchor)| self.from_axis(e, *anchor));
+        let away = anchors.iter().enumerate().map(|(e, anchor)| self.axis_distance(e, *anchor));
         let radius = away.sum::<Option<f64>>()? / self.poses.len() as f64;
         let stretch = self.roll?.curvature(reference_inverse).abs() * radius;
         Some(NeutralSurface { radius, stretch })
     }
 
     /// Distance from the axis of element `e`, which is anchored at `anchor`; `None` where nothing turns.
-    pub(crate) fn from_axis(&self, e: usize, anchor: [f64; 2]) -> Option<f64> {
+    pub(crate) fn axis_distance(&self, e: usize, anchor: [f64; 2]) -> Option<f64> {
         let roll = self.roll?;
         let k = usize::from(roll.turn_rad[1].abs() > roll.turn_rad[0].abs());
         let turn = roll.turn_rad[k];
