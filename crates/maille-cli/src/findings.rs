@@ -5,8 +5,8 @@ use crate::{
     output,
     remedy::DAMAGED,
 };
-use maille_verify::{Check, Finding, Verdict};
-use miette::{IntoDiagnostic, Result, WrapErr};
+use maille_verify::{Check, Finding, Unreadable, Verdict};
+use miette::{IntoDiagnostic, Report, Result, WrapErr};
 use std::{fs, io::ErrorKind, path::Path};
 
 /// A file of a folder, if it is there.
@@ -19,6 +19,30 @@ pub fn text(folder: &Path, name: &str) -> Result<Option<String>> {
             Err(wrong(exit::RECORD, format!("{} is not a text file", path.display()), DAMAGED))
         }
         Err(e) => Err(e).into_diagnostic().wrap_err_with(|| format!("cannot read {}", path.display())),
+    }
+}
+
+/// A file that cannot be read as what it should be.
+pub fn unreadable(folder: &Path, e: &Unreadable) -> Report {
+    wrong(exit::RECORD, format!("{}:{}: {}", folder.join(e.file).display(), e.line, e.problem), DAMAGED)
+}
+
+/// The exit code by the worst verdict, and by how many of the certified ones are proved.
+pub fn code(worst: Option<Verdict>, proved: usize, certified: usize) -> u8 {
+    match worst {
+        Some(Verdict::False) => exit::RECORD,
+        Some(Verdict::Open) => exit::INCOMPLETE,
+        _ if proved < certified => exit::INCOMPLETE,
+        _ => exit::DONE,
+    }
+}
+
+/// The outcome with this exit code, in a word.
+pub fn outcome(code: u8) -> &'static str {
+    match code {
+        exit::DONE => "proved",
+        exit::RECORD => "false",
+        _ => "open",
     }
 }
 

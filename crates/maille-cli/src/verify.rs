@@ -1,13 +1,12 @@
 //! `maille verify`: records derived anew, by code that shares nothing with the solver.
 
 use crate::{
-    exit::{self, wrong},
-    findings::{marked, say_checks, text},
+    exit,
+    findings::{code, marked, outcome, say_checks, text, unreadable},
     map, output,
     progress::Progress,
     records,
     records::is_record,
-    remedy::DAMAGED,
     verify_proof::{self, VerifiedProof},
     verify_roll::{self, VerifiedRolls, is_roll},
     verify_surface::{self, VerifiedSurface, is_surface},
@@ -123,9 +122,7 @@ fn verified(folder: &Path, pool: &rayon::ThreadPool, quiet: bool) -> Result<Veri
         states: states.as_deref(),
         sensitivities: sensitivities.as_deref(),
     };
-    let verifier = Verifier::new(&texts).map_err(|e| {
-        wrong(exit::RECORD, format!("{}:{}: {}", folder.join(e.file).display(), e.line, e.problem), DAMAGED)
-    })?;
+    let verifier = Verifier::new(&texts).map_err(|e| unreadable(folder, &e))?;
     let progress = Progress::new("rows", 0, verifier.len(), quiet);
     let row = |k: usize| {
         let report = verifier.row(k);
@@ -145,11 +142,7 @@ fn verified(folder: &Path, pool: &rayon::ThreadPool, quiet: bool) -> Result<Veri
         files: verifier.files().to_vec(),
         rows,
     };
-    out.outcome = match out.code() {
-        exit::DONE => "proved",
-        exit::RECORD => "false",
-        _ => "open",
-    };
+    out.outcome = outcome(out.code());
     Ok(out)
 }
 
@@ -157,12 +150,7 @@ impl Verified {
     fn code(&self) -> u8 {
         let of_files = self.files.iter().map(|f| f.verdict).max();
         let of_rows = self.rows.iter().filter_map(RowReport::verdict).max();
-        match of_files.max(of_rows) {
-            Some(Verdict::False) => exit::RECORD,
-            Some(Verdict::Open) => exit::INCOMPLETE,
-            _ if self.proved < self.certified => exit::INCOMPLETE,
-            _ => exit::DONE,
-        }
+        code(of_files.max(of_rows), self.proved, self.certified)
     }
 }
 

@@ -2,11 +2,10 @@
 
 use crate::{
     exit::{self, wrong},
-    findings::{marked, say_checks, text},
+    findings::{code, marked, outcome, say_checks, text, unreadable},
     output,
     progress::Progress,
     records,
-    remedy::DAMAGED,
 };
 use maille_io::roll::{ROLL, ROLLS, ROLLS_TABLE};
 use maille_verify::{Finding, RollReport, RollTexts, RollVerifier, Verdict};
@@ -42,9 +41,7 @@ pub fn verified(named: &Path, pool: &rayon::ThreadPool, quiet: bool) -> Result<V
     };
     let (head, states, table) = (read(ROLL)?, read(ROLLS)?, read(ROLLS_TABLE)?);
     let texts = RollTexts { head: &head, states: &states, table: &table };
-    let verifier = RollVerifier::new(&texts).map_err(|e| {
-        wrong(exit::RECORD, format!("{}:{}: {}", folder.join(e.file).display(), e.line, e.problem), DAMAGED)
-    })?;
+    let verifier = RollVerifier::new(&texts).map_err(|e| unreadable(&folder, &e))?;
     let progress = Progress::new("rolls", 0, verifier.len(), quiet);
     let roll = |k: usize| {
         let report = verifier.roll(k);
@@ -64,11 +61,7 @@ pub fn verified(named: &Path, pool: &rayon::ThreadPool, quiet: bool) -> Result<V
         files: verifier.files().to_vec(),
         rolls,
     };
-    out.outcome = match out.code() {
-        exit::DONE => "proved",
-        exit::RECORD => "false",
-        _ => "open",
-    };
+    out.outcome = outcome(out.code());
     Ok(out)
 }
 
@@ -76,12 +69,7 @@ impl VerifiedRolls {
     /// How the program ends.
     pub fn code(&self) -> u8 {
         let all = self.files.iter().chain(self.rolls.iter().flat_map(|roll| &roll.findings));
-        match all.map(|finding| finding.verdict).max() {
-            Some(Verdict::False) => exit::RECORD,
-            Some(Verdict::Open) => exit::INCOMPLETE,
-            _ if self.proved < self.certified => exit::INCOMPLETE,
-            _ => exit::DONE,
-        }
+        code(all.map(|finding| finding.verdict).max(), self.proved, self.certified)
     }
 
     /// In words.

@@ -2,11 +2,10 @@
 
 use crate::{
     exit::{self, wrong},
-    findings::{marked, say_checks, text},
+    findings::{code, marked, outcome, say_checks, text, unreadable},
     output,
     progress::Progress,
     records,
-    remedy::DAMAGED,
 };
 use maille_io::boundary::{SURFACE, SURFACE_STATES};
 use maille_verify::{Finding, SurfaceTexts, SurfaceVerifier, Verdict, VertexReport};
@@ -45,9 +44,7 @@ pub fn verified(named: &Path, pool: &rayon::ThreadPool, quiet: bool) -> Result<V
     };
     let (head, states, table) = (read(SURFACE)?, read(SURFACE_STATES)?, read("boundary.csv")?);
     let texts = SurfaceTexts { head: &head, states: &states, table: &table };
-    let verifier = SurfaceVerifier::new(&texts).map_err(|e| {
-        wrong(exit::RECORD, format!("{}:{}: {}", folder.join(e.file).display(), e.line, e.problem), DAMAGED)
-    })?;
+    let verifier = SurfaceVerifier::new(&texts).map_err(|e| unreadable(&folder, &e))?;
     let progress = Progress::new("vertices", 0, verifier.len(), quiet);
     let vertex = |k: usize| {
         let report = verifier.vertex(k);
@@ -67,11 +64,7 @@ pub fn verified(named: &Path, pool: &rayon::ThreadPool, quiet: bool) -> Result<V
         files: verifier.files().to_vec(),
         vertices,
     };
-    out.outcome = match out.code() {
-        exit::DONE => "proved",
-        exit::RECORD => "false",
-        _ => "open",
-    };
+    out.outcome = outcome(out.code());
     Ok(out)
 }
 
@@ -79,12 +72,7 @@ impl VerifiedSurface {
     /// How the program ends.
     pub fn code(&self) -> u8 {
         let all = self.files.iter().chain(self.vertices.iter().flat_map(|v| &v.findings));
-        match all.map(|finding| finding.verdict).max() {
-            Some(Verdict::False) => exit::RECORD,
-            Some(Verdict::Open) => exit::INCOMPLETE,
-            _ if self.proved < self.certified => exit::INCOMPLETE,
-            _ => exit::DONE,
-        }
+        code(all.map(|finding| finding.verdict).max(), self.proved, self.certified)
     }
 
     /// In words.

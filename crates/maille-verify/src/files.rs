@@ -27,13 +27,27 @@ pub(crate) fn key(direction_deg: f64, l2: f64) -> (u64, u64) {
     (direction_deg.to_bits(), l2.to_bits())
 }
 
-fn say(verdict: Verdict, words: impl Into<String>) -> Finding {
+/// A finding on files.
+pub(crate) fn say(verdict: Verdict, words: impl Into<String>) -> Finding {
     Finding::new(Check::Files, verdict, None, words)
 }
 
 /// SHA-256 in hexadecimal.
 pub(crate) fn sha256(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Whether the file `name` is the one whose sum the file `head` has among `sums`.
+pub(crate) fn checksum(head: &str, sums: &BTreeMap<String, String>, name: &str, text: &str) -> Finding {
+    let found = sha256(text.as_bytes());
+    match sums.get(name) {
+        Some(sum) if *sum == found => say(Verdict::Proved, format!("{name} has the checksum of {head}")),
+        Some(sum) => {
+            let words = format!("{name} was edited, cut off or continued: its SHA-256 is {found}, {head} has {sum}");
+            say(Verdict::False, words)
+        }
+        None => say(Verdict::Open, format!("{name} has no checksum in {head}")),
+    }
 }
 
 /// All findings on the files.

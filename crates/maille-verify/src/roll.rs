@@ -1,7 +1,7 @@
 //! The rolls of a sheet, one by one: each state is derived anew from its texts.
 
 use crate::{
-    files::sha256,
+    files::{checksum, say, sha256},
     gaps::gaps_and_links,
     record::{Contact, Design, Pose, Row, State, Unreadable, json},
     report::{Check, Finding, Verdict},
@@ -23,6 +23,19 @@ const TABLE: &str = "rolls.csv";
 const SAME: f64 = 1e-9;
 /// Tolerance of the figures of a certificate.
 const CERTIFIED: f64 = 1e-9;
+/// Columns that a table of rolls has at least.
+const COLUMNS: [&str; 10] = [
+    "direction_deg",
+    "axis",
+    "cell",
+    "status",
+    "curvature",
+    "neutral_radius",
+    "neutral_stretch",
+    "l2",
+    "min_gap",
+    "links_ok",
+];
 /// Version of the files.
 const SCHEMA: u64 = 1;
 /// Statuses of a roll.
@@ -155,18 +168,8 @@ impl RollVerifier {
         both.sort_by(|(a, _), (b, _)| a.direction_deg.total_cmp(&b.direction_deg).then(b.axis.cmp(&a.axis)));
         let (rolls, values): (Vec<Roll>, Vec<Value>) = both.into_iter().unzip();
         let mut files = vec![belongs(&head, &first, &rolls), line_sums(texts.states)];
-        for (name, text) in [(STATES, texts.states), (TABLE, texts.table)] {
-            let found = sha256(text.as_bytes());
-            files.push(match head.files.get(name) {
-                Some(sum) if *sum == found => of_files(Verdict::Proved, format!("{name} has the checksum of {HEAD}")),
-                Some(sum) => {
-                    let words =
-                        format!("{name} was edited, cut off or continued: its SHA-256 is {found}, {HEAD} has {sum}");
-                    of_files(Verdict::False, words)
-                }
-                None => of_files(Verdict::Open, format!("{name} has no checksum in {HEAD}")),
-            });
-        }
+        let sums = [(STATES, texts.states), (TABLE, texts.table)];
+        files.extend(sums.map(|(name, text)| checksum(HEAD, &head.files, name, text)));
         files.push(table_fits(&values, texts.table)?);
         Ok(RollVerifier { design: head.design, rolls, files })
     }
@@ -197,8 +200,7 @@ impl RollVerifier {
         let certified = roll.status == "local";
         let mut findings = vec![status(roll, certified, self.design.reference_radius)];
         if roll.curvature.is_some() {
-            findings
-                .extend(self.of_state(roll, certified).unwrap_or_else(|words| vec![of_files(Verdict::False, words)]));
+            findings.extend(self.of_state(roll, certified).unwrap_or_else(|words| vec![say(Verdict::False, words)]));
         }
         let (direction_deg, axis, status) = (roll.direction_deg, roll.axis.clone(), roll.status.clone());
         RollReport { direction_deg, axis, status, certified, findings }
@@ -242,13 +244,9 @@ impl RollVerifier {
     }
 }
 
-fn of_files(verdict: Verdict, words: impl Into<String>) -> Finding {
-    Finding::new(Check::Files, verdict, None, words)
-}
-
 /// Whether the rolls are those of the head: of its design and version, of what it holds, each once, and as many as it says.
 fn belongs(head: &Head, first: &FirstLine, rolls: &[Roll]) -> Finding {
-    let wrong = |words: String| of_files(Verdict::False, words);
+    let wrong = |words: String| say(Verdict::False, words);
     let of_first = [&first.program_version, &first.input_hash, &first.design];
     if of_first != [&head.program_version, &head.input_hash, &head.design.name] {
         return wrong(format!("the first line of {STATES} is not of the run of {HEAD}"));
@@ -266,10 +264,10 @@ fn belongs(head: &Head, first: &FirstLine, rolls: &[Roll]) -> Finding {
         head.question.directions_deg.iter().flat_map(|d| head.question.axes.iter().map(|a| (d.to_bits(), a.clone())));
     let missing = asked.filter(|asked| !rolls.iter().any(|roll| key(roll) == *asked)).count();
     match (missing, head.complete) {
-        (0, true) => of_files(Verdict::Proved, format!("all rolls that {HEAD} asks are there")),
+        (0, true) => say(Verdict::Proved, format!("all rolls that {HEAD} asks are there")),
         (0, false) => wrong(format!("{HEAD} says that rolls are missing, and none is")),
         (n, true) => wrong(format!("{HEAD} says that all rolls are there, and {n} are not")),
-        (n, false) => of_files(Verdict::Open, format!("{n} of the rolls that {HEAD} asks are not there yet")),
+        (n, false) => say(Verdict::Open, format!("{n} of the rolls that {HEAD} asks are not there yet")),
     }
 }
 
@@ -281,8 +279,8 @@ fn line_sums(states: &str) -> Finding {
         (!sum.is_empty() && sha256(format!("{open}}}").as_bytes()).starts_with(sum)).then_some(())
     };
     match states.lines().position(|line| fits(line).is_none()) {
-        Some(k) => of_files(Verdict::False, format!("{STATES}:{}: the checksum of the line does not fit", k + 1)),
-        None => of_files(Verdict::Proved, format!("each line of {STATES} has its checksum")),
+        Some(k) => say(Verdict::False, format!("{STATES}:{}: the checksum of the line does not fit", k + 1)),
+        None => say(Verdict::Proved, format!("each line of {STATES} has its checksum")),
     }
 }
 
@@ -294,8 +292,11 @@ fn table_fits(rolls: &[Value], table: &str) -> Result<Finding, Unreadable> {
     for (k, row) in reader.deserialize::<BTreeMap<String, String>>().enumerate() {
         let row = row.map_err(|e| wrong(k + 2, e.to_string()))?;
         let Some(roll) = known.next() else {
-            return Ok(of_files(Verdict::False, format!("{TABLE}:{}: {STATES} has no such roll", k + 2)));
+            return Ok(say(Verdict::False, format!("{TABLE}:{}: {STATES} has no such roll", k + 2)));
         };
+        if let Some(name) = COLUMNS.into_iter().find(|name| !row.contains_key(*name)) {
+            return Ok(say(Verdict::False, format!("{TABLE} has no column {name}")));
+        }
         let same = |(name, text): &(&String, &String)| match roll.get(*name).or_else(|| roll["certificate"].get(*name))
         {
             None | Some(Value::Null) => text.is_empty(),
@@ -305,12 +306,12 @@ fn table_fits(rolls: &[Value], table: &str) -> Result<Finding, Unreadable> {
             Some(_) => false,
         };
         if let Some((name, _)) = row.iter().find(|entry| !same(entry)) {
-            return Ok(of_files(Verdict::False, format!("{TABLE}:{}: {name} is not that of {STATES}", k + 2)));
+            return Ok(say(Verdict::False, format!("{TABLE}:{}: {name} is not that of {STATES}", k + 2)));
         }
     }
     Ok(match known.next() {
-        Some(_) => of_files(Verdict::False, format!("{STATES} has rolls that {TABLE} lacks")),
-        None => of_files(Verdict::Proved, format!("{TABLE} has the figures of {STATES}")),
+        Some(_) => say(Verdict::False, format!("{STATES} has rolls that {TABLE} lacks")),
+        None => say(Verdict::Proved, format!("{TABLE} has the figures of {STATES}")),
     })
 }
 

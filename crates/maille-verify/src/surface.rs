@@ -9,7 +9,7 @@ use crate::{
     balance::{Closed, Free, RESIDUAL, balance},
     curvature::{ZERO_MODE, curvature},
     dual::{edges, walks},
-    files::sha256,
+    files::{checksum, say},
     gaps::gaps_and_links,
     record::{Design, Pose, Row, State, Unreadable, json},
     report::{Check, Finding, Verdict},
@@ -98,19 +98,8 @@ impl SurfaceVerifier {
         let head: Head = json(HEAD, 0, texts.head)?;
         let lines = texts.states.lines().enumerate();
         let known: Vec<Vertex> = lines.map(|(k, line)| json(STATES, k + 1, line)).collect::<Result<_, _>>()?;
-        let mut files = Vec::new();
-        for (name, text) in [(STATES, texts.states), (TABLE, texts.table)] {
-            let found = sha256(text.as_bytes());
-            files.push(match head.files.get(name) {
-                Some(sum) if *sum == found => say(Verdict::Proved, format!("{name} has the checksum of {HEAD}")),
-                Some(sum) => {
-                    let words =
-                        format!("{name} was edited, cut off or continued: its SHA-256 is {found}, {HEAD} has {sum}");
-                    say(Verdict::False, words)
-                }
-                None => say(Verdict::Open, format!("{name} has no checksum in {HEAD}")),
-            });
-        }
+        let sums = [(STATES, texts.states), (TABLE, texts.table)];
+        let mut files: Vec<Finding> = sums.map(|(name, text)| checksum(HEAD, &head.files, name, text)).into();
         let (vertices, fits) = in_order(known, texts.table)?;
         files.push(fits);
         let start_of = |(cell, names): (&String, &Vec<String>)| {
@@ -156,10 +145,6 @@ impl SurfaceVerifier {
         }
         VertexReport { vertex: k, direction: vertex.direction, status: vertex.status.clone(), certified, findings }
     }
-}
-
-fn say(verdict: Verdict, words: impl Into<String>) -> Finding {
-    Finding::new(Check::Files, verdict, None, words)
 }
 
 /// The vertices in the order of the table, and whether its figures are those of the states, bit for bit.
