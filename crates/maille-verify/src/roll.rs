@@ -6,7 +6,7 @@ use crate::{
     record::{Contact, Design, Pose, Row, State, Unreadable, json},
     report::{Check, Finding, Verdict},
     roll_forces::{Rate, Written, roll_forces},
-    rolled::Rolled,
+    rolled::{Rolled, joined},
     sheet::{self, Sheet, Vec3},
     start::{Start, names, start},
     strain::axes,
@@ -215,10 +215,16 @@ impl RollVerifier {
         let state = State { a1, a2, poses: poses.clone(), ..State::default() };
         let start: Start = start(&self.design, &cell, &names(&state))?;
         let along = Vec3::new(turns.along[0], turns.along[1], 0.0);
-        let rolled = Rolled { along, turn_rad: turns.turn_rad, places: start.sheet.places() };
+        let links = start.links.as_ref().map_err(String::clone)?;
+        let (linked, joined) = joined(links.iter().map(|(pair, _)| pair), &start.sheet.rings);
+        let rolled = Rolled { along, turn_rad: turns.turn_rad, places: start.sheet.places(), linked, joined };
         let mut here = start.sheet.at(&state, unit)?;
         if let Some(words) = rolled.contradiction(here.lattice) {
             return Err(words);
+        }
+        let positions: Vec<Vec3> = here.bodies.iter().map(|body| body.position).collect();
+        if certified && rolled.has_axis_inside(here.lattice, &positions, &here.reaches()) {
+            return Err("the axis has passed through the sheet".into());
         }
         here.roll = Some(rolled);
         let mut out = vec![match deformation(roll, &here, &start.sheet, unit) {

@@ -149,7 +149,7 @@ pub(crate) fn roll_forces(
             Err(words) => return both(Verdict::False, format!("contact {k} {words}")),
         };
         if !roll.counts([pair.0, pair.1].map(|ring| sheet.rings[ring].element), pair.2) {
-            return both(Verdict::False, format!("contact {k} is of elements more than half a turn apart"));
+            return both(Verdict::False, format!("contact {k} is of elements that do not count for each other"));
         }
         let (one, other) = (sheet.circle(pair.0, [0, 0]), sheet.circle(pair.1, pair.2));
         let arc = Arc::new(&one, &other);

@@ -4,10 +4,15 @@
 //! h = α/θ, which is one number for all of them. The image of a point is turned by θ about it and shifted by β w.
 //!
 //! An endless sheet lies on itself after a turn. Two elements count for each other where their places in the written sheet are at most
-//! half a turn apart.
+//! half a turn apart, and where one link or two join them.
+//!
+//! A turn is known from a state up to whole turns. Along links, each gone by the lesser way about the axis, one comes from an element to its
+//! image by the turn of that image, or the axis has passed through the sheet. While it passes through an element, nearer to its reference
+//! point than its rings reach, this is left open.
 
+use crate::sheet::{Pair, Ring};
 use nalgebra::{Isometry3, Matrix2, Point3, Translation3, Unit, UnitQuaternion, Vector2, Vector3};
-use std::f64::consts::PI;
+use std::{collections::BTreeSet, f64::consts::PI};
 
 type Vec3 = Vector3<f64>;
 
@@ -25,6 +30,35 @@ pub(crate) struct Rolled {
     pub turn_rad: [f64; 2],
     /// The places of the elements in the written sheet, in lattice vectors.
     pub places: Vec<[f64; 2]>,
+    /// Pairs of elements that a link joins, seen from both.
+    pub linked: BTreeSet<Elements>,
+    /// Those that one link or two join.
+    pub joined: BTreeSet<Elements>,
+}
+
+/// Two elements, the second in the cell with this shift.
+pub(crate) type Elements = ([usize; 2], [i32; 2]);
+
+/// Turns that differ by less are one.
+const SAME_RAD: f64 = 1e-6;
+
+/// The pairs of elements that links join, and those that one link or two join, both ways.
+pub(crate) fn joined<'a>(
+    links: impl IntoIterator<Item = &'a Pair>,
+    rings: &[Ring],
+) -> (BTreeSet<Elements>, BTreeSet<Elements>) {
+    let mut linked: BTreeSet<Elements> = BTreeSet::new();
+    for &(a, b, [m, n]) in links {
+        let [i, j] = [a, b].map(|ring| rings[ring].element);
+        linked.extend([([i, j], [m, n]), ([j, i], [-m, -n])]);
+    }
+    let mut all = linked.clone();
+    for &([i, j], [m, n]) in &linked {
+        let from_second = linked.range(([j, 0], [i32::MIN; 2])..=([j, usize::MAX], [i32::MAX; 2]));
+        all.extend(from_second.map(|&([_, k], [p, q])| ([i, k], [m + p, n + q])));
+    }
+    all.retain(|(elements, shift)| elements[0] != elements[1] || *shift != [0, 0]);
+    (linked, all)
 }
 
 impl Rolled {
@@ -64,7 +98,7 @@ impl Rolled {
         Translation3::from(self.axis() * beside) * about
     }
 
-    /// Shifts of the images of element j that count for element i and may be within `reach` of it, `beside` being the way along the axis from the
+    /// Shifts of the images of element j that count for element i and may be within `reach` of it, and of all that links join to it, `beside` being the way along the axis from the
     /// one ring's centre to the other's: with x = θ and y = β of the way to an image, |x| is at most half a turn and |y| at most the reach.
     pub fn shifts(
         &self,
@@ -88,7 +122,9 @@ impl Rolled {
         }
         let rows = *m.start() as i32..=*m.end() as i32;
         let all = rows.flat_map(|p| (*n.start() as i32..=*n.end() as i32).map(move |q| [p, q]));
-        Ok(all.filter(|shift| self.counts([i, j], *shift)).collect())
+        let near = all.filter(|shift| self.within_half([i, j], *shift));
+        let joined = self.joined.range(([i, j], [i32::MIN; 2])..=([i, j], [i32::MAX; 2])).map(|(_, shift)| *shift);
+        Ok(near.chain(joined).collect::<BTreeSet<_>>().into_iter().collect())
     }
 
     fn between(&self, [i, j]: [usize; 2]) -> [f64; 2] {
@@ -97,6 +133,47 @@ impl Rolled {
 
     /// Whether the image of element j counts for element i.
     pub fn counts(&self, elements: [usize; 2], shift: [i32; 2]) -> bool {
+        self.within_half(elements, shift) || self.joined.contains(&(elements, shift))
+    }
+
+    /// Whether the axis has passed through the sheet, whose elements lie at `positions` and reach so far.
+    pub fn has_axis_inside(&self, lattice: [Vec3; 2], positions: &[Vec3], reaches: &[f64]) -> bool {
+        let axis = self.axis();
+        let from_axis = |position: &Vec3| {
+            let way = position + Vec3::z() * self.axis_distance(lattice);
+            way - axis * way.dot(&axis)
+        };
+        let places: Vec<Vec3> = positions.iter().map(from_axis).collect();
+        if places.iter().zip(reaches).any(|(place, reach)| place.norm() <= *reach) {
+            return false;
+        }
+        // The turn at which each element is reached along links, its own turn about the axis taken out.
+        let mut reached: Vec<Option<f64>> = vec![None; places.len()];
+        for root in 0..places.len() {
+            let mut queue = if reached[root].is_none() { vec![root] } else { Vec::new() };
+            reached[root] = reached[root].or(Some(0.0));
+            while let Some(i) = queue.pop() {
+                let from_i = self.linked.range(([i, 0], [i32::MIN; 2])..=([i, usize::MAX], [i32::MAX; 2]));
+                for &([_, j], shift) in from_i {
+                    let turn = self.turn(shift.map(f64::from));
+                    let there = UnitQuaternion::from_axis_angle(&Unit::new_normalize(axis), turn) * places[j];
+                    let lesser = axis.dot(&places[i].cross(&there)).atan2(places[i].dot(&there));
+                    let at = reached[i].unwrap_or_default() + lesser - turn;
+                    match reached[j] {
+                        None => {
+                            reached[j] = Some(at);
+                            queue.push(j);
+                        }
+                        Some(known) if (known - at).abs() > SAME_RAD => return true,
+                        Some(_) => {}
+                    }
+                }
+            }
+        }
+        false
+    }
+
+    fn within_half(&self, elements: [usize; 2], shift: [i32; 2]) -> bool {
         let between = self.between(elements);
         self.turn([0, 1].map(|k| f64::from(shift[k]) + between[k])).abs() <= HALF_RAD
     }

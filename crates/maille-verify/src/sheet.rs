@@ -188,6 +188,12 @@ impl Sheet {
         self.copies.iter().map(|way| (inverse * way.xy()).into()).collect()
     }
 
+    /// How far the circles of each element reach from its reference point.
+    pub fn reaches(&self) -> Vec<f64> {
+        let of = |e: usize| self.rings.iter().filter(move |ring| ring.element == e);
+        (0..self.bodies.len()).map(|e| of(e).map(|ring| ring.arm.norm() + ring.radius).fold(0.0, f64::max)).collect()
+    }
+
     /// Translation of the image `shift`.
     pub fn translation(&self, shift: [i32; 2]) -> Vec3 {
         self.lattice[0] * f64::from(shift[0]) + self.lattice[1] * f64::from(shift[1])

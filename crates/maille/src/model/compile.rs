@@ -10,6 +10,7 @@ use crate::{
 };
 use maille_geometry::Vec3;
 use nalgebra::{Matrix2, Unit, UnitQuaternion};
+use std::sync::OnceLock;
 
 /// Elements further than this from the first one, and rings from their element's centre, are refused, in units of R: rounding
 /// hides their gaps.
@@ -33,15 +34,14 @@ impl Model {
         if !problems.is_empty() {
             return Err(problems);
         }
-        let mut model = Self::first_cell(design, periodic)?.tiled(cell);
+        let model = Self::first_cell(design, periodic)?.tiled(cell);
         model.check_extent(design)?;
         let pairs = topology::close_pairs(&model, &model.start, 0.0);
         let overlaps = model.overlaps(&pairs, design);
         if !overlaps.is_empty() {
             return Err(overlaps);
         }
-        model.links = topology::links(&model, &model.start, &pairs);
-        Ok(model)
+        Ok(model.with_links(&pairs))
     }
 
     /// The design's own cell, unchecked, without links and anchors.
@@ -84,6 +84,7 @@ impl Model {
             reference_inverse,
             links: Vec::new(),
             short_basis: lattice::short_basis(a1, a2),
+            neighbours: OnceLock::new(),
         })
     }
 
@@ -142,8 +143,13 @@ impl Model {
         let [a1, a2] = self.cell.primitive(self.start.a1, self.start.a2);
         let cell = Matrix2::from_fn(|i, j| f64::from(self.cell.rows()[j][i]));
         (out.start.a1, out.start.a2, out.reference_inverse) = (a1, a2, cell * self.reference_inverse);
-        out.links = topology::links(&out, &out.start, &topology::close_pairs(&out, &out.start, 0.0));
-        out
+        let pairs = topology::close_pairs(&out, &out.start, 0.0);
+        out.with_links(&pairs)
+    }
+
+    /// The same with the links among `pairs`.
+    fn with_links(self, pairs: &[topology::RingPair]) -> Model {
+        Model { links: topology::links(&self, &self.start, pairs), neighbours: OnceLock::new(), ..self }
     }
 
     /// The same design in the cell `cell` of a periodic model.
@@ -153,9 +159,9 @@ impl Model {
         if cell == Cell::PRIMITIVE || !self.periodic {
             return own;
         }
-        let mut out = own.tiled(cell);
-        out.links = topology::links(&out, &out.start, &topology::close_pairs(&out, &out.start, 0.0));
-        out
+        let out = own.tiled(cell);
+        let pairs = topology::close_pairs(&out, &out.start, 0.0);
+        out.with_links(&pairs)
     }
 
     /// Copies of this model's own cell fill `cell`; the links are not looked for.

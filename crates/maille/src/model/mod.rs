@@ -9,7 +9,7 @@ use crate::{
 };
 use maille_geometry::{Circle, Vec3};
 use nalgebra::{Matrix2, Unit, UnitVector3};
-use std::{borrow::Cow, ops::Range};
+use std::{borrow::Cow, collections::BTreeSet, ops::Range, sync::OnceLock};
 
 /// A torus of an element, in the element's frame at the starting state.
 #[derive(Clone, Debug)]
@@ -69,6 +69,8 @@ pub struct Model {
     pub largest_radius: f64,
     /// A short basis of the design's lattice, as a cell of one copy.
     pub short_basis: Cell,
+    /// See [`Model::linked`] and [`Model::joined`].
+    neighbours: OnceLock<Neighbours>,
 }
 
 /// A design of more elements is taken for a large cell written out.
@@ -103,6 +105,13 @@ pub struct Link {
     pub number: i32,
 }
 
+/// Elements that are joined by links, by element.
+#[derive(Clone, Debug)]
+struct Neighbours {
+    linked: Vec<Vec<(usize, Shift)>>,
+    joined: Vec<Vec<(usize, Shift)>>,
+}
+
 /// The one of `models` in this cell, or the same design compiled for it.
 pub(crate) fn of_cell(models: &[Model], cell: Cell) -> Cow<'_, Model> {
     let known = models.iter().find(|model| model.cell == cell);
@@ -114,6 +123,35 @@ impl Model {
     #[doc(hidden)]
     pub fn contact_distance(&self, ring_a: usize, ring_b: usize) -> f64 {
         self.rings[ring_a].minor_radius + self.rings[ring_b].minor_radius
+    }
+
+    fn neighbours(&self) -> &Neighbours {
+        self.neighbours.get_or_init(|| {
+            let mut linked = vec![BTreeSet::new(); self.elements.len()];
+            for pair in self.links.iter().flat_map(|link| link.pair.both_ways()) {
+                linked[self.rings[pair.ring_a].element].insert((self.rings[pair.ring_b].element, pair.shift));
+            }
+            let joined = |i: usize| {
+                let second = |&(j, [m, n]): &(usize, Shift)| {
+                    linked[j].iter().map(move |&(k, [p, q])| (k, [m + p, n + q])).collect::<Vec<_>>()
+                };
+                let all: BTreeSet<_> = linked[i].iter().copied().chain(linked[i].iter().flat_map(second)).collect();
+                all.into_iter().filter(|(j, shift)| *j > i || *j == i && *shift > [0, 0]).collect()
+            };
+            let joined = (0..linked.len()).map(joined).collect();
+            Neighbours { linked: linked.into_iter().map(|of| of.into_iter().collect()).collect(), joined }
+        })
+    }
+
+    /// The elements that are linked to element `e` of the main cell, each with its shift.
+    pub(crate) fn linked(&self, e: usize) -> &[(usize, Shift)] {
+        &self.neighbours().linked[e]
+    }
+
+    /// For each element those that one link or two join to it, each pair once: the lower element first, and for an element's own images
+    /// the lexicographically positive shift; in the order of element and shift.
+    pub(crate) fn joined(&self) -> &[Vec<(usize, Shift)>] {
+        &self.neighbours().joined
     }
 
     /// A name for a ring of an image: `"gyroscope" ring 2 in cell (+1,+0)`.

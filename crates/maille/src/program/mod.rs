@@ -34,6 +34,7 @@ use crate::{
         motion::{MARGIN, Motion},
         near_pairs::{NearPair, near_pairs},
         step_bound::StepBound,
+        winding::winds,
     },
 };
 use maille_geometry::{Vec3, point_circle_distance};
@@ -358,6 +359,10 @@ impl Program for SheetProgram<'_> {
             fraction *= 0.99 * part;
         }
         0.0
+    }
+
+    fn is_outside(&self, x: &Posed) -> bool {
+        !winds(self.model, &x.state)
     }
 
     fn moved(&self, x: &Posed, step: &[f64]) -> Posed {

@@ -23,12 +23,10 @@ use crate::{
     record::Status,
     solver::sqp::{SqpOptions, maximize},
     state::{Pose, Roll, State},
+    topology::winding::winds,
 };
 use maille_geometry::Vec3;
-use std::{
-    f64::consts::PI,
-    sync::atomic::{AtomicBool, Ordering},
-};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What is sought.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,8 +41,6 @@ pub(crate) struct Curl {
 
 /// Nearer to the axis than this an element lies on it, in R.
 const ON_AXIS: f64 = 1e-6;
-/// A curvature within this of the largest that links can have is theirs, not a limit.
-const AT_MOST: f64 = 1e-9;
 
 impl Curl {
     /// Rates of the lattice with l1, l2 and γ.
@@ -59,17 +55,6 @@ impl Curl {
         let of = |(rate, weight): ([Vec3; 2], f64)| Parameter { rate, weight, ..Parameter::default() };
         let all = self.rates(model).into_iter().zip(weights).map(of);
         all.zip(free).filter(|(_, free)| *free).map(|(parameter, _)| parameter).collect()
-    }
-
-    /// κ at which two linked elements are half a turn apart: they would count no longer. Infinite where links do not go along u.
-    pub(crate) fn most(&self, model: &Model) -> f64 {
-        let u = self.direction.along();
-        let length = model.links.iter().map(|link| {
-            let [from, to] = [link.pair.ring_a, link.pair.ring_b].map(|ring| model.rings[ring].element);
-            let way = model.start.poses[to].position - model.start.poses[from].position;
-            (way + model.start.translation(link.pair.shift)).xy().dot(&u).abs()
-        });
-        PI / length.fold(0.0, f64::max)
     }
 
     /// How far the sheet is stretched in a state that is not, or so rolled.
@@ -118,12 +103,8 @@ impl Target for Curl {
     fn family(&self, model: &Model) -> LatticeFamily {
         let base = [model.start.a1, model.start.a2];
         let u = self.direction.along();
-        let curvature = Parameter {
-            turn_rad: base.map(|a| self.sign * a.xy().dot(&u)),
-            weight: 1.0,
-            most: Some(self.most(model)).filter(|most| most.is_finite()),
-            ..Parameter::default()
-        };
+        let curvature =
+            Parameter { turn_rad: base.map(|a| self.sign * a.xy().dot(&u)), weight: 1.0, ..Parameter::default() };
         let parameters = std::iter::once(curvature).chain(self.strains(model, [0.0; 3])).collect();
         LatticeFamily { base, parameters, metric: None, roll: Some(Roll::flat(u)) }
     }
@@ -185,17 +166,17 @@ impl Curl {
             let status = if interrupted { Status::Interrupted } else { Status::NotConverged };
             return counted(Answer::new(model, status));
         };
-        let at_most = best.value() >= self.most(model) - AT_MOST;
+        let outside = !winds(model, &best.state);
         // There its place is no longer held without loss.
         let away = best.state.axis_distance(0, model.elements[0].anchor);
         let on_axis = away.is_some_and(|away| away < ON_AXIS);
         let status = match () {
             () if interrupted => Status::Interrupted,
-            () if at_most || on_axis => Status::Uncertified,
+            () if outside || on_axis => Status::Uncertified,
             () => verdict(&best, f64::INFINITY),
         };
         let note = match () {
-            () if at_most => Some("linked elements are half a turn apart: nothing else stops the roll".to_owned()),
+            () if outside => Some("the axis comes to pass through the sheet: nothing else stops the roll".to_owned()),
             () if on_axis => {
                 Some("the first element lies on the axis: whether it could move off it is not known".to_owned())
             }

@@ -135,7 +135,7 @@ impl Rounds<'_> {
         measure_gaps(program, &x, &mut certificate);
         measure_curvature(program, &x, &mut certificate);
         let links_ok = topology::links_kept(self.model, &x.state);
-        if certificate.holds() && links_ok {
+        if certificate.holds() && links_ok && !program.is_outside(&x) {
             let contacts = program.contacts(&x, &certificate.multipliers);
             let flat = program.flat_pairs().clone();
             self.last_resort = Some(Solve { x, certificate, contacts, links_ok, certified: true, flat });
@@ -178,14 +178,16 @@ impl Rounds<'_> {
                 measure_gaps(program, &polished, &mut certificate);
             }
             let links_ok = topology::links_kept(self.model, &polished.state);
-            let certified = !shifted && certificate.holds() && links_ok;
+            let outside = end.outside || program.is_outside(&polished);
+            let certified = !shifted && certificate.holds() && links_ok && !outside;
             let contacts = program.contacts(&polished, &certificate.multipliers);
             let flat = program.flat_pairs().clone();
             // Where heights of flat pairs lock what their gaps do not: on from there by gaps.
             let on = shifted || locked && !certified && program.release_flat_pairs(&polished, &mut carrying, COAXIAL);
             (x, known) = if on { (polished.clone(), carrying) } else { (end.point, end.multipliers) };
             last = Some(Solve { x: polished, certificate, contacts, links_ok, certified, flat });
-            if certified {
+            self.hopeless = outside;
+            if certified || outside {
                 break;
             }
             if on {

@@ -33,6 +33,8 @@ pub trait Program {
     fn guard(&self, x: &Self::Point) -> Self::Guard;
     /// Largest fraction of `step` (at most 1) that is allowed.
     fn largest_step(&self, x: &Self::Point, guard: &Self::Guard, step: &[f64]) -> f64;
+    /// Whether `x` is no point of what is asked, though no row says so: steps that lead there are the last ones.
+    fn is_outside(&self, x: &Self::Point) -> bool;
     /// The point reached by `step`.
     fn moved(&self, x: &Self::Point, step: &[f64]) -> Self::Point;
     /// Curvature that the rows stand for but do not show, as vectors v of terms −v vᵀ of the Lagrangian's Hessian.
@@ -85,6 +87,8 @@ pub(crate) struct SqpEnd<P> {
     pub settled: bool,
     /// Largest violation of a row.
     pub violation: f64,
+    /// Whether the last point is none of what is asked.
+    pub outside: bool,
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
@@ -198,7 +202,14 @@ pub(crate) fn maximize<P: Program>(
     let mut radius = options.first_radius;
     let mut penalty = options.penalty;
     let mut curvature_shift = MOST_SHIFT;
-    let mut end = SqpEnd { point: start, multipliers: known, iterations: 0, settled: false, violation: f64::INFINITY };
+    let mut end = SqpEnd {
+        point: start,
+        multipliers: known,
+        iterations: 0,
+        settled: false,
+        violation: f64::INFINITY,
+        outside: false,
+    };
     let mut activation_band = band(radius);
     let mut loads = Loads::new(&end.multipliers);
     let mut rows = program.rows(&end.point, activation_band, Derivatives::Second(&loads));
@@ -253,6 +264,10 @@ pub(crate) fn maximize<P: Program>(
             end.violation = trial_violation;
             radius = adapted(radius, ratio, size, options.most_radius);
             activation_band = band(radius);
+            if program.is_outside(&end.point) {
+                end.outside = true;
+                break;
+            }
         } else {
             radius = 0.3 * radius.min(size);
             if radius < 1e-13 {

@@ -77,6 +77,7 @@ impl State {
         let a = self.lattice_vector(at);
         match &self.roll {
             None => Image { turn: None, translation: a },
+            Some(_) if at == [0.0; 2] => Image { turn: Some(UnitQuaternion::identity()), translation: a },
             Some(roll) => Self::screw(roll, at, a),
         }
     }
@@ -114,15 +115,20 @@ impl State {
         Some(NeutralSurface { radius, stretch })
     }
 
-    /// Distance from the axis of element `e`, which is anchored at `anchor`; `None` where nothing turns.
-    pub(crate) fn axis_distance(&self, e: usize, anchor: [f64; 2]) -> Option<f64> {
-        let roll = self.roll?;
+    /// The z at which the axis lies; `None` where nothing turns.
+    pub(crate) fn axis_height(&self, roll: &Roll) -> Option<f64> {
         let k = usize::from(roll.turn_rad[1].abs() > roll.turn_rad[0].abs());
         let turn = roll.turn_rad[k];
         // The axis goes through −(α/θ) e_z.
-        let axis = -Vec3::z() * ([self.a1, self.a2][k].dot(&roll.along) / turn);
+        (turn != 0.0).then(|| -[self.a1, self.a2][k].dot(&roll.along) / turn)
+    }
+
+    /// Distance from the axis of element `e`, which is anchored at `anchor`; `None` where nothing turns.
+    pub(crate) fn axis_distance(&self, e: usize, anchor: [f64; 2]) -> Option<f64> {
+        let roll = self.roll?;
+        let axis = Vec3::z() * self.axis_height(&roll)?;
         let own = self.motion_to(anchor).back(&self.poses[e].position);
-        (turn != 0.0).then(|| (own - axis).cross(&roll.axis()).norm())
+        Some((own - axis).cross(&roll.axis()).norm())
     }
 
     /// Element `e`, which is anchored at `anchor`, in the image `shift`, as `roll` carries it.

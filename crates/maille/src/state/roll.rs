@@ -27,25 +27,33 @@ pub struct Roll {
 /// Turns below which the moments are summed as series: their closed forms lose digits by cancellation.
 const SERIES_RAD: f64 = 1.0;
 /// Terms of the series: the next one is below 1e-18 at [`SERIES_RAD`].
-const TERMS: u32 = 10;
+const TERMS: usize = 10;
+/// Coefficients of θ²ᵏ in C_n, and of θ²ᵏ⁺¹ in D_n: (−1)ᵏ/((2k)! (2k + n + 1)) and (−1)ᵏ/((2k + 1)! (2k + n + 2)).
+const SERIES: [[[f64; TERMS]; 3]; 2] = {
+    let mut out = [[[0.0; TERMS]; 3]; 2];
+    let (mut even, mut odd, mut k) = (1.0, 1.0, 0);
+    while k < TERMS {
+        let order = 2.0 * k as f64;
+        let mut n = 0;
+        while n < 3 {
+            out[0][n][k] = even / (order + n as f64 + 1.0);
+            out[1][n][k] = odd / (order + n as f64 + 2.0);
+            n += 1;
+        }
+        even /= -(order + 1.0) * (order + 2.0);
+        odd /= -(order + 2.0) * (order + 3.0);
+        k += 1;
+    }
+    out
+};
 
 /// [C₀, C₁, C₂] and [D₀, D₁, D₂] of a turn.
 pub(super) fn moments(turn_rad: f64) -> [[f64; 3]; 2] {
     if turn_rad.abs() < SERIES_RAD {
         let square = turn_rad * turn_rad;
-        let (mut cosine, mut sine) = ([0.0; 3], [0.0; 3]);
-        // (−1)ᵏ θ²ᵏ/(2k)! and (−1)ᵏ θ²ᵏ⁺¹/(2k+1)!
-        let (mut even, mut odd) = (1.0, turn_rad);
-        for k in 0..TERMS {
-            let order = f64::from(2 * k);
-            for (n, power) in [0.0, 1.0, 2.0].into_iter().enumerate() {
-                cosine[n] += even / (order + power + 1.0);
-                sine[n] += odd / (order + power + 2.0);
-            }
-            even *= -square / ((order + 1.0) * (order + 2.0));
-            odd *= -square / ((order + 2.0) * (order + 3.0));
-        }
-        return [cosine, sine];
+        let sum = |terms: &[f64; TERMS]| terms.iter().rev().fold(0.0, |sum, term| sum * square + term);
+        let [cosine, sine] = SERIES.each_ref().map(|of| of.each_ref().map(sum));
+        return [cosine, sine.map(|sum| sum * turn_rad)];
     }
     let (sin, cos) = turn_rad.sin_cos();
     let (c0, d0) = (sin / turn_rad, (1.0 - cos) / turn_rad);

@@ -8,6 +8,7 @@ pub mod separation;
 pub mod side_signs;
 pub mod step_bound;
 mod warnings;
+pub(crate) mod winding;
 mod window;
 
 pub use crate::model::{Link, RingPair};

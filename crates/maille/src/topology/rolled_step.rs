@@ -27,6 +27,7 @@ use crate::{
     state::{Carried, Roll, State},
 };
 use maille_geometry::Vec3;
+use std::collections::BTreeSet;
 
 /// Growth of the lattice in one step at most.
 const GROWTH: f64 = 0.25;
@@ -65,8 +66,11 @@ impl RolledBound {
         let near = neighbours(model, state, roll, 0.0, far);
         let pairs =
             near.into_iter().enumerate().flat_map(|(i, of)| of.into_iter().map(move |(j, shift)| (i, j, shift)));
-        let pairs = pairs.collect();
-        RolledBound { state: state.clone(), roll: *roll, pairs }
+        // Joined pairs count at any turn: they are looked at wherever they are.
+        let joined = model.joined().iter().enumerate();
+        let joined = joined.flat_map(|(i, of)| of.iter().map(move |(j, shift)| (i, *j, *shift)));
+        let pairs: BTreeSet<_> = pairs.chain(joined).collect();
+        RolledBound { state: state.clone(), roll: *roll, pairs: pairs.into_iter().collect() }
     }
 
     fn moves(&self, model: &Model, motion: &Motion, e: usize, shift: Shift) -> Moves {
@@ -94,13 +98,13 @@ impl RolledBound {
                 fraction = 2.0 * allowed / (motion + (motion * motion + 4.0 * beyond * allowed).sqrt());
             }
         };
+        let own: Vec<Moves> = (0..model.elements.len()).map(|e| self.moves(model, motion, e, [0, 0])).collect();
         let moves = |i: usize, j: usize, shift: Shift| {
-            let (a, b) = (self.moves(model, motion, i, [0, 0]), self.moves(model, motion, j, shift));
+            let (a, b) = (&own[i], self.moves(model, motion, j, shift));
             ((b.first - a.first).norm() + a.turn + b.turn, a.beyond + b.beyond)
         };
-        for e in 0..model.elements.len() {
-            let Moves { first, beyond, turn } = self.moves(model, motion, e, [0, 0]);
-            limit(first.norm() + turn, beyond, cap.min(FARTHEST * model.largest_radius));
+        for Moves { first, beyond, turn } in &own {
+            limit(first.norm() + turn, *beyond, cap.min(FARTHEST * model.largest_radius));
         }
         let window = Window::new(model, &self.state, &self.roll);
         let lattice = window.coordinates([self.state.a1, self.state.a2], self.roll.turn_rad);

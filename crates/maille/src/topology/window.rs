@@ -2,7 +2,8 @@
 //!
 //! A rolled sheet that goes round more than once lies on itself. What is asked is how a piece can be rolled, so two elements count
 //! where their places in the written sheet are at most half a turn apart: |k·v| ≤ π with v the way between them there and k the turn for each
-//! unit of length. This depends neither on the basis of the lattice nor on the cell.
+//! unit of length; and at any turn where one link or two join them, as an element and those that are linked to it are a piece. This depends
+//! neither on the basis of the lattice nor on the cell.
 
 use crate::{
     lattice::{Shift, shifts_within},
@@ -10,7 +11,10 @@ use crate::{
     state::{Pose, Roll, State, images::Image},
 };
 use maille_geometry::Vec3;
-use std::f64::consts::{PI, TAU};
+use std::{
+    collections::BTreeSet,
+    f64::consts::{PI, TAU},
+};
 
 /// What counts is at most this share of half a turn apart: rounding.
 const HALF: f64 = 1.0 + 1e-12;
@@ -76,7 +80,10 @@ impl<'a> Window<'a> {
         let most = if by_turn < 1.0 { self.most_rad } else { by_chord.min(self.most_rad * by_turn) };
         let by_anchor = self.model.elements.iter().flat_map(|e| e.anchor).fold(0.0, |m: f64, c| m.max(c.abs()));
         let anchors = 2.0 * by_anchor * (a1.norm() + a2.norm());
-        shifts_within(&Vec3::zeros(), &a1, &a2, most.hypot(far) + anchors)
+        let mut shifts = shifts_within(&Vec3::zeros(), &a1, &a2, most.hypot(far) + anchors);
+        // `most_rad` has the elements' own turns.
+        shifts.retain(|shift| self.roll.turn(shift.map(f64::from)).abs() <= self.most_rad);
+        shifts
     }
 }
 
@@ -91,9 +98,12 @@ pub(super) fn neighbours(
     let n = model.elements.len();
     let window = Window::new(model, state, roll);
     let widest = model.elements.iter().map(|e| e.reach).fold(0.0, f64::max);
-    let images: Vec<_> = match model.periodic {
-        true => window.shifts(2.0 * (widest + thickest) + margin),
-        false => vec![[0, 0]],
+    let images: BTreeSet<Shift> = match model.periodic {
+        true => {
+            let joined = model.joined().iter().flatten().map(|(_, shift)| *shift);
+            window.shifts(2.0 * (widest + thickest) + margin).into_iter().chain(joined).collect()
+        }
+        false => BTreeSet::from([[0, 0]]),
     };
     let images: Vec<_> = images.into_iter().map(|shift| (shift, state.image(shift))).collect();
     let of = |i: usize| {
@@ -102,7 +112,7 @@ pub(super) fn neighbours(
             let reach = model.elements[i].reach + model.elements[j].reach + 2.0 * thickest + margin;
             let near = |shift: &Shift, image: &Image| {
                 (i < j || *shift > [0, 0])
-                    && window.counts(i, j, *shift)
+                    && (window.counts(i, j, *shift) || model.joined()[i].binary_search(&(j, *shift)).is_ok())
                     && image.way(&state.poses[i].position, &state.poses[j].position).norm_squared() <= reach * reach
             };
             out.extend(images.iter().filter(|(shift, image)| near(shift, image)).map(|(shift, _)| (j, *shift)));
