@@ -14,7 +14,7 @@ use maille::{Across, Design, question::Effort, record::Status, survey::CellChoic
 use maille_io::{
     boundary::SURFACE,
     plot::{Layout, roll_svg, svg_to_png},
-    roll::{Axis, ROLL, Roll, RollFolder, RollQuestion, in_order, rolls_json},
+    roll::{Axis, ROLL, Roll, RollFolder, RollQuestion, find_rolls, rolls_json},
 };
 use miette::{IntoDiagnostic, Report, Result, WrapErr};
 use std::{
@@ -127,7 +127,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         let problem = format!("{} holds a record of another kind", out.display());
         return Err(wrong(exit::RECORD, problem, "name another folder with --out"));
     }
-    let (mut folder, mut rolls) = RollFolder::open(&out, &input.design, &question, args.run.overwrite)?;
+    let (mut folder, rolls) = RollFolder::open(&out, &input.design, &question, args.run.overwrite)?;
     // Until all files are of this run, there is nothing to read.
     match fs::remove_file(out.join(ROLL)) {
         Err(e) if e.kind() != ErrorKind::NotFound => {
@@ -137,26 +137,21 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     }
     let asked = question.rolls();
     let is_known = |asked: &(f64, Axis)| rolls.iter().any(|roll| roll.key() == *asked);
-    let missing: Vec<(f64, Axis)> = asked.iter().copied().filter(|asked| !is_known(asked)).collect();
-    let known = asked.len() - missing.len();
+    let known = asked.iter().filter(|asked| is_known(asked)).count();
     let (cancel, pool) = (interrupt::flag(args.quiet)?, pool(args.run.threads)?);
     let begun = Instant::now();
     let progress = Progress::new("rolls", known, asked.len(), args.quiet);
-    for roll in missing {
-        let (one, begun) = (question.question(roll), Instant::now());
-        let found = pool.install(|| sheet.answer_until(&one, &cancel)).map_err(|e| refused(&e))?;
-        if stopped(&cancel) {
-            break;
+    let mut done = known;
+    let mut keep = |roll: &Roll| {
+        // Those that come again went further.
+        if done < asked.len() {
+            done += 1;
+            progress.step();
         }
-        let (model, wall_s) = (sheet.model_of(&found), begun.elapsed().as_secs_f64());
-        if let Some(roll) = Roll::new(&input.design, &one, &model, &found, wall_s) {
-            folder.keep(&roll)?;
-            rolls.push(roll);
-        }
-        progress.step();
-    }
+        folder.keep(roll)
+    };
+    let rolls = pool.install(|| find_rolls(&sheet, &input.design, &question, rolls, &cancel, &mut keep))?;
     progress.finish();
-    in_order(&mut rolls);
     write(&out, &folder, &input, &question, &rolls)?;
     let wall_s = begun.elapsed().as_secs_f64();
     let interrupted = stopped(&cancel);

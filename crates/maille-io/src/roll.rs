@@ -4,8 +4,10 @@
 //! and `rolls.csv`, the same without states.
 
 mod folder;
+mod run;
 
 pub use folder::{ROLL, ROLLS, ROLLS_TABLE, RollFolder, RollRecordFile, in_order, open_rolls};
+pub use run::find_rolls;
 
 use crate::{
     answer::CertificateRecord,
@@ -75,7 +77,7 @@ impl RollQuestion {
 
     /// One of them as a question by itself.
     pub fn question(&self, (direction_deg, axis): (f64, Axis)) -> Question {
-        let sign = if axis == Axis::Below { 1.0 } else { -1.0 };
+        let sign = axis.sense().sign();
         let question = Question::curvature_along(direction_deg, sign).with_free(self.free);
         Question { effort: self.effort, seed: self.seed, ..question }
     }

@@ -6,7 +6,7 @@ use crate::{
     record::{Contact, Design, Pose, Row, State, Unreadable, json},
     report::{Check, Finding, Verdict},
     roll_forces::{Rate, Written, roll_forces},
-    rolled::{Rolled, joined},
+    rolled::{Motions, Rolled, joined},
     sheet::{self, Sheet, Vec3},
     start::{Start, names, start},
     strain::axes,
@@ -217,9 +217,14 @@ impl RollVerifier {
         let along = Vec3::new(turns.along[0], turns.along[1], 0.0);
         let links = start.links.as_ref().map_err(String::clone)?;
         let (linked, joined) = joined(links.iter().map(|(pair, _)| pair), &start.sheet.rings);
-        let rolled = Rolled { along, turn_rad: turns.turn_rad, places: start.sheet.places(), linked, joined };
+        let rolled = Rolled {
+            motions: Motions { along, turn_rad: turns.turn_rad },
+            places: start.sheet.places(),
+            linked,
+            joined,
+        };
         let mut here = start.sheet.at(&state, unit)?;
-        if let Some(words) = rolled.contradiction(here.lattice) {
+        if let Some(words) = rolled.motions.contradiction(here.lattice) {
             return Err(words);
         }
         let positions: Vec<Vec3> = here.bodies.iter().map(|body| body.position).collect();
@@ -351,7 +356,7 @@ fn status(roll: &Roll, certified: bool, unit: f64) -> Finding {
 /// With A the lattice vectors of the start and A′ of the state in columns, F = A′A⁻¹, θ the turns, u and w along and across the direction:
 /// θ = κ A′ᵀu at the written length, uᵀFw = 0, l2 = wᵀFw − 1, and ρ is the mean distance of the elements from the axis.
 fn deformation(roll: &Roll, here: &Sheet, start: &Sheet, unit: f64) -> Result<f64, String> {
-    let rolled = here.roll.as_ref().ok_or("the sheet is flat")?;
+    let rolled = here.roll.as_ref().ok_or("the sheet is flat")?.motions;
     let inverse = sheet::columns(start.lattice).try_inverse().ok_or("the design's lattice vectors are parallel")?;
     let f: Matrix2<f64> = sheet::columns(here.lattice) * inverse;
     let (u, w) = axes(roll.direction_deg);

@@ -12,7 +12,7 @@ use crate::{
     curvature::{CURVATURE, Curvature, FLATTEST, ZERO_MODE, kept, turns},
     record::Contact,
     report::{Check, Finding, Verdict},
-    rolled::Rolled,
+    rolled::Motions,
     sheet::{Pair, Sheet, Vec3, distance, frame},
 };
 use maille_geometry::Circle;
@@ -68,7 +68,7 @@ impl Unknown {
 /// A pair of rings next to a point at which they are closed.
 struct Held<'a> {
     sheet: &'a Sheet,
-    roll: &'a Rolled,
+    roll: Motions,
     pair: Pair,
     /// The point, in the frame of its element.
     point: Vec3,
@@ -79,7 +79,7 @@ impl Held<'_> {
     /// The distance of the point, less the minor radii, when the unknowns have moved by these steps.
     fn gap(&self, steps: &[(Unknown, f64)]) -> f64 {
         let (a, b, shift) = self.pair;
-        let (mut lattice, mut roll) = (self.sheet.lattice, self.roll.clone());
+        let (mut lattice, mut roll) = (self.sheet.lattice, self.roll);
         for (unknown, x) in steps {
             if let Unknown::Rate(rate) = unknown {
                 for k in 0..2 {
@@ -161,9 +161,9 @@ pub(crate) fn roll_forces(
         let angle = least(&arc, angle);
         let (u, v) = frame(&other.normal);
         let out = (u * angle.cos() + v * angle.sin()) * other.radius;
-        let image = roll.image(sheet.lattice, pair.2);
+        let image = roll.motions.image(sheet.lattice, pair.2);
         let turn = image.rotation * sheet.bodies[sheet.rings[pair.1].element].turn;
-        held.push(Held { sheet, roll, pair, point: turn.inverse() * out, force: contact.force });
+        held.push(Held { sheet, roll: roll.motions, pair, point: turn.inverse() * out, force: contact.force });
     }
     let unknowns = unknowns(sheet, rates);
     if unknowns.len() > MOST_UNKNOWNS {
@@ -308,7 +308,7 @@ fn of(of_sum: &DMatrix<f64>, gram: &DMatrix<f64>) -> Curvature {
 }
 
 /// The second derivative of the distance along one unknown, or mixed along two. With D(h) the usual difference of second order,
-/// (4 D(h/2) − D(h))/3 has an error of fourth order.
+/// (D(h) − 20 D(h/2) + 64 D(h/4))/45 has an error of sixth order.
 fn second(held: &Held<'_>, one: Unknown, other: Option<Unknown>) -> f64 {
     let at = |h: f64| match other {
         None => {
@@ -321,5 +321,5 @@ fn second(held: &Held<'_>, one: Unknown, other: Option<Unknown>) -> f64 {
         }
     };
     let h = held.step(LONG_STEP);
-    (4.0 * at(0.5 * h) - at(h)) / 3.0
+    (at(h) - 20.0 * at(0.5 * h) + 64.0 * at(0.25 * h)) / 45.0
 }

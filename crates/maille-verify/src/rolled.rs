@@ -21,13 +21,20 @@ const ONE_AXIS: f64 = 1e-9;
 /// Half a turn, with what rounding may add.
 const HALF_RAD: f64 = PI * (1.0 + 1e-12);
 
-/// How the images of a sheet are turned.
-#[derive(Clone, Debug)]
-pub(crate) struct Rolled {
+/// The motions of the images of a sheet.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Motions {
     /// u.
     pub along: Vec3,
     /// θ of both lattice vectors.
     pub turn_rad: [f64; 2],
+}
+
+/// How the images of a sheet are turned, and which of them count.
+#[derive(Clone, Debug)]
+pub(crate) struct Rolled {
+    /// The motions.
+    pub motions: Motions,
     /// The places of the elements in the written sheet, in lattice vectors.
     pub places: Vec<[f64; 2]>,
     /// Pairs of elements that a link joins, seen from both.
@@ -39,7 +46,7 @@ pub(crate) struct Rolled {
 /// Two elements, the second in the cell with this shift.
 pub(crate) type Elements = ([usize; 2], [i32; 2]);
 
-/// Turns that differ by less are one.
+/// Motions that differ by less are one.
 const SAME_RAD: f64 = 1e-6;
 
 /// The pairs of elements that links join, and those that one link or two join, both ways.
@@ -61,7 +68,7 @@ pub(crate) fn joined<'a>(
     (linked, all)
 }
 
-impl Rolled {
+impl Motions {
     /// w.
     pub fn axis(&self) -> Vec3 {
         Vec3::z().cross(&self.along)
@@ -97,7 +104,9 @@ impl Rolled {
         let about = Isometry3::rotation_wrt_point(turn, center);
         Translation3::from(self.axis() * beside) * about
     }
+}
 
+impl Rolled {
     /// Shifts of the images of element j that count for element i and may be within `reach` of it, and of all that links join to it, `beside` being the way along the axis from the
     /// one ring's centre to the other's: with x = θ and y = β of the way to an image, |x| is at most half a turn and |y| at most the reach.
     pub fn shifts(
@@ -107,11 +116,11 @@ impl Rolled {
         beside: f64,
         reach: f64,
     ) -> Result<Vec<[i32; 2]>, String> {
-        let [b1, b2] = lattice.map(|a| a.dot(&self.axis()));
-        let [t1, t2] = self.turn_rad;
+        let [b1, b2] = lattice.map(|a| a.dot(&self.motions.axis()));
+        let [t1, t2] = self.motions.turn_rad;
         let inverse = Matrix2::new(t1, t2, b1, b2).try_inverse().ok_or("the lattice vectors are parallel")?;
         let between = self.between([i, j]);
-        let mid = inverse * Vector2::new(-self.turn(between), -beside);
+        let mid = inverse * Vector2::new(-self.motions.turn(between), -beside);
         let range = |k: usize| {
             let half = inverse[(k, 0)].abs() * HALF_RAD + inverse[(k, 1)].abs() * reach;
             (mid[k] - half * 1.001 - 1e-6).ceil()..=(mid[k] + half * 1.001 + 1e-6).floor()
@@ -138,9 +147,9 @@ impl Rolled {
 
     /// Whether the axis has passed through the sheet, whose elements lie at `positions` and reach so far.
     pub fn has_axis_inside(&self, lattice: [Vec3; 2], positions: &[Vec3], reaches: &[f64]) -> bool {
-        let axis = self.axis();
+        let axis = self.motions.axis();
         let from_axis = |position: &Vec3| {
-            let way = position + Vec3::z() * self.axis_distance(lattice);
+            let way = position + Vec3::z() * self.motions.axis_distance(lattice);
             way - axis * way.dot(&axis)
         };
         let places: Vec<Vec3> = positions.iter().map(from_axis).collect();
@@ -155,7 +164,7 @@ impl Rolled {
             while let Some(i) = queue.pop() {
                 let from_i = self.linked.range(([i, 0], [i32::MIN; 2])..=([i, usize::MAX], [i32::MAX; 2]));
                 for &([_, j], shift) in from_i {
-                    let turn = self.turn(shift.map(f64::from));
+                    let turn = self.motions.turn(shift.map(f64::from));
                     let there = UnitQuaternion::from_axis_angle(&Unit::new_normalize(axis), turn) * places[j];
                     let lesser = axis.dot(&places[i].cross(&there)).atan2(places[i].dot(&there));
                     let at = reached[i].unwrap_or_default() + lesser - turn;
@@ -175,6 +184,6 @@ impl Rolled {
 
     fn within_half(&self, elements: [usize; 2], shift: [i32; 2]) -> bool {
         let between = self.between(elements);
-        self.turn([0, 1].map(|k| f64::from(shift[k]) + between[k])).abs() <= HALF_RAD
+        self.motions.turn([0, 1].map(|k| f64::from(shift[k]) + between[k])).abs() <= HALF_RAD
     }
 }

@@ -206,7 +206,7 @@ impl Sheet {
         match &self.roll {
             None => Circle::new(center + self.translation(shift), Unit::new_normalize(normal), ring.radius),
             Some(roll) => {
-                let image = roll.image(self.lattice, shift);
+                let image = roll.motions.image(self.lattice, shift);
                 let center = (image * nalgebra::Point3::from(center)).coords;
                 Circle::new(center, Unit::new_normalize(image.rotation * normal), ring.radius)
             }
@@ -221,7 +221,7 @@ impl Sheet {
         };
         let [m, n] = [0, 1].map(|k| f64::from(shift[k]).abs() * self.lattice[k].norm());
         // A turn about a far axis.
-        let axis = self.roll.as_ref().map_or(0.0, |roll| 2.0 * roll.axis_distance(self.lattice).abs());
+        let axis = self.roll.as_ref().map_or(0.0, |roll| 2.0 * roll.motions.axis_distance(self.lattice).abs());
         OPERATIONS * ROUNDING * (size(a) + size(b) + m + n + axis)
     }
 
@@ -284,7 +284,7 @@ impl Sheet {
             for b in a..centers.len() {
                 let elements = [a, b].map(|ring| self.rings[ring].element);
                 let reach = 1.001 * (self.rings[a].radius + self.rings[b].radius + more(a, b));
-                let beside = (centers[b] - centers[a]).dot(&roll.axis());
+                let beside = (centers[b] - centers[a]).dot(&roll.motions.axis());
                 for shift in roll.shifts(self.lattice, elements, beside, reach)? {
                     // As in `pairs`.
                     let same = elements[0] == elements[1];

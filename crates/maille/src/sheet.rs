@@ -17,7 +17,7 @@ use crate::{
         stretch::ExactMethod,
     },
     state::{Pose, State},
-    survey::{CellChoice, one},
+    survey::{CellChoice, KnownRoll, RollTask, one, rolls},
 };
 use maille_geometry::Vec3;
 use nalgebra::{Matrix2, Rotation3, UnitQuaternion};
@@ -95,6 +95,30 @@ impl Sheet {
                 tightest_roll(&self.models, curl, &options, cancel)
             }
         })
+    }
+
+    /// Finds the rolls of `tasks` that are not in `known`, with what `question`, one on a curvature, leaves to the sheet and with its effort;
+    /// then hands states on between all of them. `finished` gets each roll as it is found, and again where it goes further, with the
+    /// seconds that it took. After `cancel` the rest does not come.
+    ///
+    /// # Errors
+    /// What [`Question::check`] refuses, and a question on something else.
+    pub fn rolls(
+        &self,
+        question: &Question,
+        tasks: &[RollTask],
+        known: Vec<KnownRoll>,
+        cancel: &AtomicBool,
+        finished: &mut dyn FnMut(RollTask, &Answer, f64),
+    ) -> Result<(), InvalidInput> {
+        question.check()?;
+        let Goal::Curvature { free, .. } = question.goal else {
+            return Err(InvalidInput::new("goal", "rolls are of a curvature", "ask for a curvature"));
+        };
+        let Question { effort, starts, seed, .. } = *question;
+        let options = ExtremeOptions { lattice_free: true, effort, starts, seed };
+        rolls(&self.models, (free, &options), tasks, known, cancel, finished);
+        Ok(())
     }
 
     /// The limit of a stretch whose width is held, searched from the state of `near` first: the same limit of another design whose rings are linked

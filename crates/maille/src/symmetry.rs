@@ -22,7 +22,7 @@
 use crate::{
     lattice::{Cell, Direction, Shift},
     model::Model,
-    state::{Pose, State},
+    state::{Pose, Roll, State},
     topology::RingPair,
 };
 use maille_geometry::Vec3;
@@ -336,14 +336,31 @@ impl<'a> Image<'a> {
     /// The image of a state.
     pub fn state(&self, state: &State) -> State {
         let [a1, a2] = self.lattice([&state.a1, &state.a2]);
-        let mut out = State { poses: self.to.start.poses.clone(), a1, a2, roll: None };
+        let roll = state.roll.map(|roll| self.roll(&roll));
+        let mut out = State { poses: self.to.start.poses.clone(), a1, a2, roll };
         for (pose, (image, shift, miss)) in state.poses.iter().zip(&self.elements) {
             let q = pose.rotation.quaternion();
             let rotation = UnitQuaternion::new_normalize(Quaternion::from_parts(q.w, self.axial(&q.imag())));
-            let position = self.operation.maps(&pose.position) - rotation * miss - out.translation(*shift);
-            out.poses[*image] = Pose { position, rotation };
+            out.poses[*image] = if roll.is_some() {
+                // The axis stays over the origin.
+                let position = self.vector(&pose.position) - rotation * miss;
+                out.image(*shift).back_pose(&Pose { position, rotation })
+            } else {
+                let position = self.operation.maps(&pose.position) - rotation * miss - out.translation(*shift);
+                Pose { position, rotation }
+            };
         }
-        out
+        out.with_first_over_axis()
+    }
+
+    /// The image of a roll: a turn θ about w becomes one about the image of w. An operation that turns the sheet over leads the axis to its
+    /// other side.
+    fn roll(&self, roll: &Roll) -> Roll {
+        let [[p, q], [r, s]] = self.shifts.map(|column| column.map(f64::from));
+        let sign = f64::from(determinant(self.shifts)) * self.operation.matrix[(2, 2)];
+        let [first, second] = roll.turn_rad;
+        let turn_rad = [first * s - second * q, second * p - first * r].map(|turn| turn * sign);
+        Roll { along: self.vector(&roll.along), turn_rad }
     }
 
     /// The image of a pair of rings and of a point on each; `state` is the image of the state that they are of. As pairs are listed,

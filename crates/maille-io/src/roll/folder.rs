@@ -98,12 +98,12 @@ impl<'a> RollFolder<'a> {
                 return Err(RecordError::OtherInputs { folder: folder.into(), difference });
             }
             known = rolls;
+            // Of two lines of a roll the later one went further.
+            known.reverse();
             in_order(&mut known);
             known.dedup_by_key(|roll| roll.key());
         }
-        // Written anew, so that a line that was cut off does not stay.
-        let text = line(&head) + &known.iter().map(line).collect::<String>();
-        files::write(&path, text.as_bytes()).map_err(RecordError::io("write", &path))?;
+        write_states(&path, &head, &known)?;
         Ok((RollFolder { folder, journal: Journal::open(&path)?, _lock: lock }, known))
     }
 
@@ -126,9 +126,9 @@ impl<'a> RollFolder<'a> {
             files::write(&path, bytes).map_err(RecordError::io("write", &path))
         };
         write(ROLLS_TABLE, table.as_bytes())?;
-        let path = self.folder.join(ROLLS);
-        let states = fs::read(&path).map_err(RecordError::io("read", &path))?;
-        let Head { program_version, input_hash, .. } = Head::new(design, question);
+        let head = Head::new(design, question);
+        let states = write_states(&self.folder.join(ROLLS), &head, rolls)?;
+        let Head { program_version, input_hash, .. } = head;
         let known = |asked: &(f64, super::Axis)| rolls.iter().any(|roll| roll.key() == *asked);
         let record = RollRecordFile {
             schema: SCHEMA,
@@ -137,11 +137,19 @@ impl<'a> RollFolder<'a> {
             design: design.clone(),
             question: question.clone(),
             complete: question.rolls().iter().all(known),
-            files: [(ROLLS_TABLE.to_owned(), sha256(table.as_bytes())), (ROLLS.to_owned(), sha256(&states))].into(),
+            files: [(ROLLS_TABLE.to_owned(), sha256(table.as_bytes())), (ROLLS.to_owned(), sha256(states.as_bytes()))]
+                .into(),
         };
         let text = serde_json::to_string_pretty(&record).expect("no map with odd keys") + "\n";
         write(ROLL, text.as_bytes())
     }
+}
+
+/// Writes the first line and the rolls, anew: a line that was cut off does not stay, nor one of a roll that went further. Gives the text.
+fn write_states(path: &Path, head: &Head, rolls: &[Roll]) -> Result<String, RecordError> {
+    let text = line(head) + &rolls.iter().map(line).collect::<String>();
+    files::write(path, text.as_bytes()).map_err(RecordError::io("write", path))?;
+    Ok(text)
 }
 
 /// The first line and the rolls; neither where no line is whole. Of another run than `wanted` the first line alone is read: its rolls may have

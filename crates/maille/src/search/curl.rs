@@ -17,13 +17,13 @@ use super::{
 };
 use crate::{
     answer::{Answer, CellTrend},
-    lattice::{Across, Direction},
-    model::Model,
+    lattice::{Across, Cell, Direction},
+    model::{Model, of_cell},
     program::{LatticeFamily, Parameter, SheetProgram},
     record::Status,
     solver::sqp::{SqpOptions, maximize},
     state::{Pose, Roll, State},
-    topology::winding::winds,
+    topology::{links_kept, winding::winds},
 };
 use maille_geometry::Vec3;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -121,7 +121,11 @@ impl Target for Curl {
             state.poses.iter_mut().for_each(|pose| pose.position -= origin);
         }
         let p = self.parameters(model, &state);
-        Entered { at: Some((state, p)), iterations: 0 }
+        let family = self.family(model);
+        // A state of another direction has other images.
+        let linked = || links_kept(model, &SheetProgram::new(model, &family).posed(state.clone(), p.clone()).state);
+        let kept = state.roll.is_none() || linked();
+        Entered { at: kept.then_some((state, p)), iterations: 0 }
     }
 
     fn start(&self, solution: &LocalSolution) -> Start {
@@ -139,10 +143,36 @@ pub(crate) fn tightest_roll(models: &[Model], target: Curl, options: &ExtremeOpt
     let flat = target.flat_starts(model, options.seed, cancel);
     let given = std::iter::once(Start::written(straight)).chain(flat).collect();
     let first = search.run(model, given, stop);
+    in_larger_cells(&search, models, first, stop.of_larger_cell(false))
+}
+
+/// The same from one state of a cell alone.
+pub(crate) fn roll_from(
+    models: &[Model],
+    (cell, state): (Cell, State),
+    target: Curl,
+    options: &ExtremeOptions,
+    cancel: &AtomicBool,
+) -> Answer {
+    let one;
+    let models = if cell == models[0].cell {
+        models
+    } else {
+        one = [of_cell(models, cell).into_owned()];
+        &one
+    };
+    let search = Multistart { target: &target, upper_bound: f64::INFINITY, seed: options.seed, cancel };
+    let first = search.run(&models[0], vec![Start::written(state)], StopRule::given_only());
+    in_larger_cells(&search, models, first, 0)
+}
+
+/// Goes on to larger cells where an element presses on its own image.
+fn in_larger_cells(search: &Multistart<'_, Curl>, models: &[Model], first: SearchResult, own_starts: u64) -> Answer {
+    let target = search.target;
     let exit = first.first.map(|first| target.sign * first);
     let rule = LargerCells {
         every: false,
-        own_starts: stop.of_larger_cell(false),
+        own_starts,
         waves: FollowedWaves::None,
         where_none: false,
         fallback: None,
@@ -151,7 +181,7 @@ pub(crate) fn tightest_roll(models: &[Model], target: Curl, options: &ExtremeOpt
     };
     let found = search.larger_cells(models, first, &rule);
     let model = found.model(models).clone();
-    let answer = target.answered(&model, found.result, found.by_cell, cancel.load(Ordering::Relaxed));
+    let answer = target.answered(&model, found.result, found.by_cell, search.cancel.load(Ordering::Relaxed));
     Answer { first: exit, ..answer }
 }
 

@@ -57,6 +57,13 @@ impl Image {
         self.turn.map_or(from, |turn| turn.inverse() * from)
     }
 
+    /// The pose whose image is `pose`.
+    pub(crate) fn back_pose(&self, pose: &Pose) -> Pose {
+        let back =
+            |turn: UnitQuaternion<f64>| UnitQuaternion::new_normalize((turn.inverse() * pose.rotation).into_inner());
+        Pose { position: self.back(&pose.position), rotation: self.turn.map_or(pose.rotation, back) }
+    }
+
     /// This motion after the way back of `other`.
     pub(crate) fn after_back(&self, other: &Image) -> Image {
         let turn = self.turn.zip(other.turn).map(|(turn, back)| turn * back.inverse());
@@ -121,6 +128,25 @@ impl State {
         let turn = roll.turn_rad[k];
         // The axis goes through −(α/θ) e_z.
         (turn != 0.0).then(|| -[self.a1, self.a2][k].dot(&roll.along) / turn)
+    }
+
+    /// A rolled state turned about its axis and moved along it so that the first element lies over the origin; a flat one as it is.
+    pub(crate) fn with_first_over_axis(mut self) -> Self {
+        let Some((roll, height)) = self.roll.and_then(|roll| Some((roll, self.axis_height(&roll)?))) else {
+            return self;
+        };
+        let (u, w) = (roll.along, roll.axis());
+        let first = self.poses[0].position;
+        // Towards the side of the axis on which the sheet is: above it where the axis is below.
+        let side = if height > 0.0 { -1.0 } else { 1.0 };
+        let angle = (side * first.dot(&u)).atan2(side * (first.z - height));
+        let turn = UnitQuaternion::from_axis_angle(&Unit::new_unchecked(w), -angle);
+        let axis = Vec3::z() * height;
+        for pose in &mut self.poses {
+            pose.position = axis + turn * (pose.position - axis) - w * first.dot(&w);
+            pose.rotation = UnitQuaternion::new_normalize((turn * pose.rotation).into_inner());
+        }
+        self
     }
 
     /// Distance from the axis of element `e`, which is anchored at `anchor`; `None` where nothing turns.

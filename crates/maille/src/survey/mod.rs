@@ -4,9 +4,12 @@ mod icosphere;
 mod image;
 mod map;
 mod request;
+mod rolls;
 mod row;
 pub mod surface;
 
 pub(crate) use map::one;
 pub use map::{chains, characterize};
 pub use request::{CellChoice, Finished, MapQuestion, Method, Task, Work};
+pub(crate) use rolls::rolls;
+pub use rolls::{KnownRoll, RollTask};
