@@ -276,6 +276,9 @@ pub struct Direction {
     along: Vector2<f64>,
 }
 
+/// See [`Direction::shortest_vector`].
+const FARTHEST_VECTOR: i32 = 32;
+
 impl Direction {
     /// At an angle counter-clockwise from x, exact at multiples of 90°.
     pub fn of_degrees(degrees: f64) -> Self {
@@ -298,6 +301,19 @@ impl Direction {
     /// D, its unit vector.
     pub fn along(self) -> Vector2<f64> {
         self.along
+    }
+
+    /// The shortest vector of a lattice along it, in its lattice vectors; `None` where none of up to [`FARTHEST_VECTOR`] steps along each is.
+    pub(crate) fn shortest_vector(self, [a1, a2]: [Vec3; 2]) -> Option<Shift> {
+        let along = |[m, n]: Shift| {
+            let v = (a1 * f64::from(m) + a2 * f64::from(n)).xy();
+            let forward = v.dot(&self.along);
+            (forward > 0.0 && (v - self.along * forward).norm() < 1e-9 * forward).then_some(forward)
+        };
+        let steps = -FARTHEST_VECTOR..=FARTHEST_VECTOR;
+        let all = steps.clone().flat_map(|m| steps.clone().map(move |n| [m, n]));
+        let found = all.filter_map(|shift| Some((along(shift)?, shift)));
+        found.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, shift)| shift)
     }
 
     /// D⊥, the unit vector to its left.

@@ -148,6 +148,30 @@ pub enum Goal {
         #[serde(default)]
         free: Across,
     },
+    /// Something of a closed tube: so many of the shortest lattice vectors along the direction go once round. The shear is 0; lengths around and along
+    /// the axis are free. See `docs/theory/roll.md`.
+    Tube {
+        /// Direction that goes round, in degrees.
+        direction_deg: f64,
+        /// Whether the axis lies above the written sheet, not below.
+        above: bool,
+        /// How many lattice vectors go round.
+        cells: u32,
+        /// What is sought.
+        sought: OfTube,
+    },
+}
+
+/// What is sought of a tube.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum OfTube {
+    /// The smallest gap between the tori of two rings. Only its largest value can be asked for.
+    Gap,
+    /// The length along the axis, as l2.
+    Length,
+    /// The radius of the neutral surface, at the mean distance of the elements from the axis.
+    Radius,
 }
 
 /// Which end of it.
@@ -282,6 +306,13 @@ impl Question {
                 }
             }
             Goal::Curvature { direction_deg, .. } => within("direction_deg", "direction", *direction_deg)?,
+            Goal::Tube { direction_deg, cells, .. } => {
+                within("direction_deg", "direction", *direction_deg)?;
+                if *cells < 2 {
+                    let help = "give 2 or more cells";
+                    return Err(InvalidInput::new("cells", format!("{cells} cells do not go round"), help));
+                }
+            }
             Goal::Wire { .. } | Goal::Clearance { .. } if self.sense == Sense::Least => {
                 return Err(InvalidInput::new("sense", "nothing bounds it from below", "ask for the largest"));
             }
@@ -320,7 +351,8 @@ impl Question {
             | Goal::Wire { .. }
             | Goal::Clearance { .. }
             | Goal::Area { .. }
-            | Goal::Curvature { .. } => Ok(None),
+            | Goal::Curvature { .. }
+            | Goal::Tube { .. } => Ok(None),
         }
     }
 

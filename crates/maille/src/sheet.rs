@@ -15,6 +15,7 @@ use crate::{
         extreme::{Extreme, extreme},
         strain::{StrainMethod, StrainOptions},
         stretch::ExactMethod,
+        tube::{Tube, tube},
     },
     state::{Pose, State},
     survey::{CellChoice, KnownRoll, RollTask, one, rolls},
@@ -89,6 +90,16 @@ impl Sheet {
             Goal::Clearance { lattice_free } => extreme(Extreme::LargestClearance, lattice_free),
             Goal::Area { min_gap } => extreme(Extreme::ClosestCell { gap: min_gap / self.model().unit }, true),
             Goal::Strain { .. } | Goal::Ray { .. } => self.strain(question, cancel)?,
+            Goal::Tube { direction_deg, above, cells, sought } => {
+                let (direction, sign) = (Direction::of_degrees(direction_deg), if above { -1.0 } else { 1.0 });
+                let model = self.model();
+                let Some(target) = Tube::new(model, direction, sign, cells, (sought, sense.sign())) else {
+                    let problem = format!("{cells} cells of {} along {direction_deg} do not close", model.cell);
+                    let help = "take a direction along a lattice vector, and a number of cells that the cell fits into";
+                    return Err(InvalidInput::new("direction_deg", problem, help));
+                };
+                tube(model, target, &ExtremeOptions { lattice_free: true, effort, starts, seed }, cancel)
+            }
             Goal::Curvature { direction_deg, free } => {
                 let curl = Curl { direction: Direction::of_degrees(direction_deg), sign: sense.sign(), free };
                 let options = ExtremeOptions { lattice_free: true, effort, starts, seed };

@@ -13,6 +13,7 @@ pub mod flat;
 pub mod gap_kernel;
 pub mod key;
 pub mod metric;
+mod neutral;
 mod pair;
 mod rolled;
 pub mod waves;
@@ -60,6 +61,9 @@ pub struct Parameter {
     pub most: Option<f64>,
     /// The parameter may not exceed the share of the area that is saved, 1 − A/A₀; see `area.rs`.
     pub saves_area: bool,
+    /// The parameter may not exceed this sign times the radius of the neutral surface, whose turns are held; 0 where it does not bound it. See
+    /// `neutral.rs`.
+    pub radius_sign: f64,
 }
 
 impl Parameter {

@@ -139,7 +139,7 @@ impl SheetProgram<'_> {
             hessian: vec![0.0],
             ..Row::value(bound_key(m), 0.0, most - x.p[m])
         };
-        bounded.map(row).chain(self.area_rows(x)).collect()
+        bounded.map(row).chain(self.area_rows(x)).chain(self.neutral_rows(x)).collect()
     }
 
     fn frame(&self, x: &Posed, near: &NearPair) -> PairFrame {

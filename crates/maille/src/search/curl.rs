@@ -69,7 +69,7 @@ impl Curl {
     }
 
     /// The written state stretched and pressed, flat, along each strain that is free.
-    fn flat_starts(&self, model: &Model, seed: u64, cancel: &AtomicBool) -> Vec<Start> {
+    pub(super) fn flat_starts(&self, model: &Model, seed: u64, cancel: &AtomicBool) -> Vec<Start> {
         let mut out = Vec::new();
         for k in 0..3 {
             for sign in [1.0, -1.0] {

@@ -3,7 +3,7 @@
 //! `starts` are states to begin with, `stop` says when they are enough, `local` is one maximisation, `multistart` the search from
 //! many starts and in larger cells, and the other files say what is maximised and from where: `stretch` (with `stretch_lattices`,
 //! `along` for the limits of one direction, and `unlinked` where no chain of links binds), `strain`, and `extreme`: `room` (wire and clearance) or `closest` (the area of
-//! the cell), and `curl`, the tightest roll. `family` is the program that an answer solves. `near` begins with the state of another design. `waves` tells whether a limit can go on in a larger cell. `overlap` frees a start that overlaps. Every tolerance is in `options`.
+//! the cell), `curl`, the tightest roll, and `tube`, what is sought of a closed tube. `family` is the program that an answer solves. `near` begins with the state of another design. `waves` tells whether a limit can go on in a larger cell. `overlap` frees a start that overlaps. Every tolerance is in `options`.
 
 mod along;
 mod closest;
@@ -24,6 +24,7 @@ pub mod strain;
 #[doc(hidden)]
 pub mod stretch;
 mod stretch_lattices;
+pub(crate) mod tube;
 mod unlinked;
 mod waves;
 
