@@ -1,7 +1,7 @@
 //! `--at direction=30,l2=-0.125`: a row of a record; `--at roomiest`: a state that is found now.
 
 use maille::search::extreme::Extreme;
-use maille_io::roll::Axis;
+use maille_io::roll::{Axis, RollKey, Sought};
 use std::fmt;
 
 /// Which row of a record is meant.
@@ -15,6 +15,10 @@ pub struct At {
     pub frame: Option<usize>,
     /// Where the axis of a roll is.
     pub axis: Option<Axis>,
+    /// Cells of a tube that go round.
+    pub wrap: Option<u32>,
+    /// What was sought of a tube.
+    pub sought: Option<Sought>,
 }
 
 /// What is to be shown: a row of a record or a frame, or an extreme of the design.
@@ -54,6 +58,22 @@ pub fn parse_at(text: &str) -> Result<At, String> {
             }
             continue;
         }
+        if key.trim() == "wrap" {
+            let cells = value.trim().parse().map_err(|_| format!("\"{part}\" is not a tube; give wrap=12"))?;
+            if at.wrap.replace(cells).is_some() {
+                return Err("wrap is given twice".into());
+            }
+            continue;
+        }
+        if key.trim() == "sought" {
+            let names = || Sought::OF_TUBES.map(Sought::name).join(", ");
+            let sought = Sought::named(value.trim());
+            let sought = sought.ok_or_else(|| format!("\"{part}\" is not sought of tubes; give one of {}", names()))?;
+            if at.sought.replace(sought).is_some() {
+                return Err("sought is given twice".into());
+            }
+            continue;
+        }
         let value: f64 = value.trim().parse().ok().filter(|x: &f64| x.is_finite()).ok_or_else(wrong)?;
         let slot = match key.trim() {
             "direction" => &mut at.direction,
@@ -70,12 +90,17 @@ pub fn parse_at(text: &str) -> Result<At, String> {
 impl At {
     /// Whether a row of this direction and l2 is meant.
     pub fn fits(&self, direction_deg: f64, l2: f64) -> bool {
-        same(self.direction, direction_deg) && same(self.l2, l2) && self.axis.is_none()
+        let of_rolls = self.axis.is_some() || self.wrap.is_some() || self.sought.is_some();
+        same(self.direction, direction_deg) && same(self.l2, l2) && !of_rolls
     }
 
-    /// Whether a roll of this direction and axis is meant.
-    pub fn fits_roll(&self, direction_deg: f64, axis: Axis) -> bool {
-        same(self.direction, direction_deg) && self.axis.is_none_or(|wanted| wanted == axis)
+    /// Whether this roll is meant. Of a tube that is the one with the widest gaps where it is not said what was sought.
+    pub fn fits_roll(&self, roll: &RollKey) -> bool {
+        let sought = self.sought.unwrap_or(if roll.wrap.is_some() { Sought::Roomiest } else { Sought::Tightest });
+        same(self.direction, roll.direction_deg)
+            && self.axis.is_none_or(|wanted| wanted == roll.axis)
+            && self.wrap.is_none_or(|wanted| roll.wrap == Some(wanted))
+            && sought == roll.sought
     }
 }
 
@@ -87,7 +112,12 @@ impl fmt::Display for At {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let numbers = [("direction", self.direction), ("l2", self.l2)];
         let numbers = numbers.into_iter().filter_map(|(key, value)| Some(format!("{key}={}", value?)));
-        let parts: Vec<String> = numbers.chain(self.axis.map(|axis| format!("axis={}", axis.name()))).collect();
+        let words = [
+            self.axis.map(|axis| format!("axis={}", axis.name())),
+            self.wrap.map(|cells| format!("wrap={cells}")),
+            self.sought.map(|sought| format!("sought={}", sought.name())),
+        ];
+        let parts: Vec<String> = numbers.chain(words.into_iter().flatten()).collect();
         f.write_str(if parts.is_empty() { "any place".to_owned() } else { parts.join(",") }.as_str())
     }
 }

@@ -8,12 +8,15 @@ use maille::{model::Model, state::State};
 use maille_io::{Tile, mesh::millimetres};
 use miette::Result;
 
+/// Cells that are exported and simulated where nothing is said.
+const USUAL: Tile = Tile([4, 4]);
+
 /// Cells, or a size.
 #[derive(clap::Args)]
 pub struct PieceArgs {
-    /// Cells along a1 and a2
-    #[arg(long, value_name = "MxN", default_value = "4x4")]
-    tile: Tile,
+    /// Cells along a1 and a2 [default: 4x4; of a tube all that go round]
+    #[arg(long, value_name = "MxN")]
+    tile: Option<Tile>,
     /// In place of --tile, width along a1 and height across it, as 100x100mm, 10x10cm or 4x4in: the whole cells that come nearest,
     /// measured with the wire
     #[arg(long, value_name = "WxH", value_parser = parse_size, conflicts_with = "tile")]
@@ -26,10 +29,10 @@ impl PieceArgs {
         self.size.is_some()
     }
 
-    /// The cells, in words where a size was asked for; `mm` is that of one unit of the file.
-    pub fn tile(&self, model: &Model, state: &State, mm: f64) -> (Tile, Option<String>) {
+    /// The cells, in words where a size was asked for; `tube` are those of a tube, and `mm` is that of one unit of the file.
+    pub fn tile(&self, model: &Model, state: &State, tube: Option<Tile>, mm: f64) -> (Tile, Option<String>) {
         match self.size {
-            None => (self.tile, None),
+            None => (self.tile.or(tube).unwrap_or(USUAL), None),
             Some(size) => {
                 let tile = nearest(model, state, mm, size);
                 (tile, Some(words(tile, model, state, mm)))

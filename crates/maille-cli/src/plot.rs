@@ -212,6 +212,14 @@ pub fn run(args: &Args) -> Result<()> {
     if let [path] = &args.records[..]
         && let Some((record, rolls)) = records::rolls(path)?
     {
+        if !record.question.wrap.is_empty() {
+            let problem = format!("{} holds tubes, which have no plot", path.display());
+            return Err(wrong(
+                exit::USAGE,
+                problem,
+                "render one, as: maille render --from FOLDER --at wrap=8,axis=below",
+            ));
+        }
         alone(args, "rolls have one kind of plot, of all directions and both sides")?;
         let svg = roll_svg(&record.design, &rolls, layout);
         return args.figure.write(&svg, &format!("maille-out/roll-{}", file_name(&record.design.name)));

@@ -192,7 +192,10 @@ fn extent(args: &Args, source: &Source, pixels: [u32; 2], piece: Option<[f64; 2]
         }
         (None, Some(tile), _) => Extent::Cells(tile.0),
         (None, None, Some(patch)) => Extent::Patch(patch),
-        (None, None, None) => Extent::filling(pixels, args.view, design.reference_radius),
+        (None, None, None) => match source.tube_tile() {
+            Some(tube) => Extent::Cells(tube.0),
+            None => Extent::filling(pixels, args.view, design.reference_radius),
+        },
     })
 }
 
@@ -311,7 +314,11 @@ fn caption(source: &Source) -> Option<Caption> {
         let unit = source.design.unit.as_deref().map_or(String::new(), |unit| format!(" {unit}"));
         let radius = roll.neutral_radius.map_or(String::new(), |radius| format!(", radius {radius:.4}{unit}"));
         let (name, axis) = (&source.design.name, roll.axis.name());
-        let text = format!("{name}, rolled along {}°, axis {axis}{radius}", roll.direction_deg);
+        let along = roll.direction_deg;
+        let text = match roll.wrap {
+            None => format!("{name}, rolled along {along}°, axis {axis}{radius}"),
+            Some(cells) => format!("{name}, {cells} cells round along {along}°, {}{radius}", roll.sought.name()),
+        };
         return Some(Caption { text, pull_deg: None });
     }
     let [l1, l2] = Direction::of_degrees(state.direction_deg).stretches(&state.deformation_gradient);

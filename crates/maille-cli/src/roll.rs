@@ -14,7 +14,7 @@ use maille::{Across, Design, question::Effort, record::Status, survey::CellChoic
 use maille_io::{
     boundary::SURFACE,
     plot::{Layout, roll_svg, svg_to_png},
-    roll::{Axis, ROLL, Roll, RollFolder, RollQuestion, find_rolls, rolls_json},
+    roll::{Axis, ROLL, Roll, RollError, RollFolder, RollKey, RollQuestion, Sought, find_rolls, rolls_json},
 };
 use miette::{IntoDiagnostic, Report, Result, WrapErr};
 use std::{
@@ -33,13 +33,16 @@ use std::{
 /// neutral surface, at the mean distance of the elements from the axis; the stretch along it is left to the sheet. No bound is known: every answer
 /// is the best of the starts that were searched. That no other state goes further is not proved. Writes a folder with rolls.csv (a row for each roll),
 /// rolls.jsonl (the same with every state, from which an interrupted run continues), roll.json (what it is of), roll.svg and roll.png
-/// (R by the radius, along each direction). The same command continues it, with more directions, too.
+/// (R by the radius, along each direction). The same command continues it, with more directions, too. With --wrap it asks for closed tubes: the state
+/// with the widest gaps, and the least and largest radius and length.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   maille roll european-4-in-1
   maille roll shirt.toml --directions 0,45,90 --free width,shear
   maille roll 3.1 --directions 90 --axis below --effort thorough
+  maille roll european-4-in-1 --wrap 5:12:1                tubes of 5 to 12 cells round
+  maille export --from maille-out/european-4-in-1-tubes --at wrap=8,axis=below    one of them, to print
   maille roll european-4-in-1 --json | jq '.rolls[] | [.direction_deg, .axis, .neutral_radius]'
   maille plot european-4-in-1-roll --style paper -o fig.pdf   its figure, for print
   maille verify european-4-in-1-roll   its states derived anew
@@ -48,9 +51,12 @@ Exit codes: 0 every roll is certified, 5 some are not (0 with --allow-incomplete
 pub struct Args {
     #[command(flatten)]
     design: DesignArgs,
-    /// Directions that are rolled, degrees counter-clockwise from x: a list, or first:last:step
-    #[arg(long, default_value = "0:150:30", value_parser = parse, allow_hyphen_values = true)]
-    directions: Numbers,
+    /// Directions that are rolled, degrees counter-clockwise from x: a list, or first:last:step [default: 0:150:30; of tubes that of a1]
+    #[arg(long, value_parser = parse, allow_hyphen_values = true)]
+    directions: Option<Numbers>,
+    /// Closed tubes in place of the tightest rolls: so many cells along the direction go once round. A list, or first:last:step
+    #[arg(long, value_name = "CELLS", value_parser = parse, conflicts_with = "free")]
+    wrap: Option<Numbers>,
     /// Where the axis is
     #[arg(long, value_enum, default_value_t = Side::Both)]
     axis: Side,
@@ -96,31 +102,44 @@ enum Free {
 }
 
 impl Args {
-    fn question(&self) -> RollQuestion {
+    fn question(&self, design: &Design) -> Result<RollQuestion> {
         let free = |what: Free| self.free.contains(&what);
         let axes = match self.axis {
             Side::Both => Axis::BOTH.to_vec(),
             Side::Below => vec![Axis::Below],
             Side::Above => vec![Axis::Above],
         };
-        RollQuestion {
-            directions_deg: self.directions.0.clone(),
+        let count = |cells: &f64| match *cells {
+            cells if cells.fract() == 0.0 && (2.0..=1e6).contains(&cells) => Ok(cells as u32),
+            cells => {
+                Err(wrong(exit::USAGE, format!("--wrap {cells} is no number of cells"), "give whole numbers from 2"))
+            }
+        };
+        let wrap: Vec<u32> = self.wrap.iter().flat_map(|wrap| &wrap.0).map(count).collect::<Result<_>>()?;
+        let [x, y, _] = design.lattice.a1;
+        let usual = || {
+            if wrap.is_empty() { (0..6).map(|k| 30.0 * f64::from(k)).collect() } else { vec![y.atan2(x).to_degrees()] }
+        };
+        Ok(RollQuestion {
+            directions_deg: self.directions.as_ref().map_or_else(usual, |directions| directions.0.clone()),
             axes,
             free: Across { lateral_free: free(Free::Width), shear_free: free(Free::Shear) },
             cells: self.cell.clone(),
             effort: self.effort,
             seed: self.seed,
-        }
+            wrap,
+        })
     }
 }
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    let question = args.question();
-    question.check().map_err(|e| refused(&e))?;
     let input = args.design.read()?;
+    let question = args.question(&input.design)?;
+    question.check().map_err(|e| refused(&e))?;
     let sheet = input.sheet(args.cell.clone())?;
-    let usual = || PathBuf::from("maille-out").join(format!("{}-roll", file_name(&input.design.name)));
+    let kind = if question.wrap.is_empty() { "roll" } else { "tubes" };
+    let usual = || PathBuf::from("maille-out").join(format!("{}-{kind}", file_name(&input.design.name)));
     let out = args.out.clone().unwrap_or_else(usual);
     output::folder(&out, "the rolls are a folder")?;
     if holds_record(&out) || out.join(SURFACE).is_file() {
@@ -136,7 +155,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         _ => {}
     }
     let asked = question.rolls();
-    let is_known = |asked: &(f64, Axis)| rolls.iter().any(|roll| roll.key() == *asked);
+    let is_known = |asked: &RollKey| rolls.iter().any(|roll| roll.key() == *asked);
     let known = asked.iter().filter(|asked| is_known(asked)).count();
     let (cancel, pool) = (interrupt::flag(args.quiet)?, pool(args.run.threads)?);
     let begun = Instant::now();
@@ -150,7 +169,11 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         }
         folder.keep(roll)
     };
-    let rolls = pool.install(|| find_rolls(&sheet, &input.design, &question, rolls, &cancel, &mut keep))?;
+    let rolls = pool.install(|| find_rolls(&sheet, &input.design, &question, rolls, &cancel, &mut keep));
+    let rolls = rolls.map_err(|e| match e {
+        RollError::Asked(e) => refused(&e),
+        RollError::Record(e) => e.into(),
+    })?;
     progress.finish();
     write(&out, &folder, &input, &question, &rolls)?;
     let wall_s = begun.elapsed().as_secs_f64();
@@ -159,8 +182,17 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if args.json {
         output::print_json(&output::timed(rolls_json(&input.design, &shown), wall_s))?;
     } else if !args.quiet {
-        print(&question, &input.design, &shown, known, wall_s);
-        say!("look at {}", out.join("roll.png").display());
+        if question.wrap.is_empty() {
+            print(&question, &input.design, &shown, known, wall_s);
+            say!("look at {}", out.join("roll.png").display());
+        } else {
+            print_tubes(&input.design, &shown, known, wall_s);
+            let first = shown.iter().find(|roll| roll.is_certified()).map(Roll::key);
+            if let Some(RollKey { direction_deg, axis, wrap: Some(cells), .. }) = first {
+                let at = format!("direction={direction_deg},axis={},wrap={cells}", axis.name());
+                say!("to print one: maille export --from {} --at {at}", out.display());
+            }
+        }
     }
     let incomplete = !shown.iter().all(Roll::is_certified);
     Ok(exit::ended(interrupted, args.run.code(incomplete), args.quiet))
@@ -172,10 +204,12 @@ fn stopped(cancel: &AtomicBool) -> bool {
 
 /// Writes the table, the figure, and what the rolls are of.
 fn write(out: &Path, folder: &RollFolder<'_>, input: &Input, question: &RollQuestion, rolls: &[Roll]) -> Result<()> {
-    let svg = roll_svg(&input.design, rolls, Layout::Beside);
-    let png = svg_to_png(&svg, 2.0).into_diagnostic().wrap_err("cannot draw the figure")?;
-    output::write(&out.join("roll.svg"), svg.as_bytes())?;
-    output::write(&out.join("roll.png"), &png)?;
+    if question.wrap.is_empty() {
+        let svg = roll_svg(&input.design, rolls, Layout::Beside);
+        let png = svg_to_png(&svg, 2.0).into_diagnostic().wrap_err("cannot draw the figure")?;
+        output::write(&out.join("roll.svg"), svg.as_bytes())?;
+        output::write(&out.join("roll.png"), &png)?;
+    }
     Ok(folder.finish(&input.design, question, rolls)?)
 }
 
@@ -229,4 +263,49 @@ fn print(question: &RollQuestion, design: &Design, rolls: &[Roll], known: usize,
     if let Some(most) = chances.max_by(f64::total_cmp) {
         say!("estimated chance that another start of the same kinds bends further: {:.1} % at most", 100.0 * most);
     }
+}
+
+/// One line for each tube: its gaps, radii and lengths.
+fn print_tubes(design: &Design, rolls: &[Roll], known: usize, wall_s: f64) {
+    let unit = design.unit.as_deref().map_or(String::new(), |unit| format!(", {unit}"));
+    let before = if known > 0 { format!(", {known} of {} states there before", rolls.len()) } else { String::new() };
+    say!("{}: closed tubes{before}; {wall_s:.1} s", design.name);
+    let head = [format!("widest gap{unit}"), format!("radius{unit}"), "length, by that written".to_owned()];
+    say!(
+        "  {:>10}  {:<5} {:>6}  {:>16}  {:>20}  {:>24}  status",
+        "direction",
+        "axis",
+        "cells",
+        head[0],
+        head[1],
+        head[2]
+    );
+    let tubes = rolls.chunk_by(|a, b| (a.direction_deg, a.axis, a.wrap) == (b.direction_deg, b.axis, b.wrap));
+    for tube in tubes {
+        let (first, mut statuses) = (&tube[0], tube.iter().map(|roll| roll.status.name()).collect::<Vec<_>>());
+        statuses.dedup();
+        let of = |sought: Sought, value: fn(&Roll) -> Option<f64>| {
+            tube.iter().find(|roll| roll.sought == sought).and_then(value)
+        };
+        let number = |x: Option<f64>| x.map_or("-".to_owned(), |x| format!("{x:.4}"));
+        let range = |ends: [Sought; 2], value: fn(&Roll) -> Option<f64>| {
+            let [least, most] = ends.map(|sought| number(of(sought, value)));
+            format!("{least} to {most}")
+        };
+        let length = |roll: &Roll| roll.l2.map(|l2| 1.0 + l2);
+        say!(
+            "  {:>9}\u{b0}  {:<5} {:>6}  {:>16}  {:>20}  {:>24}  {}",
+            first.direction_deg,
+            first.axis.name(),
+            first.wrap.unwrap_or(0),
+            number(of(Sought::Roomiest, |roll| roll.min_gap)),
+            range([Sought::Narrowest, Sought::Widest], |roll| roll.neutral_radius),
+            range([Sought::Shortest, Sought::Longest], length),
+            statuses.join(", ")
+        );
+        tube.iter().find_map(|roll| roll.note.as_deref()).into_iter().for_each(|note| say!("              {note}"));
+    }
+    say!(
+        "radius: at the mean distance of the elements from the axis; certified, and the best of the starts that were searched"
+    );
 }

@@ -258,7 +258,7 @@ fn tile(args: &Args, input: &Input) -> Result<Tile> {
         false => 1.0,
     };
     let cell = input.compile(&input.design, Cell::PRIMITIVE)?;
-    let (tile, words) = args.piece.tile(&cell, &cell.start, mm);
+    let (tile, words) = args.piece.tile(&cell, &cell.start, None, mm);
     if let Some(words) = words.filter(|_| !args.quiet) {
         eprintln!("note: {words}");
     }

@@ -20,12 +20,18 @@ use maille::{
     survey::CellChoice,
 };
 use maille_io::{
-    mesh,
+    Tile, mesh,
     record::{Record, SIMULATION, SimulationFiles, open_simulation},
     roll::{ROLL, Roll, open_rolls},
 };
 use miette::{Report, Result};
-use std::path::{Path, PathBuf};
+use std::{
+    f64::consts::TAU,
+    path::{Path, PathBuf},
+};
+
+/// Cells along a tube that are shown where nothing is said.
+const TUBE_LENGTH: u32 = 8;
 
 /// Which state is shown.
 #[derive(clap::Args)]
@@ -37,7 +43,7 @@ pub struct SourceArgs {
     #[arg(long, value_name = "RECORD")]
     pub from: Option<PathBuf>,
     /// Which state of the record, as direction=30,l2=-0.125; what only one state fits may be left out. Of a simulation:
-    /// frame=12 [default: the last]. Of rolls: direction=0,axis=below. Or roomiest, the state of the design with the widest gaps, and tightest, that with the
+    /// frame=12 [default: the last]. Of rolls: direction=0,axis=below; of tubes wrap=12,sought=longest, too [default: roomiest]. Or roomiest, the state of the design with the widest gaps, and tightest, that with the
     /// thickest wire: found now, as `maille roomiest` and `maille tightest` do
     #[arg(long, value_parser = parse_place, allow_hyphen_values = true)]
     pub at: Option<Place>,
@@ -260,12 +266,16 @@ impl SourceArgs {
         }
         let found: Vec<(&Roll, StateRecord)> = rolls
             .iter()
-            .filter(|roll| at.fits_roll(roll.direction_deg, roll.axis))
+            .filter(|roll| at.fits_roll(&roll.key()))
             .filter_map(|roll| Some((roll, roll.state()?)))
             .collect();
         let [(roll, state)] = &found[..] else {
-            let all =
-                rolls.iter().map(|roll| format!("  --at direction={},axis={}", roll.direction_deg, roll.axis.name()));
+            let place = |roll: &Roll| {
+                let tube = roll.wrap.map(|cells| format!(",wrap={cells},sought={}", roll.sought.name()));
+                let tube = tube.unwrap_or_default();
+                format!("  --at direction={},axis={}{tube}", roll.direction_deg, roll.axis.name())
+            };
+            let all = rolls.iter().map(place);
             let problem = match found.len() {
                 0 => format!("{named} has no roll with a state at {at}"),
                 n => format!("{n} rolls of {named} fit"),
@@ -380,6 +390,21 @@ impl Source {
         self.locked.as_ref().map_or(&[], |(record, _)| &record.contacts)
     }
 
+    /// The cells that close the tube of the state, where it is one and a lattice vector of the cell goes round.
+    pub fn tube_tile(&self) -> Option<Tile> {
+        let roll = self.rolled.as_ref()?;
+        let (_, state) = self.locked.as_ref()?;
+        let turns = state.roll?.turn_rad.map(|turn| turn.abs() / TAU);
+        let around = |turn: f64| (1.0 / turn).round();
+        roll.wrap?;
+        let whole = |k: usize| (turns[k] * around(turns[k]) - 1.0).abs() < 1e-9;
+        match turns.map(|turn| turn > 1e-9) {
+            [true, false] if whole(0) => Some(Tile([around(turns[0]) as u32, TUBE_LENGTH])),
+            [false, true] if whole(1) => Some(Tile([TUBE_LENGTH, around(turns[1]) as u32])),
+            _ => None,
+        }
+    }
+
     /// How files of this state are named; `film` is of all states of a simulation.
     pub fn stem(&self, film: bool) -> String {
         let name = file_name(&self.design.name);
@@ -393,7 +418,11 @@ impl Source {
             return format!("{name}-{word}");
         }
         if let Some(roll) = &self.rolled {
-            return format!("{name}-roll_{}_{}", roll.direction_deg, roll.axis.name());
+            let what = match roll.wrap {
+                None => "roll".to_owned(),
+                Some(cells) => format!("tube-{cells}-{}", roll.sought.name()),
+            };
+            return format!("{name}-{what}_{}_{}", roll.direction_deg, roll.axis.name());
         }
         self.locked.as_ref().map_or(name.clone(), |(s, _)| name + &place(Some(s.direction_deg), Some(s.l2)))
     }

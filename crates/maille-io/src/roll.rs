@@ -5,9 +5,11 @@
 
 mod folder;
 mod run;
+mod sought;
 
 pub use folder::{ROLL, ROLLS, ROLLS_TABLE, RollFolder, RollRecordFile, in_order, open_rolls};
-pub use run::find_rolls;
+pub use run::{RollError, find_rolls};
+pub use sought::{RollKey, Sought};
 
 use crate::{
     answer::CertificateRecord,
@@ -16,7 +18,6 @@ use crate::{
 use maille::{
     answer::Answer,
     design::Design,
-    error::InvalidInput,
     lattice::{Across, Direction},
     model::Model,
     question::{Effort, Goal, Question, Sense, Strain},
@@ -66,32 +67,9 @@ pub struct RollQuestion {
     pub effort: Effort,
     /// Seed of the starts that are drawn.
     pub seed: u64,
-}
-
-impl RollQuestion {
-    /// Its rolls, in the order of the table.
-    pub fn rolls(&self) -> Vec<(f64, Axis)> {
-        let along = |direction_deg: &f64| self.axes.iter().map(move |axis| (*direction_deg, *axis)).collect::<Vec<_>>();
-        self.directions_deg.iter().flat_map(along).collect()
-    }
-
-    /// One of them as a question by itself.
-    pub fn question(&self, (direction_deg, axis): (f64, Axis)) -> Question {
-        let sign = axis.sense().sign();
-        let question = Question::curvature_along(direction_deg, sign).with_free(self.free);
-        Question { effort: self.effort, seed: self.seed, ..question }
-    }
-
-    /// Whether all can be asked.
-    ///
-    /// # Errors
-    /// Without directions, and what [`Question::check`] refuses.
-    pub fn check(&self) -> Result<(), InvalidInput> {
-        if self.directions_deg.is_empty() {
-            return Err(InvalidInput::new("directions", "there is none", "give one or more"));
-        }
-        self.rolls().into_iter().try_for_each(|roll| self.question(roll).check())
-    }
+    /// Of tubes: how many cells go round, for each of them. None: the tightest rolls of the sheet.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub wrap: Vec<u32>,
 }
 
 /// One roll: a line of `rolls.jsonl`. Lengths are in the file's unit.
@@ -102,6 +80,12 @@ pub struct Roll {
     pub direction_deg: f64,
     /// Where the axis is.
     pub axis: Axis,
+    /// Cells of a tube that go round.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wrap: Option<u32>,
+    /// What is sought of a tube; of a sheet, where it is not written, the largest curvature.
+    #[serde(default, skip_serializing_if = "Sought::is_of_sheet")]
+    pub sought: Sought,
     /// `free` where the width along the axis is left to the sheet, else `fixed`.
     pub lateral: String,
     /// The same of the shear.
@@ -147,23 +131,38 @@ pub struct Roll {
 }
 
 impl Roll {
-    /// What was found of a question on a roll, in the cell of `model`; `None` of other goals.
+    /// What was found of a question on a roll or a tube, in the cell of `model`; `None` of other goals.
     pub fn new(design: &Design, question: &Question, model: &Model, found: &Answer, wall_s: f64) -> Option<Self> {
-        let Goal::Curvature { direction_deg, free } = question.goal else { return None };
+        let (direction_deg, axis, free, wrap, sought) = match question.goal {
+            Goal::Curvature { direction_deg, free } => {
+                let axis = if question.sense == Sense::Largest { Axis::Below } else { Axis::Above };
+                (direction_deg, axis, free, None, Sought::Tightest)
+            }
+            Goal::Tube { direction_deg, above, cells, sought } => {
+                let axis = if above { Axis::Above } else { Axis::Below };
+                let free = Across { lateral_free: true, shear_free: false };
+                (direction_deg, axis, free, Some(cells), Sought::of(sought, question.sense))
+            }
+            _ => return None,
+        };
         let unit = design.reference_radius;
         let solved = found.value.is_some();
         let neutral = found.state.neutral_surface_of(model).filter(|_| solved);
+        let turned = || found.state.roll.map(|roll| roll.curvature(&model.reference_inverse));
+        let curvature = found.value.and_then(|value| if wrap.is_none() { Some(value) } else { turned() });
         let word = |free: bool| if free { "free" } else { "fixed" }.to_owned();
         let length = |a: maille_geometry::Vec3| -> [f64; 3] { (a * model.unit).into() };
         // Lines along the axis stay along it: they are √(1 + 2 E) times as long.
         let width = Strain::Eyy.of(&found.green_strain(), Direction::of_degrees(direction_deg));
         Some(Roll {
             direction_deg,
-            axis: if question.sense == Sense::Largest { Axis::Below } else { Axis::Above },
+            axis,
+            wrap,
+            sought,
             lateral: word(free.lateral_free),
             shear: word(free.shear_free),
             status: found.status,
-            curvature: found.value.map(|curvature| curvature / unit),
+            curvature: curvature.map(|curvature| curvature / unit),
             neutral_radius: neutral.map(|n| n.radius * unit),
             neutral_stretch: neutral.map(|n| n.stretch),
             l2: solved.then(|| (1.0 + 2.0 * width).sqrt() - 1.0),
@@ -185,8 +184,9 @@ impl Roll {
     }
 
     /// Its direction and axis: what tells it from the others of its folder.
-    pub fn key(&self) -> (f64, Axis) {
-        (self.direction_deg, self.axis)
+    pub fn key(&self) -> RollKey {
+        let &Roll { direction_deg, axis, wrap, sought, .. } = self;
+        RollKey { direction_deg, axis, wrap, sought }
     }
 
     /// Its state, as exports and pictures read one; `None` where nothing was found.
@@ -219,9 +219,11 @@ pub fn rolls_json(design: &Design, rolls: &[Roll]) -> Value {
 type RollColumn = (&'static str, fn(&Roll) -> String);
 
 /// The columns of `rolls.csv`.
-const COLUMNS: [RollColumn; 22] = [
+const COLUMNS: [RollColumn; 24] = [
     ("direction_deg", |r| csv_number(Some(r.direction_deg))),
     ("axis", |r| r.axis.name().into()),
+    ("wrap", |r| r.wrap.map_or(String::new(), |cells| cells.to_string())),
+    ("sought", |r| if r.wrap.is_some() { r.sought.name().into() } else { String::new() }),
     ("lateral", |r| r.lateral.clone()),
     ("shear", |r| r.shear.clone()),
     ("cell", |r| csv_text(&r.cell)),

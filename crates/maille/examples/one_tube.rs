@@ -24,9 +24,19 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         for above in [false, true] {
             let begun = std::time::Instant::now();
             let goal = Goal::Tube { direction_deg, above, cells, sought };
-            let answer = sheet.answer(&Question { effort: maille::question::Effort::Low, ..Question::new(goal, sense) })?;
+            let answer =
+                sheet.answer(&Question { effort: maille::question::Effort::Low, ..Question::new(goal, sense) })?;
             let radius = answer.state.neutral_surface_of(&sheet.model_of(&answer)).map(|n| n.radius);
-            println!("{sought:?} {sense:?} above {above}: {} {:?} radius {radius:?} gap {:?} starts {:?} distinct {:?} {:.3} s {:?}", answer.status.name(), answer.value, answer.gap, answer.n_starts, answer.n_distinct, begun.elapsed().as_secs_f64(), answer.note);
+            println!(
+                "{sought:?} {sense:?} above {above}: {} {:?} radius {radius:?} gap {:?} starts {:?} distinct {:?} {:.3} s {:?}",
+                answer.status.name(),
+                answer.value,
+                answer.gap,
+                answer.n_starts,
+                answer.n_distinct,
+                begun.elapsed().as_secs_f64(),
+                answer.note
+            );
         }
     }
     Ok(())

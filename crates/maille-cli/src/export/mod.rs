@@ -243,7 +243,7 @@ fn tile(args: &Args, source: &Source, frames: &[Frame], mm: f64) -> Result<Tile>
         }
         return Ok(Tile([1, 1]));
     }
-    let (tile, words) = args.piece.tile(&source.model, &frames[frames.len() - 1].state, mm);
+    let (tile, words) = args.piece.tile(&source.model, &frames[frames.len() - 1].state, source.tube_tile(), mm);
     if let Some(words) = words.filter(|_| !args.quiet) {
         eprintln!("note: {words}");
     }

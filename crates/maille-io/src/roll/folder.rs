@@ -1,6 +1,6 @@
 //! The folder of a design's rolls.
 
-use super::{Roll, RollQuestion, rolls_csv};
+use super::{Roll, RollKey, RollQuestion, rolls_csv};
 use crate::{
     files,
     record::{
@@ -54,8 +54,10 @@ struct Head {
 impl Head {
     /// Which directions and sides are asked does not decide where a roll ends.
     fn new(design: &Design, question: &RollQuestion) -> Self {
-        let RollQuestion { free, cells, effort, seed, .. } = question;
-        let parameters = json!({ "free": free, "cells": cells, "effort": effort, "seed": seed });
+        let RollQuestion { cells, effort, seed, .. } = question;
+        let tubes = !question.wrap.is_empty();
+        let parameters =
+            json!({ "tubes": tubes, "free": question.free(), "cells": cells, "effort": effort, "seed": seed });
         Head {
             program_version: env!("CARGO_PKG_VERSION").into(),
             input_hash: input_hash(design, &parameters),
@@ -129,7 +131,7 @@ impl<'a> RollFolder<'a> {
         let head = Head::new(design, question);
         let states = write_states(&self.folder.join(ROLLS), &head, rolls)?;
         let Head { program_version, input_hash, .. } = head;
-        let known = |asked: &(f64, super::Axis)| rolls.iter().any(|roll| roll.key() == *asked);
+        let known = |asked: &RollKey| rolls.iter().any(|roll| roll.key() == *asked);
         let record = RollRecordFile {
             schema: SCHEMA,
             program_version,
@@ -197,7 +199,8 @@ pub fn open_rolls(folder: &Path) -> Result<(RollRecordFile, Vec<Roll>), RecordEr
     Ok((record, rolls))
 }
 
-/// By direction, the axis below first: the order of the table.
+/// By direction, the axis below first; tubes by their cells and by what is sought: the order of the table.
 pub fn in_order(rolls: &mut [Roll]) {
-    rolls.sort_by(|a, b| a.direction_deg.total_cmp(&b.direction_deg).then(a.axis.cmp(&b.axis)));
+    let rest = |roll: &Roll| (roll.axis, roll.wrap, roll.sought);
+    rolls.sort_by(|a, b| a.direction_deg.total_cmp(&b.direction_deg).then(rest(a).cmp(&rest(b))));
 }

@@ -16,7 +16,10 @@ impl SheetProgram<'_> {
     /// The row of each parameter that the radius bounds; none where nothing turns.
     pub(super) fn neutral_rows(&self, x: &Posed) -> Vec<Row> {
         let bounded = self.pull.parameters.iter().enumerate();
-        bounded.filter(|(_, p)| p.radius_sign != 0.0).filter_map(|(m, p)| self.neutral_row(x, m, p.radius_sign)).collect()
+        bounded
+            .filter(|(_, p)| p.radius_sign != 0.0)
+            .filter_map(|(m, p)| self.neutral_row(x, m, p.radius_sign))
+            .collect()
     }
 
     fn neutral_row(&self, x: &Posed, own: usize, sign: f64) -> Option<Row> {
