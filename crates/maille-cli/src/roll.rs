@@ -138,6 +138,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let question = args.question(&input.design)?;
     question.check().map_err(|e| refused(&e))?;
     let sheet = input.sheet(args.cell.clone())?;
+    question.rolls().into_iter().try_for_each(|key| sheet.check(&question.question(key))).map_err(|e| refused(&e))?;
     let kind = if question.wrap.is_empty() { "roll" } else { "tubes" };
     let usual = || PathBuf::from("maille-out").join(format!("{}-{kind}", file_name(&input.design.name)));
     let out = args.out.clone().unwrap_or_else(usual);

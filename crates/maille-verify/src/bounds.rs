@@ -113,7 +113,7 @@ impl Verifier {
             l1_uncertified: None,
             ..row.clone()
         };
-        let found = gaps_and_links(&limit, &here, start, unit);
+        let found = gaps_and_links(&limit, &here, start, 0.0, unit);
         strain::deformation(&limit, state, here.lattice, start.sheet.lattice, &cell, false).is_ok()
             && found.iter().all(|finding| finding.verdict == Verdict::Proved)
     }

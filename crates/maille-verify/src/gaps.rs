@@ -15,8 +15,8 @@ pub const OVERLAP: f64 = 1e-9;
 const GAP: f64 = 1e-8;
 
 /// Whether rings overlap, the smallest gap is the row's, and links are those of the start; `unit` is that of the row's lengths.
-pub(crate) fn gaps_and_links(row: &Row, here: &Sheet, start: &Start, unit: f64) -> [Finding; 2] {
-    let claimed = if row.certified() { 0.0 } else { row.max_overlap.unwrap_or(0.0) / unit };
+pub(crate) fn gaps_and_links(row: &Row, here: &Sheet, start: &Start, keeps: f64, unit: f64) -> [Finding; 2] {
+    let claimed = if row.certified() { -keeps } else { row.max_overlap.unwrap_or(0.0) / unit };
     let pairs = match here.pairs(|a, b| here.touching(a, b)) {
         Ok(pairs) => pairs,
         Err(words) => {

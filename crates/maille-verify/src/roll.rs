@@ -5,7 +5,7 @@ use crate::{
     gaps::gaps_and_links,
     record::{Contact, Design, Pose, Row, State, Unreadable, json},
     report::{Check, Finding, Verdict},
-    roll_forces::{Rate, Written, roll_forces},
+    roll_forces::{Objective, Rate, Written, roll_forces},
     rolled::{Motions, Rolled, joined},
     sheet::{self, Sheet, Vec3},
     start::{Start, names, start},
@@ -15,6 +15,7 @@ use nalgebra::{Matrix2, Vector2};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 
 const HEAD: &str = "roll.json";
 const STATES: &str = "rolls.jsonl";
@@ -68,6 +69,8 @@ struct Question {
     directions_deg: Vec<f64>,
     axes: Vec<String>,
     free: Free,
+    #[serde(default)]
+    wrap: Vec<u32>,
 }
 
 #[derive(Deserialize)]
@@ -104,6 +107,9 @@ struct Turns {
 struct Roll {
     direction_deg: f64,
     axis: String,
+    wrap: Option<u32>,
+    #[serde(default = "of_sheet")]
+    sought: String,
     lateral: String,
     shear: String,
     status: String,
@@ -122,6 +128,22 @@ struct Roll {
     links_ok: Option<bool>,
 }
 
+fn of_sheet() -> String {
+    "tightest".into()
+}
+
+/// What is sought of each tube.
+const OF_TUBES: [&str; 5] = ["roomiest", "narrowest", "widest", "shortest", "longest"];
+
+/// What tells a roll from the others.
+type Key = (u64, String, Option<u32>, String);
+
+impl Roll {
+    fn key(&self) -> Key {
+        (self.direction_deg.to_bits(), self.axis.clone(), self.wrap, self.sought.clone())
+    }
+}
+
 /// What is known of one roll.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RollReport {
@@ -129,6 +151,10 @@ pub struct RollReport {
     pub direction_deg: f64,
     /// `below` or `above`.
     pub axis: String,
+    /// Cells of a tube that go round.
+    pub wrap: Option<u32>,
+    /// What is sought.
+    pub sought: String,
     /// Its status.
     pub status: String,
     /// Whether it claims a certificate.
@@ -165,7 +191,11 @@ impl RollVerifier {
         let read = |(k, line): (usize, &str)| Ok((json(STATES, k + 2, line)?, json(STATES, k + 2, line)?));
         let mut both: Vec<(Roll, Value)> = lines.enumerate().map(read).collect::<Result<_, _>>()?;
         // As the table: the axis below comes first.
-        both.sort_by(|(a, _), (b, _)| a.direction_deg.total_cmp(&b.direction_deg).then(b.axis.cmp(&a.axis)));
+        let place = |sought: &str| OF_TUBES.iter().position(|of| *of == sought);
+        let tube = |roll: &Roll| (roll.wrap, place(&roll.sought));
+        both.sort_by(|(a, _), (b, _)| {
+            a.direction_deg.total_cmp(&b.direction_deg).then(b.axis.cmp(&a.axis)).then(tube(a).cmp(&tube(b)))
+        });
         let (rolls, values): (Vec<Roll>, Vec<Value>) = both.into_iter().unzip();
         let mut files = vec![belongs(&head, &first, &rolls), line_sums(texts.states)];
         let sums = [(STATES, texts.states), (TABLE, texts.table)];
@@ -203,7 +233,8 @@ impl RollVerifier {
             findings.extend(self.of_state(roll, certified).unwrap_or_else(|words| vec![say(Verdict::False, words)]));
         }
         let (direction_deg, axis, status) = (roll.direction_deg, roll.axis.clone(), roll.status.clone());
-        RollReport { direction_deg, axis, status, certified, findings }
+        let (wrap, sought) = (roll.wrap, roll.sought.clone());
+        RollReport { direction_deg, axis, wrap, sought, status, certified, findings }
     }
 
     fn of_state(&self, roll: &Roll, certified: bool) -> Result<Vec<Finding>, String> {
@@ -232,6 +263,11 @@ impl RollVerifier {
             return Err("the axis has passed through the sheet".into());
         }
         here.roll = Some(rolled);
+        if let Some(cells) = roll.wrap
+            && let Err(words) = closes(roll, cells, &here, &start.sheet, sheet::primitive(&self.design))
+        {
+            return Err(words);
+        }
         let mut out = vec![match deformation(roll, &here, &start.sheet, unit) {
             Ok(off) => {
                 let words = format!("curvature, radius and stretch are those of the state, to {off:.1e}");
@@ -242,14 +278,22 @@ impl RollVerifier {
         let min_gap = roll.min_gap;
         let max_overlap = min_gap.map(|gap| (-gap).max(0.0));
         let row = Row { status: roll.status.clone(), links_ok: roll.links_ok, min_gap, max_overlap, ..Row::default() };
-        out.extend(gaps_and_links(&row, &here, &start, unit));
+        let keeps = if roll.sought == "roomiest" { roll.min_gap.unwrap_or(0.0) / unit } else { 0.0 };
+        out.extend(gaps_and_links(&row, &here, &start, keeps, unit));
         if certified {
             let written = roll.certificate.as_ref().map(|c| Written {
                 min_multiplier: c.min_multiplier,
                 min_curvature: c.min_curvature,
                 zero_modes: c.zero_modes,
             });
-            out.extend(roll_forces(&here, &roll.contacts, &rates(roll, &start.sheet), unit, written.as_ref()));
+            let objective = match roll.sought.as_str() {
+                "roomiest" => Objective::Gap(keeps),
+                "narrowest" => Objective::Radius(-1.0),
+                "widest" => Objective::Radius(1.0),
+                _ => Objective::FirstRate,
+            };
+            let rates = rates(roll, &start.sheet);
+            out.extend(roll_forces(&here, &roll.contacts, (objective, &rates), unit, written.as_ref()));
         }
         Ok(out)
     }
@@ -263,17 +307,31 @@ fn belongs(head: &Head, first: &FirstLine, rolls: &[Roll]) -> Finding {
         return wrong(format!("the first line of {STATES} is not of the run of {HEAD}"));
     }
     let word = |free: bool| if free { "free" } else { "fixed" };
-    let held = [head.question.free.lateral_free, head.question.free.shear_free].map(word);
+    let tubes = !head.question.wrap.is_empty();
+    let free = if tubes { [true, false] } else { [head.question.free.lateral_free, head.question.free.shear_free] };
+    let held = free.map(word);
+    let of_tubes = |roll: &Roll| match roll.wrap {
+        Some(_) => tubes && OF_TUBES.contains(&roll.sought.as_str()),
+        None => !tubes && roll.sought == of_sheet(),
+    };
+    if let Some(roll) = rolls.iter().find(|roll| !of_tubes(roll)) {
+        return wrong(format!("the {} roll along {}° is not asked by {HEAD}", roll.sought, roll.direction_deg));
+    }
     if let Some(roll) = rolls.iter().find(|roll| [roll.lateral.as_str(), roll.shear.as_str()] != held) {
         return wrong(format!("width and shear of the roll along {}° are not held as {HEAD} says", roll.direction_deg));
     }
-    let key = |roll: &Roll| (roll.direction_deg.to_bits(), roll.axis.clone());
-    if let Some(pair) = rolls.windows(2).find(|pair| key(&pair[0]) == key(&pair[1])) {
+    if let Some(pair) = rolls.windows(2).find(|pair| pair[0].key() == pair[1].key()) {
         return wrong(format!("the roll along {}°, axis {}, is there twice", pair[0].direction_deg, pair[0].axis));
     }
-    let asked =
+    let of_tube = |cells: &u32| OF_TUBES.map(|sought| (Some(*cells), sought.to_owned()));
+    let sought: Vec<(Option<u32>, String)> = match tubes {
+        true => head.question.wrap.iter().flat_map(of_tube).collect(),
+        false => vec![(None, of_sheet())],
+    };
+    let sides =
         head.question.directions_deg.iter().flat_map(|d| head.question.axes.iter().map(|a| (d.to_bits(), a.clone())));
-    let missing = asked.filter(|asked| !rolls.iter().any(|roll| key(roll) == *asked)).count();
+    let asked = sides.flat_map(|(d, a)| sought.iter().map(move |(w, s)| (d, a.clone(), *w, s.clone())));
+    let missing = asked.filter(|asked| !rolls.iter().any(|roll| roll.key() == *asked)).count();
     match (missing, head.complete) {
         (0, true) => say(Verdict::Proved, format!("all rolls that {HEAD} asks are there")),
         (0, false) => wrong(format!("{HEAD} says that rolls are missing, and none is")),
@@ -351,6 +409,34 @@ fn status(roll: &Roll, certified: bool, unit: f64) -> Finding {
     of(Verdict::Proved, "the roll has what its status says")
 }
 
+/// Whether so many of the shortest lattice vectors along the direction lead once round, to the same place.
+fn closes(roll: &Roll, cells: u32, here: &Sheet, start: &Sheet, primitive: [Vec3; 2]) -> Result<(), String> {
+    let (u, _) = axes(roll.direction_deg);
+    let inverse = |lattice: [Vec3; 2]| sheet::columns(lattice).try_inverse().ok_or("the lattice vectors are parallel");
+    // Along u one step is the same share of both coordinates: the least that makes both whole.
+    let along = inverse(primitive)? * u;
+    let larger = along.iamax();
+    let whole = |x: f64| (x - x.round()).abs() < SHORTEST;
+    let step =
+        (1..=MOST_STEPS).map(|k| along * (f64::from(k) / along[larger].abs())).find(|v| whole(v[0]) && whole(v[1]));
+    let step = step.ok_or_else(|| format!("no lattice vector lies along {}°", roll.direction_deg))?;
+    let around = (primitive[0] * step[0].round() + primitive[1] * step[1].round()) * f64::from(cells);
+    let shift = inverse(start.lattice)? * around.xy();
+    if !(whole(shift[0]) && whole(shift[1])) {
+        return Err(format!("{cells} cells are not whole cells of {}", roll.cell));
+    }
+    let rolled = here.roll.as_ref().ok_or("the sheet is flat")?;
+    let turn: f64 = (0..2).map(|k| rolled.motions.turn_rad[k] * shift[k].round()).sum();
+    let beside: f64 = (0..2).map(|k| here.lattice[k].dot(&rolled.motions.axis()) * shift[k].round()).sum();
+    let off = (turn.abs() - TAU).abs().max(beside.abs());
+    if off <= SAME { Ok(()) } else { Err(format!("{cells} cells do not close: {off:.1e} is left")) }
+}
+
+/// Steps along a lattice vector that are tried.
+const MOST_STEPS: u32 = 64;
+/// Coordinates within this of a whole number are one.
+const SHORTEST: f64 = 1e-7;
+
 /// Compares the state with the roll's figures; gives the largest difference, or what does not fit.
 ///
 /// With A the lattice vectors of the start and A′ of the state in columns, F = A′A⁻¹, θ the turns, u and w along and across the direction:
@@ -395,7 +481,7 @@ fn deformation(roll: &Roll, here: &Sheet, start: &Sheet, unit: f64) -> Result<f6
     Ok(largest)
 }
 
-/// κ with the sign of the axis first, then the length along u, and what is free.
+/// κ with the sign of the axis first, then the length along u, and what is free. Of a tube, whose κ is held, the lengths: what is maximised first.
 fn rates(roll: &Roll, start: &Sheet) -> Vec<Rate> {
     let (u, w) = axes(roll.direction_deg);
     let sign = if roll.axis == "below" { 1.0 } else { -1.0 };
@@ -404,6 +490,16 @@ fn rates(roll: &Roll, start: &Sheet) -> Vec<Rate> {
         turn_rad: [0.0; 2],
     };
     let curvature = Rate { lattice: [Vec3::zeros(); 2], turn_rad: start.lattice.map(|a| sign * u.dot(&a.xy())) };
+    let of_length = |sign: f64| {
+        let length = rate(w, w);
+        vec![Rate { lattice: length.lattice.map(|a| a * sign), ..length }, rate(u, u)]
+    };
+    match roll.sought.as_str() {
+        "shortest" => return of_length(-1.0),
+        "longest" => return of_length(1.0),
+        "roomiest" | "narrowest" | "widest" => return vec![rate(u, u), rate(w, w)],
+        _ => {}
+    }
     let mut out = vec![curvature, rate(u, u)];
     out.extend((roll.lateral == "free").then(|| rate(w, w)));
     out.extend((roll.shear == "free").then(|| rate(w, u)));

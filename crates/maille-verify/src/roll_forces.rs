@@ -29,11 +29,22 @@ const SADDLE: f64 = 1e-6;
 /// The matrices are dense.
 const MOST_UNKNOWNS: usize = 400;
 
-/// What is free: a rate of both lattice vectors, and of both turns. The first is what is maximised.
+/// What is free: a rate of both lattice vectors, and of both turns.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rate {
     pub lattice: [Vec3; 2],
     pub turn_rad: [f64; 2],
+}
+
+/// What is maximised.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Objective {
+    /// The first rate.
+    FirstRate,
+    /// The gap that all pairs keep; it is this in the state.
+    Gap(f64),
+    /// This sign times the mean distance of the elements from the axis.
+    Radius(f64),
 }
 
 /// What the roll says of its certificate.
@@ -51,12 +62,15 @@ enum Unknown {
     Shift(usize, Vec3),
     Turn(usize, Vec3),
     Rate(Rate),
+    /// The gap that all pairs keep.
+    Gap,
 }
 
 impl Unknown {
     fn name(&self) -> String {
         match self {
             Unknown::Point => "a point".into(),
+            Unknown::Gap => "the gap".into(),
             Unknown::Shift(e, _) => format!("a shift of element {e}"),
             Unknown::Turn(e, _) => format!("a turn of element {e}"),
             Unknown::Rate(rate) if rate.turn_rad != [0.0; 2] => "the curvature".into(),
@@ -73,6 +87,8 @@ struct Held<'a> {
     /// The point, in the frame of its element.
     point: Vec3,
     force: f64,
+    /// The gap that it keeps.
+    keeps: f64,
 }
 
 impl Held<'_> {
@@ -108,7 +124,8 @@ impl Held<'_> {
         let forward = UnitQuaternion::from_axis_angle(&Unit::new_normalize(normal), along);
         let point = Point3::from(center + forward * (turn * self.point));
         let image = roll.image(lattice, shift);
-        distance(&(image * point).coords, &one) - self.sheet.touching(a, b)
+        let widened: f64 = steps.iter().filter(|(unknown, _)| matches!(unknown, Unknown::Gap)).map(|(_, x)| x).sum();
+        distance(&(image * point).coords, &one) - self.sheet.touching(a, b) - self.keeps - widened
     }
 
     /// A step of this share of the core distance.
@@ -123,6 +140,7 @@ impl Held<'_> {
         let moves = |unknown: &Unknown| match unknown {
             Unknown::Shift(e, _) | Unknown::Turn(e, _) => elements.contains(e),
             Unknown::Rate(_) => shift != [0, 0],
+            Unknown::Gap => true,
             Unknown::Point => false,
         };
         (0..unknowns.len()).filter(|&k| moves(&unknowns[k])).collect()
@@ -133,7 +151,7 @@ impl Held<'_> {
 pub(crate) fn roll_forces(
     sheet: &Sheet,
     contacts: &[Contact],
-    rates: &[Rate],
+    (objective, rates): (Objective, &[Rate]),
     unit: f64,
     written: Option<&Written>,
 ) -> [Finding; 2] {
@@ -141,6 +159,7 @@ pub(crate) fn roll_forces(
         [Check::Balance, Check::Curvature].map(|check| Finding::new(check, verdict, None, words.clone()))
     };
     let Some(roll) = &sheet.roll else { return both(Verdict::Open, "the sheet is flat".into()) };
+    let keeps = if let Objective::Gap(gap) = objective { gap } else { 0.0 };
     let mut held = Vec::new();
     for (k, contact) in contacts.iter().enumerate() {
         let pair = (contact.ring_a, contact.ring_b, contact.shift);
@@ -163,16 +182,77 @@ pub(crate) fn roll_forces(
         let out = (u * angle.cos() + v * angle.sin()) * other.radius;
         let image = roll.motions.image(sheet.lattice, pair.2);
         let turn = image.rotation * sheet.bodies[sheet.rings[pair.1].element].turn;
-        held.push(Held { sheet, roll: roll.motions, pair, point: turn.inverse() * out, force: contact.force });
+        held.push(Held { sheet, roll: roll.motions, pair, point: turn.inverse() * out, force: contact.force, keeps });
     }
-    let unknowns = unknowns(sheet, rates);
+    let mut unknowns = unknowns(sheet, rates);
+    let first_rate = unknowns.len() - rates.len();
+    unknowns.extend(matches!(objective, Objective::Gap(_)).then_some(Unknown::Gap));
+    let radius =
+        if let Objective::Radius(sign) = objective { Some(Radius { sheet, roll: roll.motions, sign }) } else { None };
     if unknowns.len() > MOST_UNKNOWNS {
         let words = format!("{} unknowns; up to {MOST_UNKNOWNS} are looked at", unknowns.len());
         return both(Verdict::Open, words);
     }
-    let first_rate = unknowns.len() - rates.len();
+    let mut aim = DVector::zeros(unknowns.len());
+    match objective {
+        Objective::FirstRate => aim[first_rate] = 1.0,
+        Objective::Gap(_) => aim[unknowns.len() - 1] = 1.0,
+        Objective::Radius(_) => {}
+    }
+    if let Some(radius) = &radius {
+        (0..unknowns.len()).for_each(|k| aim[k] = radius.slope(unknowns[k]));
+    }
     let gradients: Vec<Vec<(usize, f64)>> = held.iter().map(|held| gradient(held, &unknowns)).collect();
-    [balance(&held, &gradients, &unknowns, first_rate, written), curvature(&held, &gradients, &unknowns, written)]
+    let bends = radius.map(|radius| radius.bends(&unknowns));
+    let bends = bends.unwrap_or_else(|| DMatrix::zeros(unknowns.len(), unknowns.len()));
+    [balance(&held, &gradients, &unknowns, aim, written), curvature(&held, &gradients, &unknowns, bends, written)]
+}
+
+/// The mean distance of the elements from the axis, as what is maximised.
+struct Radius<'a> {
+    sheet: &'a Sheet,
+    roll: Motions,
+    sign: f64,
+}
+
+impl Radius<'_> {
+    fn at(&self, steps: &[(Unknown, f64)]) -> f64 {
+        let (mut lattice, axis) = (self.sheet.lattice, self.roll.axis());
+        let mut places: Vec<Vec3> = self.sheet.bodies.iter().map(|body| body.position).collect();
+        for (unknown, x) in steps {
+            match unknown {
+                Unknown::Shift(e, by) => places[*e] += by * *x,
+                Unknown::Rate(rate) => (0..2).for_each(|k| lattice[k] += rate.lattice[k] * *x),
+                _ => {}
+            }
+        }
+        let height = self.roll.axis_distance(lattice);
+        let away = |place: &Vec3| (place + Vec3::z() * height).cross(&axis).norm();
+        self.sign * places.iter().map(away).sum::<f64>() / places.len() as f64
+    }
+
+    fn slope(&self, unknown: Unknown) -> f64 {
+        let (f, h) = (|x: f64| self.at(&[(unknown, x)]), STEP);
+        (8.0 * (f(h) - f(-h)) - (f(2.0 * h) - f(-2.0 * h))) / (12.0 * h)
+    }
+
+    /// Its second derivatives.
+    fn bends(&self, unknowns: &[Unknown]) -> DMatrix<f64> {
+        let n = unknowns.len();
+        let (f, h) = (|steps: &[(Unknown, f64)]| self.at(steps), LONG_STEP);
+        let second = |i: usize, j: usize, h: f64| match i == j {
+            true => (f(&[(unknowns[i], h)]) - 2.0 * f(&[]) + f(&[(unknowns[i], -h)])) / (h * h),
+            false => {
+                let g = |x: f64, y: f64| f(&[(unknowns[i], x), (unknowns[j], y)]);
+                (g(h, h) - g(h, -h) - g(-h, h) + g(-h, -h)) / (4.0 * h * h)
+            }
+        };
+        let moves = |k: usize| matches!(unknowns[k], Unknown::Shift(..) | Unknown::Rate(_));
+        DMatrix::from_fn(n, n, |i, j| match moves(i) && moves(j) {
+            true => (second(i, j, h) - 20.0 * second(i, j, 0.5 * h) + 64.0 * second(i, j, 0.25 * h)) / 45.0,
+            false => 0.0,
+        })
+    }
 }
 
 fn unknowns(sheet: &Sheet, rates: &[Rate]) -> Vec<Unknown> {
@@ -197,11 +277,10 @@ fn balance(
     held: &[Held<'_>],
     gradients: &[Vec<(usize, f64)>],
     unknowns: &[Unknown],
-    first_rate: usize,
+    aim: DVector<f64>,
     written: Option<&Written>,
 ) -> Finding {
-    let mut residual = DVector::zeros(unknowns.len());
-    residual[first_rate] = 1.0;
+    let mut residual = aim;
     let (mut least_force, mut gap) = (f64::INFINITY, 0.0_f64);
     for (held, gradient) in held.iter().zip(gradients) {
         gradient.iter().for_each(|(k, slope)| residual[*k] += slope * held.force);
@@ -235,10 +314,11 @@ fn curvature(
     held: &[Held<'_>],
     gradients: &[Vec<(usize, f64)>],
     unknowns: &[Unknown],
+    bends: DMatrix<f64>,
     written: Option<&Written>,
 ) -> Finding {
     let n = unknowns.len();
-    let (mut of_sum, mut gram) = (DMatrix::zeros(n, n), DMatrix::zeros(n, n));
+    let (mut of_sum, mut gram) = (-bends, DMatrix::zeros(n, n));
     for (held, gradient) in held.iter().zip(gradients).filter(|(held, _)| held.force > LOADED) {
         for (i, x) in gradient {
             gradient.iter().for_each(|(j, y)| gram[(*i, *j)] += x * y);

@@ -233,7 +233,7 @@ fn of_state(vertex: &Vertex, distance: f64, start: &Start, certified: bool) -> V
     let verdict = if fits { Verdict::Proved } else { Verdict::False };
     let mut out = vec![Finding::new(Check::Deformation, verdict, Some(off), words)];
     let row = Row { status: vertex.status.clone(), links_ok: Some(true), ..Row::default() };
-    out.extend(gaps_and_links(&row, &here, start, 1.0));
+    out.extend(gaps_and_links(&row, &here, start, 0.0, 1.0));
     if certified {
         out.extend(forces(&here, start, &f, &ray));
     }

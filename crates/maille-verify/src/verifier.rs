@@ -131,7 +131,7 @@ impl Verifier {
             ),
             Err(words) => Finding::new(Check::Deformation, Verdict::False, None, words),
         });
-        out.extend(gaps_and_links(row, &here, start, unit));
+        out.extend(gaps_and_links(row, &here, start, 0.0, unit));
         if row.certified() {
             out.extend(forces(row, state, &here, start, unit, &self.columns));
             out.extend(self.bound(row, state));

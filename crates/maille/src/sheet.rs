@@ -63,10 +63,24 @@ impl Sheet {
         of_cell(&self.models, answer.cell)
     }
 
+    /// Whether a question can be asked of this sheet.
+    ///
+    /// # Errors
+    /// What [`Question::check`] refuses; a tube that does not close.
+    pub fn check(&self, question: &Question) -> Result<(), InvalidInput> {
+        question.check()?;
+        match question.goal {
+            Goal::Tube { direction_deg, cells, sought, .. } => {
+                Tube::new(self.model(), Direction::of_degrees(direction_deg), 1.0, cells, (sought, 1.0)).map(drop)
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// The answer to a question, by the exact method, on the current thread pool; it does not depend on the number of threads.
     ///
     /// # Errors
-    /// What [`Question::check`] refuses.
+    /// What [`check`](Self::check) refuses.
     pub fn answer(&self, question: &Question) -> Result<Answer, InvalidInput> {
         self.answer_until(question, &AtomicBool::new(false))
     }
@@ -74,9 +88,9 @@ impl Sheet {
     /// The same; after `cancel` the answer comes back as interrupted.
     ///
     /// # Errors
-    /// What [`Question::check`] refuses.
+    /// What [`check`](Self::check) refuses.
     pub fn answer_until(&self, question: &Question, cancel: &AtomicBool) -> Result<Answer, InvalidInput> {
-        question.check()?;
+        self.check(question)?;
         let Question { effort, starts, seed, sense, .. } = *question;
         let extreme = |what: Extreme, lattice_free: bool| {
             extreme(&self.models[0], what, &ExtremeOptions { lattice_free, effort, starts, seed }, cancel)
@@ -93,11 +107,7 @@ impl Sheet {
             Goal::Tube { direction_deg, above, cells, sought } => {
                 let (direction, sign) = (Direction::of_degrees(direction_deg), if above { -1.0 } else { 1.0 });
                 let model = self.model();
-                let Some(target) = Tube::new(model, direction, sign, cells, (sought, sense.sign())) else {
-                    let problem = format!("{cells} cells of {} along {direction_deg} do not close", model.cell);
-                    let help = "take a direction along a lattice vector, and a number of cells that the cell fits into";
-                    return Err(InvalidInput::new("direction_deg", problem, help));
-                };
+                let target = Tube::new(model, direction, sign, cells, (sought, sense.sign()))?;
                 tube(model, target, &ExtremeOptions { lattice_free: true, effort, starts, seed }, cancel)
             }
             Goal::Curvature { direction_deg, free } => {

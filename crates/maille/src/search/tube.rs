@@ -17,6 +17,7 @@ use super::{
 };
 use crate::{
     answer::Answer,
+    error::InvalidInput,
     lattice::{Across, Direction},
     model::Model,
     program::{LatticeFamily, Parameter, SheetProgram},
@@ -50,21 +51,35 @@ pub(crate) struct Tube {
 }
 
 impl Tube {
-    /// The tube of so many of the shortest lattice vectors along the direction; `None` where there is none, or the cell of `model` does not
-    /// fit into it.
+    /// The tube of so many of the shortest lattice vectors along the direction.
+    ///
+    /// # Errors
+    /// Where no lattice vector lies along it, or the cell of `model` does not fit into it.
     pub(crate) fn new(
         model: &Model,
         direction: Direction,
         sign: f64,
         cells: u32,
         (sought, sense): (OfTube, f64),
-    ) -> Option<Self> {
+    ) -> Result<Self, InvalidInput> {
         let primitive = model.cell.primitive(model.start.a1, model.start.a2);
-        let vector = direction.shortest_vector(primitive)?;
+        let degrees = direction.degrees();
+        let Some(vector) = direction.shortest_vector(primitive) else {
+            let [first, second] = primitive.map(|a| a.y.atan2(a.x).to_degrees());
+            let problem =
+                format!("no lattice vector lies along {degrees}\u{b0}, so that no number of cells goes round");
+            let help =
+                format!("take a direction of the lattice: a1 lies along {first:.6}\u{b0}, a2 along {second:.6}\u{b0}");
+            return Err(InvalidInput::new("direction_deg", problem, help));
+        };
         let around = (primitive[0] * f64::from(vector[0]) + primitive[1] * f64::from(vector[1])) * f64::from(cells);
         let steps = model.reference_inverse * around.xy();
         let fits = (steps - steps.map(f64::round)).norm() < 1e-6;
-        fits.then(|| Tube { direction, sign, curvature: TAU / around.norm(), sought, sense })
+        if !fits {
+            let problem = format!("{cells} cells along {degrees}\u{b0} are not whole cells of {}", model.cell);
+            return Err(InvalidInput::new("cells", problem, "take another number of cells, or the cell 1x1"));
+        }
+        Ok(Tube { direction, sign, curvature: TAU / around.norm(), sought, sense })
     }
 
     fn curl(&self) -> Curl {
