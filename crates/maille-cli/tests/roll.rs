@@ -68,12 +68,17 @@ fn rolls_go_on_and_are_read() {
     assert_eq!(table(folder).len(), 3);
 }
 
-/// Writes one line of the states anew, with the checksums that fit it and the table.
+/// Writes the first roll anew, with the checksums that fit it and the table.
 fn forge(folder: &Path, change: impl Fn(&mut Value)) {
+    forge_roll(folder, 1, change);
+}
+
+/// The same of roll `place`, counted from 1.
+fn forge_roll(folder: &Path, place: usize, change: impl Fn(&mut Value)) {
     let states = read(folder, "good.jsonl");
     let line = |(k, line): (usize, &str)| {
         let mut value: Value = serde_json::from_str(line).unwrap();
-        if k == 1 {
+        if k == place {
             change(&mut value);
         }
         // The line's own sum comes last.
@@ -84,14 +89,14 @@ fn forge(folder: &Path, change: impl Fn(&mut Value)) {
     let states: String = states.lines().enumerate().map(line).collect();
     let mut rows: Vec<Vec<String>> =
         read(folder, "good.csv").lines().map(|line| line.split(',').map(str::to_owned).collect()).collect();
-    let changed: Value = serde_json::from_str(states.lines().nth(1).unwrap()).unwrap();
+    let changed: Value = serde_json::from_str(states.lines().nth(place).unwrap()).unwrap();
     for k in 0..rows[0].len() {
         let name = &rows[0][k];
         match changed.get(name).or(changed["certificate"].get(name)) {
-            Some(Value::Number(number)) if number.is_f64() => rows[1][k] = format!("{:?}", number.as_f64().unwrap()),
-            Some(Value::String(text)) => rows[1][k] = text.clone(),
-            Some(Value::Null) => rows[1][k].clear(),
-            Some(other) => rows[1][k] = other.to_string(),
+            Some(Value::Number(number)) if number.is_f64() => rows[place][k] = format!("{:?}", number.as_f64().unwrap()),
+            Some(Value::String(text)) => rows[place][k] = text.clone(),
+            Some(Value::Null) => rows[place][k].clear(),
+            Some(other) => rows[place][k] = other.to_string(),
             None => {}
         }
     }
@@ -189,6 +194,66 @@ fn no_planted_fault_passes() {
     assert_eq!(files(&|_| (), &same, &free), 4);
     let digit = |text: &str| text.replace("\"n_starts\":", "\"n_starts\":1");
     assert_eq!(files(&|_| (), &digit, &same), 4);
+}
+
+/// The sizes along x, y and z of the mesh in an STL file.
+fn sizes(stl: &[u8]) -> [f32; 3] {
+    let (mut least, mut most) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+    for triangle in stl[84..].chunks_exact(50) {
+        for (k, bytes) in triangle[12..48].chunks_exact(4).enumerate() {
+            let x = f32::from_le_bytes(bytes.try_into().unwrap());
+            (least[k % 3], most[k % 3]) = (least[k % 3].min(x), most[k % 3].max(x));
+        }
+    }
+    [0, 1, 2].map(|k| most[k] - least[k])
+}
+
+#[test]
+fn tubes_close_and_no_planted_fault_passes() {
+    let dir = tempfile::tempdir().unwrap();
+    let folder = dir.path();
+    let (code, _, problem) = maille(folder, "roll european-4-in-1 --wrap 8 --directions 20 --out r");
+    assert!(code == 2 && problem.contains("no lattice vector lies along 20") && !folder.join("r").exists(), "{problem}");
+    assert_eq!(maille(folder, "roll european-4-in-1 --wrap 2.5 --out r").0, 2);
+    assert_eq!(maille(folder, "roll european-4-in-1 --wrap 9 --cell 2x1 --out r").0, 2);
+    assert_eq!(maille(folder, "roll european-4-in-1 --wrap 8 --free width --out r").0, 2);
+    let tubes = "roll european-4-in-1 --out r --threads 1 --axis below --quiet --wrap";
+    assert_eq!(maille(folder, &format!("{tubes} 8")).0, 0);
+    // Goes on; a tube that was not found is no error of the record.
+    assert_eq!(maille(folder, &format!("{tubes} 4,8")).0, 5);
+    let (code, said, _) = maille(folder, "verify r");
+    assert!(code == 0 && said.contains("5 of 5 certified ones proved"), "{said}");
+    let (code, _, problem) = maille(folder, "plot r");
+    assert!(code == 2 && problem.contains("tubes"), "{problem}");
+    // All cells round, in a mesh that is as deep as it is wide, by the radius and the rings.
+    assert_eq!(maille(folder, "export --from r --at wrap=8 --out tube.stl --quiet").0, 0);
+    let [x, _, z] = sizes(&fs::read(folder.join("tube.stl")).unwrap());
+    assert!((x - z).abs() < 0.3 && x > 2.0 * 15.2 && x < 2.0 * (15.2 + 4.9 + 1.15), "{x} {z}");
+    assert_eq!(maille(folder, "render --from r --at wrap=8,sought=longest --size 80x60 --out tube.png --quiet").0, 0);
+    assert_eq!(maille(folder, &format!("{tubes} 8 --overwrite")).0, 0);
+    for (name, copy) in [("rolls.jsonl", "good.jsonl"), ("rolls.csv", "good.csv"), ("roll.json", "good.json")] {
+        fs::copy(folder.join("r").join(name), folder.join(copy)).unwrap();
+    }
+    // In the order of the table: roomiest, narrowest, widest, shortest, longest.
+    let (roomiest, narrowest, shortest) = (1, 2, 4);
+    let false_by = |place: usize, change: &dyn Fn(&mut Value), check: &str| {
+        forge_roll(folder, place, change);
+        let found = refuted(folder);
+        assert!(found.iter().any(|name| name == check), "{place}, {check}: {found:?}");
+    };
+    false_by(roomiest, &|roll| add(&mut roll["min_gap"], 1e-5), "overlap");
+    false_by(roomiest, &|roll| add(&mut roll["min_gap"], -1e-5), "balance");
+    false_by(roomiest, &|roll| add(&mut roll["contacts"][0]["force"], 1e-3), "balance");
+    false_by(narrowest, &|roll| add(&mut roll["neutral_radius"], -1e-6), "deformation");
+    false_by(narrowest, &|roll| add(&mut roll["contacts"][0]["force"], 1e-3), "balance");
+    false_by(shortest, &|roll| add(&mut roll["l2"], -1e-6), "deformation");
+    false_by(shortest, &|roll| roll["contacts"] = Value::Array(Vec::new()), "balance");
+    // Another number of cells, and another end of the range, than those of the state.
+    for (name, value) in [("wrap", Value::from(9)), ("sought", "longest".into())] {
+        forge_roll(folder, shortest, |roll| roll[name] = value.clone());
+        let (code, said, _) = maille(folder, "verify r");
+        assert!(code == 4 && said.to_lowercase().contains("false"), "{name}: {said}");
+    }
 }
 
 fn sum(text: &str) -> String {
