@@ -93,7 +93,9 @@ fn forge_roll(folder: &Path, place: usize, change: impl Fn(&mut Value)) {
     for k in 0..rows[0].len() {
         let name = &rows[0][k];
         match changed.get(name).or(changed["certificate"].get(name)) {
-            Some(Value::Number(number)) if number.is_f64() => rows[place][k] = format!("{:?}", number.as_f64().unwrap()),
+            Some(Value::Number(number)) if number.is_f64() => {
+                rows[place][k] = format!("{:?}", number.as_f64().unwrap())
+            }
             Some(Value::String(text)) => rows[place][k] = text.clone(),
             Some(Value::Null) => rows[place][k].clear(),
             Some(other) => rows[place][k] = other.to_string(),
@@ -213,7 +215,10 @@ fn tubes_close_and_no_planted_fault_passes() {
     let dir = tempfile::tempdir().unwrap();
     let folder = dir.path();
     let (code, _, problem) = maille(folder, "roll european-4-in-1 --wrap 8 --directions 20 --out r");
-    assert!(code == 2 && problem.contains("no lattice vector lies along 20") && !folder.join("r").exists(), "{problem}");
+    assert!(
+        code == 2 && problem.contains("no lattice vector lies along 20") && !folder.join("r").exists(),
+        "{problem}"
+    );
     assert_eq!(maille(folder, "roll european-4-in-1 --wrap 2.5 --out r").0, 2);
     assert_eq!(maille(folder, "roll european-4-in-1 --wrap 9 --cell 2x1 --out r").0, 2);
     assert_eq!(maille(folder, "roll european-4-in-1 --wrap 8 --free width --out r").0, 2);
