@@ -4,12 +4,12 @@
 //! and `rolls.csv`, the same without states.
 
 mod folder;
+mod question;
 mod run;
-mod sought;
 
 pub use folder::{ROLL, ROLLS, ROLLS_TABLE, RollFolder, RollRecordFile, in_order, open_rolls};
+pub use question::{Axis, RollKey, RollQuestion, Sought};
 pub use run::{RollError, find_rolls};
-pub use sought::{RollKey, Sought};
 
 use crate::{
     answer::CertificateRecord,
@@ -20,57 +20,12 @@ use maille::{
     design::Design,
     lattice::{Across, Direction},
     model::Model,
-    question::{Effort, Goal, Question, Sense, Strain},
+    question::{Goal, Question, Sense, Strain},
     record::{ContactRecord, PoseRecord, RollRecord, StateRecord, Status, contact_records, pose_records},
-    survey::CellChoice,
 };
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::fmt::Write;
-
-/// Where the axis of a roll is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Axis {
-    /// Below the sheet, which bends downwards: κ > 0.
-    Below,
-    /// Above the sheet, which bends upwards: κ < 0.
-    Above,
-}
-
-impl Axis {
-    /// Both, in the order of tables.
-    pub const BOTH: [Axis; 2] = [Axis::Below, Axis::Above];
-
-    /// The name in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Axis::Below => "below",
-            Axis::Above => "above",
-        }
-    }
-}
-
-/// What is asked of a sheet that is rolled.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct RollQuestion {
-    /// Directions that are rolled, degrees counter-clockwise from x.
-    pub directions_deg: Vec<f64>,
-    /// On which side the axis is.
-    pub axes: Vec<Axis>,
-    /// What is left to the sheet.
-    pub free: Across,
-    /// The cells that may be solved.
-    pub cells: CellChoice,
-    /// How long each roll is searched.
-    pub effort: Effort,
-    /// Seed of the starts that are drawn.
-    pub seed: u64,
-    /// Of tubes: how many cells go round, for each of them. None: the tightest rolls of the sheet.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub wrap: Vec<u32>,
-}
 
 /// One roll: a line of `rolls.jsonl`. Lengths are in the file's unit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

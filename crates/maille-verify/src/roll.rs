@@ -7,7 +7,7 @@ use crate::{
     report::{Check, Finding, Verdict},
     roll_forces::{Objective, Rate, Written, roll_forces},
     rolled::{Motions, Rolled, joined},
-    sheet::{self, Sheet, Vec3},
+    sheet::{self, Pair, Sheet, Vec3},
     start::{Start, names, start},
     strain::axes,
 };
@@ -247,7 +247,9 @@ impl RollVerifier {
         let start: Start = start(&self.design, &cell, &names(&state))?;
         let along = Vec3::new(turns.along[0], turns.along[1], 0.0);
         let links = start.links.as_ref().map_err(String::clone)?;
-        let (linked, joined) = joined(links.iter().map(|(pair, _)| pair), &start.sheet.rings);
+        let element = |ring: usize| start.sheet.rings[ring].element;
+        let of = |&((a, b, shift), _): &(Pair, i32)| ([element(a), element(b)], shift);
+        let (linked, joined) = joined(links.iter().map(of));
         let rolled = Rolled {
             motions: Motions { along, turn_rad: turns.turn_rad },
             places: start.sheet.places(),

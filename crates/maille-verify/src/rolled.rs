@@ -10,7 +10,6 @@
 //! image by the turn of that image, or the axis has passed through the sheet. While it passes through an element, nearer to its reference
 //! point than its rings reach, this is left open.
 
-use crate::sheet::{Pair, Ring};
 use nalgebra::{Isometry3, Matrix2, Point3, Translation3, Unit, UnitQuaternion, Vector2, Vector3};
 use std::{collections::BTreeSet, f64::consts::PI};
 
@@ -50,13 +49,9 @@ pub(crate) type Elements = ([usize; 2], [i32; 2]);
 const SAME_RAD: f64 = 1e-6;
 
 /// The pairs of elements that links join, and those that one link or two join, both ways.
-pub(crate) fn joined<'a>(
-    links: impl IntoIterator<Item = &'a Pair>,
-    rings: &[Ring],
-) -> (BTreeSet<Elements>, BTreeSet<Elements>) {
+pub(crate) fn joined(links: impl IntoIterator<Item = Elements>) -> (BTreeSet<Elements>, BTreeSet<Elements>) {
     let mut linked: BTreeSet<Elements> = BTreeSet::new();
-    for &(a, b, [m, n]) in links {
-        let [i, j] = [a, b].map(|ring| rings[ring].element);
+    for ([i, j], [m, n]) in links {
         linked.extend([([i, j], [m, n]), ([j, i], [-m, -n])]);
     }
     let mut all = linked.clone();

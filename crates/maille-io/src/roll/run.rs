@@ -17,13 +17,6 @@ use std::{
     time::Instant,
 };
 
-impl Axis {
-    /// The end of the curvatures that has it.
-    pub(super) fn sense(self) -> Sense {
-        if self == Axis::Below { Sense::Largest } else { Sense::Least }
-    }
-}
-
 impl Roll {
     /// As a search goes on from it; `None` where nothing was found, or its state is of no such design.
     fn known(&self, sheet: &Sheet) -> Option<KnownRoll> {

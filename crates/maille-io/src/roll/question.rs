@@ -1,12 +1,61 @@
-//! What is sought of a roll, and which rolls a question asks.
+//! What is asked of a sheet that is rolled, and which rolls that are.
 
-use super::{Axis, RollQuestion};
 use maille::{
     error::InvalidInput,
     lattice::Across,
-    question::{Goal, OfTube, Question, Sense},
+    question::{Effort, Goal, OfTube, Question, Sense},
+    survey::CellChoice,
 };
 use serde::{Deserialize, Serialize};
+
+/// Where the axis of a roll is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Axis {
+    /// Below the sheet, which bends downwards: κ > 0.
+    Below,
+    /// Above the sheet, which bends upwards: κ < 0.
+    Above,
+}
+
+impl Axis {
+    /// Both, in the order of tables.
+    pub const BOTH: [Axis; 2] = [Axis::Below, Axis::Above];
+
+    /// The end of the curvatures that has it.
+    pub(super) fn sense(self) -> Sense {
+        if self == Axis::Below { Sense::Largest } else { Sense::Least }
+    }
+
+    /// The name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Axis::Below => "below",
+            Axis::Above => "above",
+        }
+    }
+}
+
+/// What is asked of a sheet that is rolled.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RollQuestion {
+    /// Directions that are rolled, degrees counter-clockwise from x.
+    pub directions_deg: Vec<f64>,
+    /// On which side the axis is.
+    pub axes: Vec<Axis>,
+    /// What is left to the sheet.
+    pub free: Across,
+    /// The cells that may be solved.
+    pub cells: CellChoice,
+    /// How long each roll is searched.
+    pub effort: Effort,
+    /// Seed of the starts that are drawn.
+    pub seed: u64,
+    /// Of tubes: how many cells go round, for each of them. None: the tightest rolls of the sheet.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub wrap: Vec<u32>,
+}
 
 /// What is sought of a roll: the first of a sheet, the others of a closed tube.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
