@@ -116,10 +116,7 @@ impl Args {
             }
         };
         let wrap: Vec<u32> = self.wrap.iter().flat_map(|wrap| &wrap.0).map(count).collect::<Result<_>>()?;
-        let [x, y, _] = design.lattice.a1;
-        let usual = || {
-            if wrap.is_empty() { (0..6).map(|k| 30.0 * f64::from(k)).collect() } else { vec![y.atan2(x).to_degrees()] }
-        };
+        let usual = || RollQuestion::usual_directions(design, !wrap.is_empty());
         Ok(RollQuestion {
             directions_deg: self.directions.as_ref().map_or_else(usual, |directions| directions.0.clone()),
             axes,

@@ -10,6 +10,7 @@ mod fit;
 mod geometry;
 mod map;
 mod question;
+mod roll;
 mod simulate;
 mod study;
 mod surface;
@@ -32,6 +33,8 @@ mod _native {
     use crate::map::{Record, characterize, effort, map_question, numbers, read_record};
     #[pymodule_export]
     use crate::question::{answer, sensitivity};
+    #[pymodule_export]
+    use crate::roll::rolls;
     #[pymodule_export]
     use crate::simulate::{open_simulation, save_simulation, simulate};
     #[pymodule_export]

@@ -108,3 +108,20 @@ def test_the_surface_of_a_design_is_closed_and_holds_its_limits():
     assert np.all(surface.contains(0.999 * surface.vertices)) and not np.any(surface.contains(1.001 * surface.vertices))
     most = maille.limit("1.1", maximize="exx").value
     assert surface.contains([0.9 * most, 0, 0]) and not surface.contains([1.1 * most, 0, 0])
+
+
+def test_rolls_and_tubes():
+    rolls = maille.roll("european-4-in-1", directions=[0, 90], threads=1)
+    table = rolls.to_numpy()
+    assert len(rolls) == 4 and set(table["status"]) == {"local"}
+    assert table["neutral_radius"].round(4).tolist() == [9.0175, 9.0175, 23.0437, 23.0437]
+    assert np.allclose(table["curvature"][::2], -table["curvature"][1::2], rtol=0, atol=1e-9)
+    assert len(rolls.documents[0]["poses"]) == 2
+    tubes = maille.roll("european-4-in-1", wrap=[8], axis="below", threads=1)
+    table = tubes.to_numpy()
+    assert table["sought"].tolist() == ["roomiest", "narrowest", "widest", "shortest", "longest"]
+    assert table["neutral_radius"][1].round(4) == 15.1027 and table["wrap"].tolist() == [8.0] * 5
+    with pytest.raises(maille.ArgumentError, match="side of the sheet"):
+        maille.roll("1.1", axis="left")
+    with pytest.raises(maille.MailleError, match="no lattice vector lies along 20"):
+        maille.roll("1.1", wrap=[8], directions=[20])

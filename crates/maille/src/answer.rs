@@ -17,7 +17,7 @@ pub struct Answer {
     /// How sure it is, or why there is none.
     pub status: Status,
     /// What was asked for: l1 of a stretch, a Green strain, the distance along a ray of strains, the factor of the minor radii,
-    /// the clearance, or the area as a share of the written one. Certified if the status says so; of an `uncertified` answer the best feasible value. `None` where
+    /// the clearance, the area as a share of the written one, the curvature of a roll, or the gap, l2 or radius of a tube. Certified if the status says so; of an `uncertified` answer the best feasible value. `None` where
     /// nothing was found.
     pub value: Option<f64>,
     /// Value of the first start, which goes straight from the design's state (strains and rays).

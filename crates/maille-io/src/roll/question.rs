@@ -1,6 +1,7 @@
 //! What is asked of a sheet that is rolled, and which rolls that are.
 
 use maille::{
+    design::Design,
     error::InvalidInput,
     lattice::Across,
     question::{Effort, Goal, OfTube, Question, Sense},
@@ -125,6 +126,12 @@ pub struct RollKey {
 }
 
 impl RollQuestion {
+    /// The directions that are rolled where none is named: every 30°; of tubes that of a1.
+    pub fn usual_directions(design: &Design, tubes: bool) -> Vec<f64> {
+        let [x, y, _] = design.lattice.a1;
+        if tubes { vec![y.atan2(x).to_degrees()] } else { (0..6).map(|k| 30.0 * f64::from(k)).collect() }
+    }
+
     /// Its rolls, in the order of the table.
     pub fn rolls(&self) -> Vec<RollKey> {
         let tubes = |wrap: &u32| Sought::OF_TUBES.map(|sought| (Some(*wrap), sought));

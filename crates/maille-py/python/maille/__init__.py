@@ -25,6 +25,7 @@ from .errors import (
 from .fit import Fit, fit
 from .question import Extreme, StrainLimit, limit, roomiest, tightest
 from .record import Record, Sensitivities, State, characterize, read_record
+from .roll import Rolls, roll
 from .sheet import Sheet, View, show
 from .simulate import Simulation, read_simulation, simulate
 
@@ -40,6 +41,7 @@ __all__ = [
     "Record",
     "RecordError",
     "Ring",
+    "Rolls",
     "Sensitivities",
     "ShapeError",
     "Sheet",
@@ -58,6 +60,7 @@ __all__ = [
     "limit",
     "read_record",
     "read_simulation",
+    "roll",
     "roomiest",
     "show",
     "simulate",

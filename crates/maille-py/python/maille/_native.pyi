@@ -103,6 +103,20 @@ def answer(design: Design, question: str, *, cell: str, threads: int | None) -> 
 def sensitivity(
     design: Design, question: str, *, cell: str, step: float | None, threads: int | None
 ) -> str: ...
+def rolls(
+    design: Design,
+    *,
+    directions: list[float] | None,
+    axis: str,
+    wrap: list[int],
+    width_free: bool,
+    shear_free: bool,
+    cell: str,
+    effort: str,
+    seed: int,
+    progress: _Progress | None,
+    threads: int | None,
+) -> list[str]: ...
 def fit_request(
     design: Design,
     name: str,

@@ -9,7 +9,8 @@
 //! point moves by at most |Ṗ(0)| t + E t², and the element about it by at most reach (|ω| + |θ̇|) t. Two circles cannot meet while the
 //! sum of this for both, with the relative Ṗ(0), is below their distance.
 //!
-//! **Far pairs.** Let b ≥ |q| for all elements, and |θ| ≤ Θ < 2π for all that counts. The origin's image is at a distance
+//! **Far pairs.** Let b ≥ |q| for all elements, and |θ| ≤ Θ < 2π for all that counts but what one link or two join: such pairs
+//! are bounded one by one wherever they are. The origin's image is at a distance
 //! h = |(α sinc(θ/2), β)| from it, and sinc(θ/2) ≥ σ := sinc(Θ/2). Reference points that are now L apart have |(α, β)| ≥ L − 2b, and
 //! while no lattice vector shrinks by more than a share g, they stay at least σ (1 − g)(L − 2b) − 2 (b + δ) apart. Where this is more
 //! than twice the largest reach they cannot meet at any turn; those that are nearer now are bounded one by one. By β alone, as
