@@ -17,7 +17,9 @@ pub struct At {
     pub axis: Option<Axis>,
     /// Cells of a tube that go round.
     pub wrap: Option<u32>,
-    /// What was sought of a tube.
+    /// The curvature that was given.
+    pub curvature: Option<f64>,
+    /// What was sought of a tube or at a given curvature.
     pub sought: Option<Sought>,
 }
 
@@ -66,9 +68,9 @@ pub fn parse_at(text: &str) -> Result<At, String> {
             continue;
         }
         if key.trim() == "sought" {
-            let names = || Sought::OF_TUBES.map(Sought::name).join(", ");
+            let names = || Sought::AT_TURN.map(Sought::name).join(", ");
             let sought = Sought::named(value.trim());
-            let sought = sought.ok_or_else(|| format!("\"{part}\" is not sought of tubes; give one of {}", names()))?;
+            let sought = sought.ok_or_else(|| format!("\"{part}\" is not sought of rolls; give one of {}", names()))?;
             if at.sought.replace(sought).is_some() {
                 return Err("sought is given twice".into());
             }
@@ -78,6 +80,7 @@ pub fn parse_at(text: &str) -> Result<At, String> {
         let slot = match key.trim() {
             "direction" => &mut at.direction,
             "l2" => &mut at.l2,
+            "curvature" => &mut at.curvature,
             _ => return Err(wrong()),
         };
         if slot.replace(value).is_some() {
@@ -90,16 +93,18 @@ pub fn parse_at(text: &str) -> Result<At, String> {
 impl At {
     /// Whether a row of this direction and l2 is meant.
     pub fn fits(&self, direction_deg: f64, l2: f64) -> bool {
-        let of_rolls = self.axis.is_some() || self.wrap.is_some() || self.sought.is_some();
+        let of_rolls = self.axis.is_some() || self.wrap.is_some() || self.curvature.is_some() || self.sought.is_some();
         same(self.direction, direction_deg) && same(self.l2, l2) && !of_rolls
     }
 
-    /// Whether this roll is meant. Of a tube that is the one with the widest gaps where it is not said what was sought.
+    /// Whether this roll is meant. Of a given turn that is the one with the widest gaps where it is not said what was sought.
     pub fn fits_roll(&self, roll: &RollKey) -> bool {
-        let sought = self.sought.unwrap_or(if roll.wrap.is_some() { Sought::Roomiest } else { Sought::Tightest });
+        let usual = || if roll.sought == Sought::Tightest { Sought::Tightest } else { Sought::Roomiest };
+        let sought = self.sought.unwrap_or_else(usual);
         same(self.direction, roll.direction_deg)
             && self.axis.is_none_or(|wanted| wanted == roll.axis)
             && self.wrap.is_none_or(|wanted| roll.wrap == Some(wanted))
+            && self.curvature.is_none_or(|wanted| roll.at_curvature.is_some_and(|given| same(Some(wanted), given)))
             && sought == roll.sought
     }
 }
@@ -110,7 +115,7 @@ fn same(wanted: Option<f64>, x: f64) -> bool {
 
 impl fmt::Display for At {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let numbers = [("direction", self.direction), ("l2", self.l2)];
+        let numbers = [("direction", self.direction), ("l2", self.l2), ("curvature", self.curvature)];
         let numbers = numbers.into_iter().filter_map(|(key, value)| Some(format!("{key}={}", value?)));
         let words = [
             self.axis.map(|axis| format!("axis={}", axis.name())),

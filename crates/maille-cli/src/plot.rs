@@ -15,6 +15,7 @@ use maille_io::{
         parameter_words, poisson_svg, polar_svg, radius_svg, roll_svg, run_svg,
     },
     record::{NamedRecord, Record, Reference, ReferenceCell, SIMULATION, SensitivityRow, open_simulation},
+    roll::Kind as RollKind,
 };
 use miette::Result;
 use std::path::{Path, PathBuf};
@@ -212,13 +213,10 @@ pub fn run(args: &Args) -> Result<()> {
     if let [path] = &args.records[..]
         && let Some((record, rolls)) = records::rolls(path)?
     {
-        if !record.question.wrap.is_empty() {
-            let problem = format!("{} holds tubes, which have no plot", path.display());
-            return Err(wrong(
-                exit::USAGE,
-                problem,
-                "render one, as: maille render --from FOLDER --at wrap=8,axis=below",
-            ));
+        if record.question.kind() != RollKind::Tightest {
+            let problem = format!("{} holds tubes or sheets of given curvature, which have no plot", path.display());
+            let at = rolls.first().map_or(String::new(), |roll| roll.key().place());
+            return Err(wrong(exit::USAGE, problem, format!("render one, as: maille render --from FOLDER --at {at}")));
         }
         alone(args, "rolls have one kind of plot, of all directions and both sides")?;
         let svg = roll_svg(&record.design, &rolls, layout);

@@ -315,9 +315,10 @@ fn caption(source: &Source) -> Option<Caption> {
         let radius = roll.neutral_radius.map_or(String::new(), |radius| format!(", radius {radius:.4}{unit}"));
         let (name, axis) = (&source.design.name, roll.axis.name());
         let along = roll.direction_deg;
-        let text = match roll.wrap {
-            None => format!("{name}, rolled along {along}°, axis {axis}{radius}"),
-            Some(cells) => format!("{name}, {cells} cells round along {along}°, {}{radius}", roll.sought.name()),
+        let text = match (roll.wrap, roll.at_curvature) {
+            (Some(cells), _) => format!("{name}, {cells} cells round along {along}°, {}{radius}", roll.sought.name()),
+            (_, Some(_)) => format!("{name}, rolled along {along}°, axis {axis}, {}{radius}", roll.sought.name()),
+            _ => format!("{name}, rolled along {along}°, axis {axis}{radius}"),
         };
         return Some(Caption { text, pull_deg: None });
     }

@@ -10,11 +10,16 @@ use crate::{
     progress::Progress,
     records::holds_record,
 };
-use maille::{Across, Design, question::Effort, record::Status, survey::CellChoice};
+use maille::{
+    Across, Design,
+    question::{Effort, RollStrains},
+    record::Status,
+    survey::CellChoice,
+};
 use maille_io::{
     boundary::SURFACE,
     plot::{Layout, roll_svg, svg_to_png},
-    roll::{Axis, ROLL, Roll, RollError, RollFolder, RollKey, RollQuestion, Sought, find_rolls, rolls_json},
+    roll::{Axis, Kind, ROLL, Roll, RollError, RollFolder, RollKey, RollQuestion, Sought, find_rolls, rolls_json},
 };
 use miette::{IntoDiagnostic, Report, Result, WrapErr};
 use std::{
@@ -34,7 +39,8 @@ use std::{
 /// is the best of the starts that were searched. That no other state goes further is not proved. Writes a folder with rolls.csv (a row for each roll),
 /// rolls.jsonl (the same with every state, from which an interrupted run continues), roll.json (what it is of), roll.svg and roll.png
 /// (R by the radius, along each direction). The same command continues it, with more directions, too. With --wrap it asks for closed tubes: the state
-/// with the widest gaps, and the least and largest radius and length.
+/// with the widest gaps, and the least and largest radius and length. With --curvature it asks the same of a sheet that is bent so far: how much
+/// it can still be stretched.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -43,6 +49,8 @@ Examples:
   maille roll 3.1 --directions 90 --axis below --effort thorough
   maille roll european-4-in-1 --wrap 5:12:1                tubes of 5 to 12 cells round
   maille export --from maille-out/european-4-in-1-tubes --at wrap=8,axis=below    one of them, to print
+  maille roll european-4-in-1 --directions 30 --curvature 0.02,0.05 --free width      how far it stretches when bent
+  maille roll european-4-in-1 --l2 -0.02 --shear 0.03      rolled while pressed and sheared
   maille roll european-4-in-1 --json | jq '.rolls[] | [.direction_deg, .axis, .neutral_radius]'
   maille plot european-4-in-1-roll --style paper -o fig.pdf   its figure, for print
   maille verify european-4-in-1-roll   its states derived anew
@@ -55,14 +63,24 @@ pub struct Args {
     #[arg(long, value_parser = parse, allow_hyphen_values = true)]
     directions: Option<Numbers>,
     /// Closed tubes in place of the tightest rolls: so many cells along the direction go once round. A list, or first:last:step
-    #[arg(long, value_name = "CELLS", value_parser = parse, conflicts_with = "free")]
+    #[arg(long, value_name = "CELLS", value_parser = parse, conflicts_with_all = ["free", "l2", "shear"])]
     wrap: Option<Numbers>,
+    /// Sheets of given curvature in place of the tightest rolls: the turn in radians for each unit of the written length. A list, or
+    /// first:last:step
+    #[arg(long, value_name = "CURVATURE", value_parser = parse, conflicts_with = "wrap")]
+    curvature: Option<Numbers>,
     /// Where the axis is
     #[arg(long, value_enum, default_value_t = Side::Both)]
     axis: Side,
     /// What is left to the sheet: its width along the axis, its shear, or both, as width,shear; else they are held as written
     #[arg(long, value_enum, value_name = "STRAIN", value_delimiter = ',')]
     free: Vec<Free>,
+    /// Stretch along the axis minus 1, where it is held
+    #[arg(long, default_value_t = 0.0, allow_hyphen_values = true)]
+    l2: f64,
+    /// Shear, where it is held: how far lines along the direction lean along the axis
+    #[arg(long, default_value_t = 0.0, allow_hyphen_values = true)]
+    shear: f64,
     /// Cell: 1x1, 2x1, 2x2, …, an integer matrix as "1,0;-1,2", or auto: larger cells where an element presses on its own image
     #[arg(long, default_value = "1x1", value_parser = read::<CellChoice>)]
     cell: CellChoice,
@@ -125,6 +143,9 @@ impl Args {
             effort: self.effort,
             seed: self.seed,
             wrap,
+            l2: self.l2,
+            gamma: self.shear,
+            curvatures: self.curvature.as_ref().map_or_else(Vec::new, |given| given.0.clone()),
         })
     }
 }
@@ -133,11 +154,14 @@ impl Args {
 pub fn run(args: &Args) -> Result<ExitCode> {
     let input = args.design.read()?;
     let question = args.question(&input.design)?;
-    question.check().map_err(|e| refused(&e))?;
     let sheet = input.sheet(args.cell.clone())?;
-    question.rolls().into_iter().try_for_each(|key| sheet.check(&question.question(key))).map_err(|e| refused(&e))?;
-    let kind = if question.wrap.is_empty() { "roll" } else { "tubes" };
-    let usual = || PathBuf::from("maille-out").join(format!("{}-{kind}", file_name(&input.design.name)));
+    question.check(&sheet).map_err(|e| refused(&e))?;
+    let name = match question.kind() {
+        Kind::Tightest => "roll",
+        Kind::Tubes => "tubes",
+        Kind::AtCurvature => "rolled",
+    };
+    let usual = || PathBuf::from("maille-out").join(format!("{}-{name}", file_name(&input.design.name)));
     let out = args.out.clone().unwrap_or_else(usual);
     output::folder(&out, "the rolls are a folder")?;
     if holds_record(&out) || out.join(SURFACE).is_file() {
@@ -167,7 +191,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         }
         folder.keep(roll)
     };
-    let rolls = pool.install(|| find_rolls(&sheet, &input.design, &question, rolls, &cancel, &mut keep));
+    let rolls = pool.install(|| find_rolls(&sheet, &question, rolls, &cancel, &mut keep));
     let rolls = rolls.map_err(|e| match e {
         RollError::Asked(e) => refused(&e),
         RollError::Record(e) => e.into(),
@@ -180,15 +204,13 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if args.json {
         output::print_json(&output::timed(rolls_json(&input.design, &shown), wall_s))?;
     } else if !args.quiet {
-        if question.wrap.is_empty() {
+        if question.kind() == Kind::Tightest {
             print(&question, &input.design, &shown, known, wall_s);
             say!("look at {}", out.join("roll.png").display());
         } else {
-            print_tubes(&input.design, &shown, known, wall_s);
-            let first = shown.iter().find(|roll| roll.is_certified()).map(Roll::key);
-            if let Some(RollKey { direction_deg, axis, wrap: Some(cells), .. }) = first {
-                let at = format!("direction={direction_deg},axis={},wrap={cells}", axis.name());
-                say!("to print one: maille export --from {} --at {at}", out.display());
+            print_at_turn(&question, &input.design, &shown, known, wall_s);
+            if let Some(first) = shown.iter().find(|roll| roll.is_certified()) {
+                say!("to print one: maille export --from {} --at {}", out.display(), first.key().place());
             }
         }
     }
@@ -202,7 +224,7 @@ fn stopped(cancel: &AtomicBool) -> bool {
 
 /// Writes the table, the figure, and what the rolls are of.
 fn write(out: &Path, folder: &RollFolder<'_>, input: &Input, question: &RollQuestion, rolls: &[Roll]) -> Result<()> {
-    if question.wrap.is_empty() {
+    if question.kind() == Kind::Tightest {
         let svg = roll_svg(&input.design, rolls, Layout::Beside);
         let png = svg_to_png(&svg, 2.0).into_diagnostic().wrap_err("cannot draw the figure")?;
         output::write(&out.join("roll.svg"), svg.as_bytes())?;
@@ -212,19 +234,21 @@ fn write(out: &Path, folder: &RollFolder<'_>, input: &Input, question: &RollQues
 }
 
 /// What of the sheet is held.
-fn held(free: Across) -> &'static str {
-    match (free.lateral_free, free.shear_free) {
-        (false, false) => "width and shear held",
-        (true, false) => "width free, shear held",
-        (false, true) => "width held, shear free",
-        (true, true) => "width and shear free",
-    }
+fn held(strains: &RollStrains) -> String {
+    let Across { lateral_free, shear_free } = strains.free;
+    let word = |name: &str, free: bool, value: f64| match (free, value) {
+        (true, _) => format!("{name} free"),
+        (false, 0.0) => format!("{name} held"),
+        (false, value) => format!("{name} held at {value}"),
+    };
+    let [width, shear] = [word("l2", lateral_free, strains.l2), word("shear", shear_free, strains.shear)];
+    format!("{width}, {shear}")
 }
 
 fn print(question: &RollQuestion, design: &Design, rolls: &[Roll], known: usize, wall_s: f64) {
     let unit = design.unit.as_deref().map_or("radius".to_owned(), |unit| format!("radius, {unit}"));
     let before = if known > 0 { format!(", {known} of them there before") } else { String::new() };
-    say!("{}: the tightest rolls, {}{before}; {wall_s:.1} s", design.name, held(question.free));
+    say!("{}: the tightest rolls, {}{before}; {wall_s:.1} s", design.name, held(&question.strains()));
     say!(
         "  {:>10}  {:<5} {:>12} {:>12} {:>9}  {:<13} cell",
         "direction",
@@ -263,47 +287,61 @@ fn print(question: &RollQuestion, design: &Design, rolls: &[Roll], known: usize,
     }
 }
 
-/// One line for each tube: its gaps, radii and lengths.
-fn print_tubes(design: &Design, rolls: &[Roll], known: usize, wall_s: f64) {
+/// One line for each turn that was given: gaps, and radii or stretches with lengths.
+fn print_at_turn(question: &RollQuestion, design: &Design, rolls: &[Roll], known: usize, wall_s: f64) {
+    let tubes = question.kind() == Kind::Tubes;
     let unit = design.unit.as_deref().map_or(String::new(), |unit| format!(", {unit}"));
     let before = if known > 0 { format!(", {known} of {} states there before", rolls.len()) } else { String::new() };
-    say!("{}: closed tubes{before}; {wall_s:.1} s", design.name);
-    let head = [format!("widest gap{unit}"), format!("radius{unit}"), "length, by that written".to_owned()];
+    let what =
+        if tubes { "closed tubes".to_owned() } else { format!("at given curvature, {}", held(&question.strains())) };
+    say!("{}: {what}{before}; {wall_s:.1} s", design.name);
+    let head = match tubes {
+        true => ["cells".to_owned(), format!("radius{unit}")],
+        false => ["curvature".to_owned(), "stretch".to_owned()],
+    };
+    let gap = format!("widest gap{unit}");
     say!(
-        "  {:>10}  {:<5} {:>6}  {:>16}  {:>20}  {:>24}  status",
+        "  {:>10}  {:<5} {:>9}  {gap:>16}  {:>20}  {:>24}  status",
         "direction",
         "axis",
-        "cells",
         head[0],
         head[1],
-        head[2]
+        "length, by that written",
     );
-    let tubes = rolls.chunk_by(|a, b| (a.direction_deg, a.axis, a.wrap) == (b.direction_deg, b.axis, b.wrap));
-    for tube in tubes {
-        let (first, mut statuses) = (&tube[0], tube.iter().map(|roll| roll.status.name()).collect::<Vec<_>>());
+    let turn = |roll: &Roll| (roll.direction_deg, roll.axis, roll.wrap, roll.at_curvature);
+    for states in rolls.chunk_by(|a, b| turn(a) == turn(b)) {
+        let (first, mut statuses) = (&states[0], states.iter().map(|roll| roll.status.name()).collect::<Vec<_>>());
         statuses.dedup();
         let of = |sought: Sought, value: fn(&Roll) -> Option<f64>| {
-            tube.iter().find(|roll| roll.sought == sought).and_then(value)
+            states.iter().find(|roll| roll.sought == sought).and_then(value)
         };
         let number = |x: Option<f64>| x.map_or("-".to_owned(), |x| format!("{x:.4}"));
         let range = |ends: [Sought; 2], value: fn(&Roll) -> Option<f64>| {
             let [least, most] = ends.map(|sought| number(of(sought, value)));
             format!("{least} to {most}")
         };
-        let length = |roll: &Roll| roll.l2.map(|l2| 1.0 + l2);
+        let around: fn(&Roll) -> Option<f64> =
+            if tubes { |roll| roll.neutral_radius } else { |roll| roll.neutral_stretch };
+        let length: fn(&Roll) -> Option<f64> = |roll| roll.l2.map(|l2| 1.0 + l2);
+        let lengths = match question.strains().free.lateral_free {
+            true => range([Sought::Shortest, Sought::Longest], length),
+            false => number(length(first)),
+        };
+        let given = first.wrap.map(|cells| cells.to_string());
+        let given = given.or(first.at_curvature.map(|curvature| curvature.to_string()));
         say!(
-            "  {:>9}\u{b0}  {:<5} {:>6}  {:>16}  {:>20}  {:>24}  {}",
+            "  {:>9}\u{b0}  {:<5} {:>9}  {:>16}  {:>20}  {lengths:>24}  {}",
             first.direction_deg,
             first.axis.name(),
-            first.wrap.unwrap_or(0),
+            given.unwrap_or_default(),
             number(of(Sought::Roomiest, |roll| roll.min_gap)),
-            range([Sought::Narrowest, Sought::Widest], |roll| roll.neutral_radius),
-            range([Sought::Shortest, Sought::Longest], length),
+            range([Sought::Narrowest, Sought::Widest], around),
             statuses.join(", ")
         );
-        tube.iter().find_map(|roll| roll.note.as_deref()).into_iter().for_each(|note| say!("              {note}"));
+        states.iter().find_map(|roll| roll.note.as_deref()).into_iter().for_each(|note| say!("              {note}"));
     }
     say!(
-        "radius: at the mean distance of the elements from the axis; certified, and the best of the starts that were searched"
+        "{}: at the mean distance of the elements from the axis; certified, and the best of the starts that were searched",
+        head[1].split(',').next().unwrap_or_default()
     );
 }

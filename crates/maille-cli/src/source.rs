@@ -43,7 +43,7 @@ pub struct SourceArgs {
     #[arg(long, value_name = "RECORD")]
     pub from: Option<PathBuf>,
     /// Which state of the record, as direction=30,l2=-0.125; what only one state fits may be left out. Of a simulation:
-    /// frame=12 [default: the last]. Of rolls: direction=0,axis=below; of tubes wrap=12,sought=longest, too [default: roomiest]. Or roomiest, the state of the design with the widest gaps, and tightest, that with the
+    /// frame=12 [default: the last]. Of rolls: direction=0,axis=below; of tubes wrap=12,sought=longest, too, and at a given curvature curvature=0.05 [default: roomiest]. Or roomiest, the state of the design with the widest gaps, and tightest, that with the
     /// thickest wire: found now, as `maille roomiest` and `maille tightest` do
     #[arg(long, value_parser = parse_place, allow_hyphen_values = true)]
     pub at: Option<Place>,
@@ -270,12 +270,7 @@ impl SourceArgs {
             .filter_map(|roll| Some((roll, roll.state()?)))
             .collect();
         let [(roll, state)] = &found[..] else {
-            let place = |roll: &Roll| {
-                let tube = roll.wrap.map(|cells| format!(",wrap={cells},sought={}", roll.sought.name()));
-                let tube = tube.unwrap_or_default();
-                format!("  --at direction={},axis={}{tube}", roll.direction_deg, roll.axis.name())
-            };
-            let all = rolls.iter().map(place);
+            let all = rolls.iter().map(|roll| format!("  --at {}", roll.key().place()));
             let problem = match found.len() {
                 0 => format!("{named} has no roll with a state at {at}"),
                 n => format!("{n} rolls of {named} fit"),
@@ -418,9 +413,10 @@ impl Source {
             return format!("{name}-{word}");
         }
         if let Some(roll) = &self.rolled {
-            let what = match roll.wrap {
-                None => "roll".to_owned(),
-                Some(cells) => format!("tube-{cells}-{}", roll.sought.name()),
+            let what = match (roll.wrap, roll.at_curvature) {
+                (Some(cells), _) => format!("tube-{cells}-{}", roll.sought.name()),
+                (_, Some(curvature)) => format!("rolled-{curvature}-{}", roll.sought.name()),
+                _ => "roll".to_owned(),
             };
             return format!("{name}-{what}_{}_{}", roll.direction_deg, roll.axis.name());
         }

@@ -82,7 +82,9 @@ impl VerifiedRolls {
         say_checks(self.rolls.iter().map(|roll| &roll.findings[..]));
         let told = |roll: &&RollReport| all || roll.findings.iter().any(|f| f.verdict >= Verdict::Open);
         for roll in self.rolls.iter().filter(told) {
-            let tube = roll.wrap.map(|cells| format!(", {cells} cells round, {}", roll.sought)).unwrap_or_default();
+            let tube = roll.wrap.map(|cells| format!(", {cells} cells round, {}", roll.sought));
+            let given = roll.at_curvature.map(|curvature| format!(", curvature {curvature}, {}", roll.sought));
+            let tube = tube.or(given).unwrap_or_default();
             output::say!("  along {}\u{b0}, axis {}{tube}, {}", roll.direction_deg, roll.axis, roll.status);
             for finding in roll.findings.iter().filter(|f| all || f.verdict >= Verdict::Open) {
                 output::say!("    {:<12} {}", finding.check.name(), marked(finding));

@@ -261,6 +261,42 @@ fn tubes_close_and_no_planted_fault_passes() {
     }
 }
 
+#[test]
+fn sheets_of_given_curvature_and_strains_and_no_planted_fault_passes() {
+    let dir = tempfile::tempdir().unwrap();
+    let folder = dir.path();
+    for wrong in ["--curvature=-0.1", "--curvature 0", "--l2 -2", "--l2 0.1 --free width", "--wrap 8 --shear 0.1"] {
+        let (code, _, problem) = maille(folder, &format!("roll european-4-in-1 {wrong} --out r"));
+        assert!(code == 2 && !problem.is_empty() && !folder.join("r").exists(), "{wrong}: {problem}");
+    }
+    // 0.03 is no number times R by R.
+    let rolls = "roll european-4-in-1 --directions 0,30 --threads 1 --quiet --out r --overwrite";
+    assert_eq!(maille(folder, &format!("{rolls} --curvature 0.03 --l2 -0.02 --shear 0.03")).0, 0);
+    assert_eq!(maille(folder, "export --from r --at direction=30,axis=below,curvature=0.03 --out a.stl --quiet").0, 0);
+    let (code, said, _) = maille(folder, "verify r");
+    assert!(code == 0 && said.contains("12 of 12 certified ones proved"), "{said}");
+    for (name, copy) in [("rolls.jsonl", "good.jsonl"), ("rolls.csv", "good.csv"), ("roll.json", "good.json")] {
+        fs::copy(folder.join("r").join(name), folder.join(copy)).unwrap();
+    }
+    for (name, value) in [("at_curvature", Value::from(0.031)), ("sought", "longest".into()), ("gamma", 0.031.into())] {
+        forge_roll(folder, 3, |roll| roll[name] = value.clone());
+        let (code, said, _) = maille(folder, "verify r");
+        assert!(code == 4 && said.to_lowercase().contains("false"), "{name}: {said}");
+    }
+    // The strains of the head, in rolls.csv and the states too.
+    let mut head: Value = serde_json::from_str(&read(folder, "good.json")).unwrap();
+    head["question"]["l2"] = 0.0.into();
+    for name in ["rolls.jsonl", "rolls.csv"] {
+        fs::copy(folder.join(name.replace("rolls", "good")), folder.join("r").join(name)).unwrap();
+    }
+    fs::write(folder.join("r/roll.json"), head.to_string()).unwrap();
+    assert_eq!(maille(folder, "verify r").0, 4);
+    // With the width free its ends are sought, too.
+    assert_eq!(maille(folder, &format!("{rolls} --curvature 0.02,0.03 --free width --axis above")).0, 0);
+    let (code, said, _) = maille(folder, "verify r");
+    assert!(code == 0 && said.contains("20 of 20 certified ones proved"), "{said}");
+}
+
 fn sum(text: &str) -> String {
     Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect()
 }

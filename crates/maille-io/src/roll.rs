@@ -8,7 +8,7 @@ mod question;
 mod run;
 
 pub use folder::{ROLL, ROLLS, ROLLS_TABLE, RollFolder, RollRecordFile, in_order, open_rolls};
-pub use question::{Axis, RollKey, RollQuestion, Sought};
+pub use question::{Axis, Kind, RollKey, RollQuestion, Sought};
 pub use run::{RollError, find_rolls};
 
 use crate::{
@@ -20,7 +20,6 @@ use maille::{
     design::Design,
     lattice::{Across, Direction},
     model::Model,
-    question::{Goal, Question, Sense, Strain},
     record::{ContactRecord, PoseRecord, RollRecord, StateRecord, Status, contact_records, pose_records},
 };
 use serde::{Deserialize, Serialize};
@@ -38,8 +37,11 @@ pub struct Roll {
     /// Cells of a tube that go round.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wrap: Option<u32>,
-    /// What is sought of a tube; of a sheet, where it is not written, the largest curvature.
-    #[serde(default, skip_serializing_if = "Sought::is_of_sheet")]
+    /// The curvature where it is given, in 1/unit, without the sign of the axis.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at_curvature: Option<f64>,
+    /// What is sought of a tube or at a given curvature; where it is not written, the largest curvature.
+    #[serde(default, skip_serializing_if = "Sought::is_tightest")]
     pub sought: Sought,
     /// `free` where the width along the axis is left to the sheet, else `fixed`.
     pub lateral: String,
@@ -55,6 +57,9 @@ pub struct Roll {
     pub neutral_stretch: Option<f64>,
     /// Stretch along the axis, minus 1.
     pub l2: Option<f64>,
+    /// γ: how far lines along the direction lean along the axis.
+    #[serde(default)]
+    pub gamma: Option<f64>,
     /// What stopped the roll where no contact did.
     pub note: Option<String>,
     /// The cell of the state.
@@ -86,33 +91,23 @@ pub struct Roll {
 }
 
 impl Roll {
-    /// What was found of a question on a roll or a tube, in the cell of `model`; `None` of other goals.
-    pub fn new(design: &Design, question: &Question, model: &Model, found: &Answer, wall_s: f64) -> Option<Self> {
-        let (direction_deg, axis, free, wrap, sought) = match question.goal {
-            Goal::Curvature { direction_deg, free } => {
-                let axis = if question.sense == Sense::Largest { Axis::Below } else { Axis::Above };
-                (direction_deg, axis, free, None, Sought::Tightest)
-            }
-            Goal::Tube { direction_deg, above, cells, sought } => {
-                let axis = if above { Axis::Above } else { Axis::Below };
-                let free = Across { lateral_free: true, shear_free: false };
-                (direction_deg, axis, free, Some(cells), Sought::of(sought, question.sense))
-            }
-            _ => return None,
-        };
-        let unit = design.reference_radius;
+    /// What was found of a roll, with these strains held or left to the sheet, in the cell of `model`.
+    pub(crate) fn new(key: RollKey, free: Across, model: &Model, found: &Answer, wall_s: f64) -> Self {
+        let RollKey { direction_deg, axis, wrap, at_curvature, sought } = key;
+        let unit = model.unit;
         let solved = found.value.is_some();
         let neutral = found.state.neutral_surface_of(model).filter(|_| solved);
         let turned = || found.state.roll.map(|roll| roll.curvature(&model.reference_inverse));
-        let curvature = found.value.and_then(|value| if wrap.is_none() { Some(value) } else { turned() });
+        let curvature = found.value.and_then(|value| if sought == Sought::Tightest { Some(value) } else { turned() });
         let word = |free: bool| if free { "free" } else { "fixed" }.to_owned();
         let length = |a: maille_geometry::Vec3| -> [f64; 3] { (a * model.unit).into() };
-        // Lines along the axis stay along it: they are √(1 + 2 E) times as long.
-        let width = Strain::Eyy.of(&found.green_strain(), Direction::of_degrees(direction_deg));
-        Some(Roll {
+        let direction = Direction::of_degrees(direction_deg);
+        let (u, w) = (direction.along(), direction.across());
+        Roll {
             direction_deg,
             axis,
             wrap,
+            at_curvature,
             sought,
             lateral: word(free.lateral_free),
             shear: word(free.shear_free),
@@ -120,7 +115,8 @@ impl Roll {
             curvature: curvature.map(|curvature| curvature / unit),
             neutral_radius: neutral.map(|n| n.radius * unit),
             neutral_stretch: neutral.map(|n| n.stretch),
-            l2: solved.then(|| (1.0 + 2.0 * width).sqrt() - 1.0),
+            l2: solved.then(|| w.dot(&(found.gradient * w)) - 1.0),
+            gamma: solved.then(|| w.dot(&(found.gradient * u))),
             note: found.note.clone(),
             cell: model.cell.to_string(),
             a1: solved.then(|| length(found.state.a1)),
@@ -135,13 +131,13 @@ impl Roll {
             n_distinct: found.n_distinct,
             better_chance: found.better_chance,
             wall_s,
-        })
+        }
     }
 
-    /// Its direction and axis: what tells it from the others of its folder.
+    /// What tells it from the others of its folder.
     pub fn key(&self) -> RollKey {
-        let &Roll { direction_deg, axis, wrap, sought, .. } = self;
-        RollKey { direction_deg, axis, wrap, sought }
+        let &Roll { direction_deg, axis, wrap, at_curvature, sought, .. } = self;
+        RollKey { direction_deg, axis, wrap, at_curvature, sought }
     }
 
     /// Its state, as exports and pictures read one; `None` where nothing was found.
@@ -174,11 +170,12 @@ pub fn rolls_json(design: &Design, rolls: &[Roll]) -> Value {
 type RollColumn = (&'static str, fn(&Roll) -> String);
 
 /// The columns of `rolls.csv`.
-const COLUMNS: [RollColumn; 24] = [
+const COLUMNS: [RollColumn; 26] = [
     ("direction_deg", |r| csv_number(Some(r.direction_deg))),
     ("axis", |r| r.axis.name().into()),
     ("wrap", |r| r.wrap.map_or(String::new(), |cells| cells.to_string())),
-    ("sought", |r| if r.wrap.is_some() { r.sought.name().into() } else { String::new() }),
+    ("at_curvature", |r| csv_number(r.at_curvature)),
+    ("sought", |r| if r.sought == Sought::Tightest { String::new() } else { r.sought.name().into() }),
     ("lateral", |r| r.lateral.clone()),
     ("shear", |r| r.shear.clone()),
     ("cell", |r| csv_text(&r.cell)),
@@ -187,6 +184,7 @@ const COLUMNS: [RollColumn; 24] = [
     ("neutral_radius", |r| csv_number(r.neutral_radius)),
     ("neutral_stretch", |r| csv_number(r.neutral_stretch)),
     ("l2", |r| csv_number(r.l2)),
+    ("gamma", |r| csv_number(r.gamma)),
     ("min_gap", |r| csv_number(r.min_gap)),
     ("links_ok", |r| r.links_ok.map_or(String::new(), |ok| ok.to_string())),
     ("dual_residual", |r| csv_number(r.certificate.as_ref().map(|c| c.dual_residual))),

@@ -29,9 +29,11 @@ pub fn answer(
         Goal::Wire { lattice_free } => Some((Extreme::ThickestWire, lattice_free)),
         Goal::Clearance { lattice_free } => Some((Extreme::LargestClearance, lattice_free)),
         Goal::Area { min_gap } => Some((Extreme::ClosestCell { gap: min_gap / design.design.reference_radius }, true)),
-        Goal::Stretch { .. } | Goal::Strain { .. } | Goal::Ray { .. } | Goal::Curvature { .. } | Goal::Tube { .. } => {
-            None
-        }
+        Goal::Stretch { .. }
+        | Goal::Strain { .. }
+        | Goal::Ray { .. }
+        | Goal::Curvature { .. }
+        | Goal::Rolled { .. } => None,
     };
     let sheet = design.sheet(cell.parse().map_err(|e| error::invalid(&e))?)?;
     if extreme.is_some() && sheet.model().links.is_empty() {

@@ -1,4 +1,4 @@
-//! The tightest rolls of a sheet, and closed tubes.
+//! The tightest rolls of a sheet, closed tubes, and sheets of given curvature.
 
 use crate::{
     design::Design,
@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 
 /// The rolls that `maille roll` finds, each as JSON. Without directions they are those of the program.
 #[pyfunction]
-#[pyo3(signature = (design, *, directions, axis, wrap, width_free, shear_free, cell, effort, seed, progress, threads))]
+#[pyo3(signature = (design, *, directions, axis, wrap, curvature, width_free, shear_free, l2, gamma, cell, effort, seed, progress, threads))]
 #[expect(clippy::too_many_arguments, reason = "named in Python")]
 pub fn rolls(
     py: Python<'_>,
@@ -20,8 +20,11 @@ pub fn rolls(
     directions: Option<Vec<f64>>,
     axis: &str,
     wrap: Vec<u32>,
+    curvature: Vec<f64>,
     width_free: bool,
     shear_free: bool,
+    l2: f64,
+    gamma: f64,
     cell: &str,
     effort: &str,
     seed: u64,
@@ -40,14 +43,12 @@ pub fn rolls(
         effort: effort.parse().map_err(|e| refused(&e))?,
         seed,
         wrap,
+        l2,
+        gamma,
+        curvatures: curvature,
     };
-    question.check().map_err(|e| error::invalid(&e))?;
     let sheet = design.sheet(question.cells.clone())?;
-    question
-        .rolls()
-        .into_iter()
-        .try_for_each(|key| sheet.check(&question.question(key)))
-        .map_err(|e| error::invalid(&e))?;
+    question.check(&sheet).map_err(|e| error::invalid(&e))?;
     let found = wait(py, threads, progress.as_ref(), |cancel, tell| {
         tell(Step::More(question.rolls().len()));
         let mut seen = Vec::new();
@@ -59,7 +60,7 @@ pub fn rolls(
             }
             Ok(())
         };
-        find_rolls(&sheet, &design.design, &question, Vec::new(), cancel, &mut keep)
+        find_rolls(&sheet, &question, Vec::new(), cancel, &mut keep)
     })?;
     match found {
         Ok(rolls) => Ok(rolls.iter().map(write).collect()),

@@ -70,7 +70,13 @@ struct Question {
     axes: Vec<String>,
     free: Free,
     #[serde(default)]
+    l2: f64,
+    #[serde(default)]
+    gamma: f64,
+    #[serde(default)]
     wrap: Vec<u32>,
+    #[serde(default)]
+    curvatures: Vec<f64>,
 }
 
 #[derive(Deserialize)]
@@ -108,6 +114,7 @@ struct Roll {
     direction_deg: f64,
     axis: String,
     wrap: Option<u32>,
+    at_curvature: Option<f64>,
     #[serde(default = "of_sheet")]
     sought: String,
     lateral: String,
@@ -117,6 +124,7 @@ struct Roll {
     neutral_radius: Option<f64>,
     neutral_stretch: Option<f64>,
     l2: Option<f64>,
+    gamma: Option<f64>,
     cell: String,
     a1: Option<[f64; 3]>,
     a2: Option<[f64; 3]>,
@@ -132,15 +140,16 @@ fn of_sheet() -> String {
     "tightest".into()
 }
 
-/// What is sought of each tube.
-const OF_TUBES: [&str; 5] = ["roomiest", "narrowest", "widest", "shortest", "longest"];
+/// What is sought where the turn is given; the last two, where the length along the axis is free.
+const AT_TURN: [&str; 5] = ["roomiest", "narrowest", "widest", "shortest", "longest"];
 
 /// What tells a roll from the others.
-type Key = (u64, String, Option<u32>, String);
+type Key = (u64, String, Option<u32>, Option<u64>, String);
 
 impl Roll {
     fn key(&self) -> Key {
-        (self.direction_deg.to_bits(), self.axis.clone(), self.wrap, self.sought.clone())
+        let given = self.at_curvature.map(f64::to_bits);
+        (self.direction_deg.to_bits(), self.axis.clone(), self.wrap, given, self.sought.clone())
     }
 }
 
@@ -153,6 +162,8 @@ pub struct RollReport {
     pub axis: String,
     /// Cells of a tube that go round.
     pub wrap: Option<u32>,
+    /// The curvature where it is given.
+    pub at_curvature: Option<f64>,
     /// What is sought.
     pub sought: String,
     /// Its status.
@@ -166,6 +177,8 @@ pub struct RollReport {
 /// Rolls that were read, with the design.
 pub struct RollVerifier {
     design: Design,
+    /// l2 and γ where they are held.
+    held: [f64; 2],
     rolls: Vec<Roll>,
     files: Vec<Finding>,
 }
@@ -191,17 +204,20 @@ impl RollVerifier {
         let read = |(k, line): (usize, &str)| Ok((json(STATES, k + 2, line)?, json(STATES, k + 2, line)?));
         let mut both: Vec<(Roll, Value)> = lines.enumerate().map(read).collect::<Result<_, _>>()?;
         // As the table: the axis below comes first.
-        let place = |sought: &str| OF_TUBES.iter().position(|of| *of == sought);
-        let tube = |roll: &Roll| (roll.wrap, place(&roll.sought));
+        let place = |sought: &str| AT_TURN.iter().position(|of| *of == sought);
+        let given = |roll: &Roll| roll.at_curvature.unwrap_or(0.0);
         both.sort_by(|(a, _), (b, _)| {
-            a.direction_deg.total_cmp(&b.direction_deg).then(b.axis.cmp(&a.axis)).then(tube(a).cmp(&tube(b)))
+            let side = a.direction_deg.total_cmp(&b.direction_deg).then(b.axis.cmp(&a.axis));
+            let turn = a.wrap.cmp(&b.wrap).then(given(a).total_cmp(&given(b)));
+            side.then(turn).then(place(&a.sought).cmp(&place(&b.sought)))
         });
         let (rolls, values): (Vec<Roll>, Vec<Value>) = both.into_iter().unzip();
         let mut files = vec![belongs(&head, &first, &rolls), line_sums(texts.states)];
         let sums = [(STATES, texts.states), (TABLE, texts.table)];
         files.extend(sums.map(|(name, text)| checksum(HEAD, &head.files, name, text)));
         files.push(table_fits(&values, texts.table)?);
-        Ok(RollVerifier { design: head.design, rolls, files })
+        let held = [head.question.l2, head.question.gamma];
+        Ok(RollVerifier { design: head.design, held, rolls, files })
     }
 
     /// What is known of the files.
@@ -233,8 +249,8 @@ impl RollVerifier {
             findings.extend(self.of_state(roll, certified).unwrap_or_else(|words| vec![say(Verdict::False, words)]));
         }
         let (direction_deg, axis, status) = (roll.direction_deg, roll.axis.clone(), roll.status.clone());
-        let (wrap, sought) = (roll.wrap, roll.sought.clone());
-        RollReport { direction_deg, axis, wrap, sought, status, certified, findings }
+        let (wrap, at_curvature, sought) = (roll.wrap, roll.at_curvature, roll.sought.clone());
+        RollReport { direction_deg, axis, wrap, at_curvature, sought, status, certified, findings }
     }
 
     fn of_state(&self, roll: &Roll, certified: bool) -> Result<Vec<Finding>, String> {
@@ -270,7 +286,7 @@ impl RollVerifier {
         {
             return Err(words);
         }
-        let mut out = vec![match deformation(roll, &here, &start.sheet, unit) {
+        let mut out = vec![match deformation(roll, &here, &start.sheet, self.held, unit) {
             Ok(off) => {
                 let words = format!("curvature, radius and stretch are those of the state, to {off:.1e}");
                 Finding::new(Check::Deformation, Verdict::Proved, Some(off), words)
@@ -310,13 +326,15 @@ fn belongs(head: &Head, first: &FirstLine, rolls: &[Roll]) -> Finding {
     }
     let word = |free: bool| if free { "free" } else { "fixed" };
     let tubes = !head.question.wrap.is_empty();
+    let bent = !tubes && !head.question.curvatures.is_empty();
     let free = if tubes { [true, false] } else { [head.question.free.lateral_free, head.question.free.shear_free] };
     let held = free.map(word);
-    let of_tubes = |roll: &Roll| match roll.wrap {
-        Some(_) => tubes && OF_TUBES.contains(&roll.sought.as_str()),
-        None => !tubes && roll.sought == of_sheet(),
+    let ends = if free[0] { &AT_TURN[..] } else { &AT_TURN[..3] };
+    let is_asked = |roll: &Roll| {
+        let known = if tubes || bent { ends.contains(&roll.sought.as_str()) } else { roll.sought == of_sheet() };
+        known && (roll.wrap.is_some(), roll.at_curvature.is_some()) == (tubes, bent)
     };
-    if let Some(roll) = rolls.iter().find(|roll| !of_tubes(roll)) {
+    if let Some(roll) = rolls.iter().find(|roll| !is_asked(roll)) {
         return wrong(format!("the {} roll along {}° is not asked by {HEAD}", roll.sought, roll.direction_deg));
     }
     if let Some(roll) = rolls.iter().find(|roll| [roll.lateral.as_str(), roll.shear.as_str()] != held) {
@@ -325,14 +343,15 @@ fn belongs(head: &Head, first: &FirstLine, rolls: &[Roll]) -> Finding {
     if let Some(pair) = rolls.windows(2).find(|pair| pair[0].key() == pair[1].key()) {
         return wrong(format!("the roll along {}°, axis {}, is there twice", pair[0].direction_deg, pair[0].axis));
     }
-    let of_tube = |cells: &u32| OF_TUBES.map(|sought| (Some(*cells), sought.to_owned()));
-    let sought: Vec<(Option<u32>, String)> = match tubes {
-        true => head.question.wrap.iter().flat_map(of_tube).collect(),
-        false => vec![(None, of_sheet())],
+    let all_ends = |turn: (Option<u32>, Option<u64>)| ends.iter().map(move |sought| (turn, (*sought).to_owned()));
+    let sought: Vec<((Option<u32>, Option<u64>), String)> = match (tubes, bent) {
+        (true, _) => head.question.wrap.iter().flat_map(|cells| all_ends((Some(*cells), None))).collect(),
+        (_, true) => head.question.curvatures.iter().flat_map(|k| all_ends((None, Some(k.to_bits())))).collect(),
+        _ => vec![((None, None), of_sheet())],
     };
     let sides =
         head.question.directions_deg.iter().flat_map(|d| head.question.axes.iter().map(|a| (d.to_bits(), a.clone())));
-    let asked = sides.flat_map(|(d, a)| sought.iter().map(move |(w, s)| (d, a.clone(), *w, s.clone())));
+    let asked = sides.flat_map(|(d, a)| sought.iter().map(move |((w, k), s)| (d, a.clone(), *w, *k, s.clone())));
     let missing = asked.filter(|asked| !rolls.iter().any(|roll| roll.key() == *asked)).count();
     match (missing, head.complete) {
         (0, true) => say(Verdict::Proved, format!("all rolls that {HEAD} asks are there")),
@@ -442,8 +461,8 @@ const SHORTEST: f64 = 1e-7;
 /// Compares the state with the roll's figures; gives the largest difference, or what does not fit.
 ///
 /// With A the lattice vectors of the start and A′ of the state in columns, F = A′A⁻¹, θ the turns, u and w along and across the direction:
-/// θ = κ A′ᵀu at the written length, uᵀFw = 0, l2 = wᵀFw − 1, and ρ is the mean distance of the elements from the axis.
-fn deformation(roll: &Roll, here: &Sheet, start: &Sheet, unit: f64) -> Result<f64, String> {
+/// θ = κ A′ᵀu at the written length, uᵀFw = 0, l2 = wᵀFw − 1, γ = wᵀFu, and ρ is the mean distance of the elements from the axis.
+fn deformation(roll: &Roll, here: &Sheet, start: &Sheet, held: [f64; 2], unit: f64) -> Result<f64, String> {
     let rolled = here.roll.as_ref().ok_or("the sheet is flat")?.motions;
     let inverse = sheet::columns(start.lattice).try_inverse().ok_or("the design's lattice vectors are parallel")?;
     let f: Matrix2<f64> = sheet::columns(here.lattice) * inverse;
@@ -469,13 +488,17 @@ fn deformation(roll: &Roll, here: &Sheet, start: &Sheet, unit: f64) -> Result<f6
     compare("the turn along the axis", Some(0.0), turning.dot(&w))?;
     compare("the radius by R", roll.neutral_radius.map(|radius| radius / unit), radius)?;
     compare("the stretch", roll.neutral_stretch, curvature.abs() * radius)?;
-    compare("l2", roll.l2, w.dot(&(f * w)) - 1.0)?;
+    let given = roll.at_curvature.map(|curvature| curvature * unit);
+    compare("the curvature that is given, times R,", given, curvature.abs())?;
+    let (l2, gamma) = (w.dot(&(f * w)) - 1.0, w.dot(&(f * u)));
+    compare("l2", roll.l2, l2)?;
+    compare("gamma", roll.gamma, gamma)?;
     compare("the lean of lines along the axis", Some(0.0), u.dot(&(f * w)))?;
     if roll.lateral != "free" {
-        compare("l2", Some(0.0), w.dot(&(f * w)) - 1.0)?;
+        compare("l2 that is held", Some(held[0]), l2)?;
     }
     if roll.shear != "free" {
-        compare("the shear", Some(0.0), w.dot(&(f * u)))?;
+        compare("gamma that is held", Some(held[1]), gamma)?;
     }
     if (curvature > 0.0) != (roll.axis == "below") {
         return Err(format!("the axis is {}, and the curvature {curvature:?}", roll.axis));
@@ -483,7 +506,8 @@ fn deformation(roll: &Roll, here: &Sheet, start: &Sheet, unit: f64) -> Result<f6
     Ok(largest)
 }
 
-/// κ with the sign of the axis first, then the length along u, and what is free. Of a tube, whose κ is held, the lengths: what is maximised first.
+/// What may change of the lattice. Where κ is free: κ with the sign of the axis, then the length along u, and what is left to the sheet. Where κ
+/// is given: the same without it; of a length along the axis, that comes first.
 fn rates(roll: &Roll, start: &Sheet) -> Vec<Rate> {
     let (u, w) = axes(roll.direction_deg);
     let sign = if roll.axis == "below" { 1.0 } else { -1.0 };
@@ -491,19 +515,20 @@ fn rates(roll: &Roll, start: &Sheet) -> Vec<Rate> {
         lattice: start.lattice.map(|a| (to * of.dot(&a.xy())).push(0.0)),
         turn_rad: [0.0; 2],
     };
-    let curvature = Rate { lattice: [Vec3::zeros(); 2], turn_rad: start.lattice.map(|a| sign * u.dot(&a.xy())) };
-    let of_length = |sign: f64| {
-        let length = rate(w, w);
-        vec![Rate { lattice: length.lattice.map(|a| a * sign), ..length }, rate(u, u)]
-    };
-    match roll.sought.as_str() {
-        "shortest" => return of_length(-1.0),
-        "longest" => return of_length(1.0),
-        "roomiest" | "narrowest" | "widest" => return vec![rate(u, u), rate(w, w)],
-        _ => {}
-    }
-    let mut out = vec![curvature, rate(u, u)];
+    let mut out = vec![rate(u, u)];
     out.extend((roll.lateral == "free").then(|| rate(w, w)));
     out.extend((roll.shear == "free").then(|| rate(w, u)));
+    let sense = if roll.sought == "shortest" { -1.0 } else { 1.0 };
+    match roll.sought.as_str() {
+        "shortest" | "longest" if out.len() > 1 => {
+            let length = out.remove(1);
+            out.insert(0, Rate { lattice: length.lattice.map(|a| a * sense), ..length });
+        }
+        "roomiest" | "narrowest" | "widest" => {}
+        _ => {
+            let turn_rad = start.lattice.map(|a| sign * u.dot(&a.xy()));
+            out.insert(0, Rate { lattice: [Vec3::zeros(); 2], turn_rad });
+        }
+    }
     out
 }

@@ -317,7 +317,7 @@ impl Direction {
     }
 
     /// D⊥, the unit vector to its left.
-    pub(crate) fn across(self) -> Vector2<f64> {
+    pub fn across(self) -> Vector2<f64> {
         Vector2::new(-self.along.y, self.along.x)
     }
 

@@ -1,5 +1,11 @@
 //! What can be asked of a sheet.
 
+mod number;
+mod rolled;
+
+pub use rolled::{OfRolled, RollStrains, Turn};
+
+use self::number::{MOST, finite, width, within};
 use crate::{
     error::InvalidInput,
     lattice::{Across, Direction},
@@ -144,34 +150,25 @@ pub enum Goal {
     Curvature {
         /// Direction that is rolled, in degrees.
         direction_deg: f64,
-        /// Whether the width along the axis and the shear are held or left to the sheet.
+        /// What is held of the strains along the axis.
         #[serde(default)]
-        free: Across,
+        strains: RollStrains,
     },
-    /// Something of a closed tube: so many of the shortest lattice vectors along the direction go once round. The shear is 0; lengths around and along
-    /// the axis are free. See `docs/theory/roll.md`.
-    Tube {
-        /// Direction that goes round, in degrees.
+    /// Something of a sheet whose turn is given: a closed tube, or a sheet of given curvature. The length along the direction is free. See
+    /// `docs/theory/roll.md`.
+    Rolled {
+        /// Direction that is rolled, in degrees.
         direction_deg: f64,
         /// Whether the axis lies above the written sheet, not below.
         above: bool,
-        /// How many lattice vectors go round.
-        cells: u32,
+        /// How far it is rolled.
+        turn: Turn,
+        /// What is held of the strains along the axis. Of a closed tube the shear is 0.
+        #[serde(default)]
+        strains: RollStrains,
         /// What is sought.
-        sought: OfTube,
+        sought: OfRolled,
     },
-}
-
-/// What is sought of a tube.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum OfTube {
-    /// The smallest gap between the tori of two rings. Only its largest value can be asked for.
-    Gap,
-    /// The length along the axis, as l2.
-    Length,
-    /// The radius of the neutral surface, at the mean distance of the elements from the axis.
-    Radius,
 }
 
 /// Which end of it.
@@ -196,9 +193,6 @@ impl Sense {
         if self == Sense::Largest { "largest" } else { "least" }
     }
 }
-
-/// Directions, in degrees, and l2 are at most this in size.
-const MOST: f64 = 1e6;
 
 fn usual_seed() -> u64 {
     1
@@ -234,7 +228,7 @@ impl Question {
     /// or above it where the sign is negative.
     pub fn curvature_along(direction_deg: f64, sign: f64) -> Self {
         let sense = if sign < 0.0 { Sense::Least } else { Sense::Largest };
-        Question::new(Goal::Curvature { direction_deg, free: Across::HELD }, sense)
+        Question::new(Goal::Curvature { direction_deg, strains: RollStrains::default() }, sense)
     }
 
     /// The same stretch with the width held at 1 + l2 times the written one. Other goals stay as they are.
@@ -245,10 +239,19 @@ impl Question {
         self
     }
 
-    /// The same stretch or roll with the width, or the shear, or both left to the sheet. Other goals stay as they are.
+    /// The same roll with what is held of the strains along the axis. Other goals stay as they are.
+    pub fn with_strains(mut self, strains: RollStrains) -> Self {
+        if let Goal::Curvature { strains: known, .. } | Goal::Rolled { strains: known, .. } = &mut self.goal {
+            *known = strains;
+        }
+        self
+    }
+
+    /// The same stretch or roll with the width, or the shear, or both left to the sheet, and held as written where not. Other goals stay as
+    /// they are.
     pub fn with_free(mut self, free: Across) -> Self {
-        if let Goal::Curvature { free: known, .. } = &mut self.goal {
-            *known = free;
+        if let Goal::Curvature { strains, .. } | Goal::Rolled { strains, .. } = &mut self.goal {
+            *strains = RollStrains::free(free);
         }
         if let Goal::Stretch { l2, across, .. } = &mut self.goal {
             *l2 = if free.lateral_free { 0.0 } else { *l2 };
@@ -272,26 +275,10 @@ impl Question {
         if self.starts == Some(0) {
             return Err(InvalidInput::new("starts", "0 starts find nothing", "give 1 or more"));
         }
-        let finite = |field: &str, x: f64| match x.is_finite() {
-            true => Ok(()),
-            false => Err(InvalidInput::new(field, format!("{x} is not a number"), "give a finite number")),
-        };
-        // Beyond, a float has too few digits left for a direction, or for a width to be held.
-        let within = |field: &str, what: &str, x: f64| match x.abs() <= MOST {
-            _ if !x.is_finite() => finite(field, x),
-            true => Ok(()),
-            false => {
-                Err(InvalidInput::new(field, format!("{what} = {x} is out of range"), format!("give up to {MOST}")))
-            }
-        };
         match &self.goal {
             Goal::Stretch { direction_deg, l2, .. } => {
                 within("direction_deg", "direction", *direction_deg)?;
-                within("l2", "l2", *l2)?;
-                if *l2 <= -1.0 {
-                    let problem = format!("l2 = {l2} would press the sheet to nothing");
-                    return Err(InvalidInput::new("l2", problem, "give values above -1 (0 holds the width)"));
-                }
+                width(*l2)?;
             }
             Goal::Strain { direction_deg, fix, .. } => {
                 within("direction_deg", "direction", *direction_deg)?;
@@ -305,12 +292,17 @@ impl Question {
                     return Err(InvalidInput::new("direction", problem, "give a unit vector"));
                 }
             }
-            Goal::Curvature { direction_deg, .. } => within("direction_deg", "direction", *direction_deg)?,
-            Goal::Tube { direction_deg, cells, .. } => {
+            Goal::Curvature { direction_deg, strains } => {
                 within("direction_deg", "direction", *direction_deg)?;
-                if *cells < 2 {
-                    let help = "give 2 or more cells";
-                    return Err(InvalidInput::new("cells", format!("{cells} cells do not go round"), help));
+                strains.check()?;
+            }
+            Goal::Rolled { direction_deg, turn, strains, sought, .. } => {
+                within("direction_deg", "direction", *direction_deg)?;
+                strains.check()?;
+                turn.check(strains)?;
+                if *sought == OfRolled::Length && !strains.free.lateral_free {
+                    let problem = "the length along the axis is held, so it has no range";
+                    return Err(InvalidInput::new("sought", problem, "leave the width free"));
                 }
             }
             Goal::Wire { .. } | Goal::Clearance { .. } if self.sense == Sense::Least => {
@@ -352,7 +344,7 @@ impl Question {
             | Goal::Clearance { .. }
             | Goal::Area { .. }
             | Goal::Curvature { .. }
-            | Goal::Tube { .. } => Ok(None),
+            | Goal::Rolled { .. } => Ok(None),
         }
     }
 

@@ -13,9 +13,9 @@ use crate::{
         ExactOptions, ExtremeOptions,
         curl::{Curl, tightest_roll},
         extreme::{Extreme, extreme},
+        rolled::{Rolled, rolled},
         strain::{StrainMethod, StrainOptions},
         stretch::ExactMethod,
-        tube::{Tube, tube},
     },
     state::{Pose, State},
     survey::{CellChoice, KnownRoll, RollTask, one, rolls},
@@ -70,9 +70,7 @@ impl Sheet {
     pub fn check(&self, question: &Question) -> Result<(), InvalidInput> {
         question.check()?;
         match question.goal {
-            Goal::Tube { direction_deg, cells, sought, .. } => {
-                Tube::new(self.model(), Direction::of_degrees(direction_deg), 1.0, cells, (sought, 1.0)).map(drop)
-            }
+            Goal::Rolled { .. } => Rolled::new(self.model(), question).map(drop),
             _ => Ok(()),
         }
     }
@@ -104,26 +102,24 @@ impl Sheet {
             Goal::Clearance { lattice_free } => extreme(Extreme::LargestClearance, lattice_free),
             Goal::Area { min_gap } => extreme(Extreme::ClosestCell { gap: min_gap / self.model().unit }, true),
             Goal::Strain { .. } | Goal::Ray { .. } => self.strain(question, cancel)?,
-            Goal::Tube { direction_deg, above, cells, sought } => {
-                let (direction, sign) = (Direction::of_degrees(direction_deg), if above { -1.0 } else { 1.0 });
-                let model = self.model();
-                let target = Tube::new(model, direction, sign, cells, (sought, sense.sign()))?;
-                tube(model, target, &ExtremeOptions { lattice_free: true, effort, starts, seed }, cancel)
+            Goal::Rolled { .. } => {
+                let target = Rolled::new(self.model(), question)?;
+                rolled(self.model(), target, None, &ExtremeOptions { lattice_free: true, effort, starts, seed }, cancel)
             }
-            Goal::Curvature { direction_deg, free } => {
-                let curl = Curl { direction: Direction::of_degrees(direction_deg), sign: sense.sign(), free };
+            Goal::Curvature { direction_deg, strains } => {
+                let curl = Curl { direction: Direction::of_degrees(direction_deg), sign: sense.sign(), strains };
                 let options = ExtremeOptions { lattice_free: true, effort, starts, seed };
                 tightest_roll(&self.models, curl, &options, cancel)
             }
         })
     }
 
-    /// Finds the rolls of `tasks` that are not in `known`, with what `question`, one on a curvature, leaves to the sheet and with its effort;
-    /// then hands states on between all of them. `finished` gets each roll as it is found, and again where it goes further, with the
+    /// Finds the rolls of `tasks` that are not in `known`, with what `question`, one on a curvature or on a rolled sheet, seeks and holds and with
+    /// its effort; then hands states on between all of them. `finished` gets each roll as it is found, and again where it goes further, with the
     /// seconds that it took. After `cancel` the rest does not come.
     ///
     /// # Errors
-    /// What [`Question::check`] refuses, and a question on something else.
+    /// What [`check`](Self::check) refuses of any of them, and a question on something else.
     pub fn rolls(
         &self,
         question: &Question,
@@ -132,13 +128,11 @@ impl Sheet {
         cancel: &AtomicBool,
         finished: &mut dyn FnMut(RollTask, &Answer, f64),
     ) -> Result<(), InvalidInput> {
-        question.check()?;
-        let Goal::Curvature { free, .. } = question.goal else {
-            return Err(InvalidInput::new("goal", "rolls are of a curvature", "ask for a curvature"));
-        };
-        let Question { effort, starts, seed, .. } = *question;
-        let options = ExtremeOptions { lattice_free: true, effort, starts, seed };
-        rolls(&self.models, (free, &options), tasks, known, cancel, finished);
+        if !matches!(question.goal, Goal::Curvature { .. } | Goal::Rolled { .. }) {
+            return Err(InvalidInput::new("goal", "no roll is asked for", "ask for a curvature, or of a rolled sheet"));
+        }
+        tasks.iter().try_for_each(|task| self.check(&task.question(question)))?;
+        rolls(&self.models, question, tasks, known, cancel, finished);
         Ok(())
     }
 

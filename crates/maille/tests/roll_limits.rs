@@ -3,8 +3,8 @@
 use maille::{
     Across, Effort, Question, Sheet, Status,
     answer::Answer,
-    lattice::Cell,
-    question::{Goal, OfTube, Sense},
+    lattice::{Cell, Direction},
+    question::{Goal, OfRolled, RollStrains, Sense, Turn},
     survey::RollTask,
 };
 use maille_geometry::circle_distance_minima;
@@ -63,7 +63,7 @@ fn rolls_of_a_design_are_images_of_each_other() {
     {
         let sheet = sheet(name, "1x1");
         let question = Question { effort: Effort::Low, ..Question::curvature_along(0.0, 1.0).with_free(free) };
-        let both = |direction_deg| [Sense::Largest, Sense::Least].map(|sense| RollTask { direction_deg, sense });
+        let both = |direction_deg| [false, true].map(|above| RollTask { direction_deg, above });
         let tasks: Vec<RollTask> = directions_deg.into_iter().flat_map(both).collect();
         let mut found: Vec<(RollTask, f64)> = Vec::new();
         let mut keep = |task: RollTask, answer: &Answer, _: f64| {
@@ -106,15 +106,16 @@ fn neighbours_of_neighbours_count_at_any_turn() {
 #[test]
 fn tubes_have_their_turn_and_ranges() {
     let sheet = sheet("european-4-in-1", "1x1");
-    let ask = |cells: u32, sought: OfTube, sense: Sense| {
-        let goal = Goal::Tube { direction_deg: 0.0, above: false, cells, sought };
+    let ask = |cells: u32, sought: OfRolled, sense: Sense| {
+        let (turn, strains) = (Turn::Cells(cells), RollStrains::OF_TUBE);
+        let goal = Goal::Rolled { direction_deg: 0.0, above: false, turn, strains, sought };
         sheet.answer(&Question { effort: Effort::Low, ..Question::new(goal, sense) }).unwrap()
     };
     let radius = |answer: &Answer| answer.state.neutral_surface_of(sheet.model()).unwrap().radius;
     for cells in [6, 9] {
-        let roomiest = ask(cells, OfTube::Gap, Sense::Largest);
-        let [least, most] = [Sense::Least, Sense::Largest].map(|sense| ask(cells, OfTube::Radius, sense));
-        let [short, long] = [Sense::Least, Sense::Largest].map(|sense| ask(cells, OfTube::Length, sense));
+        let roomiest = ask(cells, OfRolled::Gap, Sense::Largest);
+        let [least, most] = [Sense::Least, Sense::Largest].map(|sense| ask(cells, OfRolled::Radius, sense));
+        let [short, long] = [Sense::Least, Sense::Largest].map(|sense| ask(cells, OfRolled::Length, sense));
         for answer in [&roomiest, &least, &most, &short, &long] {
             assert_eq!(answer.status, Status::Local);
             let turn = answer.state.roll.unwrap().turn_rad;
@@ -128,11 +129,62 @@ fn tubes_have_their_turn_and_ranges() {
         assert!((roomiest.value.unwrap() - roomiest.gap.unwrap()).abs() < 1e-9 && roomiest.gap.unwrap() > 0.0);
     }
     // Tighter than the tightest roll.
-    let none = ask(4, OfTube::Gap, Sense::Largest);
+    let none = ask(4, OfRolled::Gap, Sense::Largest);
     assert!(none.status == Status::NotConverged && none.value.is_none());
-    assert!(
-        Question::new(Goal::Tube { direction_deg: 0.0, above: false, cells: 1, sought: OfTube::Gap }, Sense::Largest)
-            .check()
-            .is_err()
-    );
+    let one = Goal::Rolled {
+        direction_deg: 0.0,
+        above: false,
+        turn: Turn::Cells(1),
+        strains: RollStrains::OF_TUBE,
+        sought: OfRolled::Gap,
+    };
+    assert!(Question::new(one, Sense::Largest).check().is_err());
+}
+
+/// At half the largest curvature a sheet has a range of stretches, and near the largest one next to none.
+#[test]
+fn a_sheet_of_given_curvature_has_ranges() {
+    let sheet = sheet("european-4-in-1", "1x1");
+    let ask = |goal: Goal, sense: Sense| {
+        sheet.answer(&Question { effort: Effort::Low, ..Question::new(goal, sense) }).unwrap()
+    };
+    let strains = RollStrains { l2: -0.02, shear: 0.03, ..RollStrains::default() };
+    let most = ask(Goal::Curvature { direction_deg: 20.0, strains }, Sense::Largest).value.unwrap();
+    let at = |curvature: f64, sought: OfRolled, sense: Sense| {
+        let turn = Turn::Curvature(curvature);
+        ask(Goal::Rolled { direction_deg: 20.0, above: false, turn, strains, sought }, sense)
+    };
+    let mut ranges = Vec::new();
+    for curvature in [0.5 * most, 0.9 * most] {
+        let ends = [Sense::Least, Sense::Largest].map(|sense| at(curvature, OfRolled::Radius, sense));
+        for answer in &ends {
+            assert_eq!(answer.status, Status::Local, "{curvature} of {most}: {:?}", answer.certificate);
+            let roll = answer.state.roll.unwrap();
+            assert!((roll.curvature(&sheet.model().reference_inverse) - curvature).abs() < 1e-12);
+            let (u, w) = (Direction::of_degrees(20.0).along(), Direction::of_degrees(20.0).across());
+            let f = answer.gradient;
+            assert!((w.dot(&(f * w)) - 0.98).abs() < 1e-12 && (w.dot(&(f * u)) - 0.03).abs() < 1e-12, "{f}");
+        }
+        ranges.push(ends[1].value.unwrap() - ends[0].value.unwrap());
+    }
+    assert!(ranges[0] > 0.05 && ranges[1] < 0.5 * ranges[0] && ranges[1] > -1e-9, "{ranges:?}");
+    assert!(at(0.5 * most, OfRolled::Gap, Sense::Largest).gap.unwrap() > 0.0);
+    assert_eq!(at(1.01 * most, OfRolled::Gap, Sense::Largest).status, Status::NotConverged);
+    // The length along the axis is held.
+    let turn = Turn::Curvature(0.1);
+    let goal = Goal::Rolled { direction_deg: 20.0, above: false, turn, strains, sought: OfRolled::Length };
+    assert!(Question::new(goal, Sense::Largest).check().is_err());
+}
+
+/// Lines that lean the other way: the image in a mirror, where a design has one.
+#[test]
+fn shear_that_is_given_has_its_mirror_image() {
+    let sheet = sheet("european-4-in-1", "1x1");
+    let ask = |shear: f64| {
+        let strains = RollStrains { shear, ..RollStrains::default() };
+        let goal = Goal::Curvature { direction_deg: 0.0, strains };
+        sheet.answer(&Question { effort: Effort::Low, ..Question::new(goal, Sense::Largest) }).unwrap().value.unwrap()
+    };
+    let [left, none, right] = [-0.1, 0.0, 0.1].map(ask);
+    assert!((left - right).abs() < 1e-8 && (left - none).abs() > 1e-4, "{left} {none} {right}");
 }

@@ -1,6 +1,6 @@
 //! The folder of a design's rolls.
 
-use super::{Roll, RollKey, RollQuestion, rolls_csv};
+use super::{Kind, Roll, RollKey, RollQuestion, rolls_csv};
 use crate::{
     files,
     record::{
@@ -52,12 +52,19 @@ struct Head {
 }
 
 impl Head {
-    /// Which directions and sides are asked does not decide where a roll ends.
+    /// Which directions, sides, cells and curvatures are asked does not decide where a roll ends.
     fn new(design: &Design, question: &RollQuestion) -> Self {
         let RollQuestion { cells, effort, seed, .. } = question;
-        let tubes = !question.wrap.is_empty();
-        let parameters =
-            json!({ "tubes": tubes, "free": question.free(), "cells": cells, "effort": effort, "seed": seed });
+        let (strains, kind) = (question.strains(), question.kind());
+        let tubes = kind == Kind::Tubes;
+        let mut parameters =
+            json!({ "tubes": tubes, "free": strains.free, "cells": cells, "effort": effort, "seed": seed });
+        if kind == Kind::AtCurvature {
+            parameters["at_curvature"] = true.into();
+        }
+        if (strains.l2, strains.shear) != (0.0, 0.0) {
+            (parameters["l2"], parameters["gamma"]) = (strains.l2.into(), strains.shear.into());
+        }
         Head {
             program_version: env!("CARGO_PKG_VERSION").into(),
             input_hash: input_hash(design, &parameters),
@@ -199,8 +206,11 @@ pub fn open_rolls(folder: &Path) -> Result<(RollRecordFile, Vec<Roll>), RecordEr
     Ok((record, rolls))
 }
 
-/// By direction, the axis below first; tubes by their cells and by what is sought: the order of the table.
+/// By direction, the axis below first; then by cells or given curvature, and by what is sought: the order of the table.
 pub fn in_order(rolls: &mut [Roll]) {
-    let rest = |roll: &Roll| (roll.axis, roll.wrap, roll.sought);
-    rolls.sort_by(|a, b| a.direction_deg.total_cmp(&b.direction_deg).then(rest(a).cmp(&rest(b))));
+    let given = |roll: &Roll| roll.at_curvature.unwrap_or(0.0);
+    rolls.sort_by(|a, b| {
+        let turn = || (a.axis, a.wrap).cmp(&(b.axis, b.wrap)).then(given(a).total_cmp(&given(b)));
+        a.direction_deg.total_cmp(&b.direction_deg).then_with(turn).then(a.sought.cmp(&b.sought))
+    });
 }

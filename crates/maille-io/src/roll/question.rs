@@ -1,10 +1,11 @@
 //! What is asked of a sheet that is rolled, and which rolls that are.
 
 use maille::{
+    Sheet,
     design::Design,
     error::InvalidInput,
     lattice::Across,
-    question::{Effort, Goal, OfTube, Question, Sense},
+    question::{Effort, Goal, OfRolled, Question, RollStrains, Sense, Turn},
     survey::CellChoice,
 };
 use serde::{Deserialize, Serialize};
@@ -22,11 +23,6 @@ pub enum Axis {
 impl Axis {
     /// Both, in the order of tables.
     pub const BOTH: [Axis; 2] = [Axis::Below, Axis::Above];
-
-    /// The end of the curvatures that has it.
-    pub(super) fn sense(self) -> Sense {
-        if self == Axis::Below { Sense::Largest } else { Sense::Least }
-    }
 
     /// The name in tables.
     pub fn name(self) -> &'static str {
@@ -47,6 +43,12 @@ pub struct RollQuestion {
     pub axes: Vec<Axis>,
     /// What is left to the sheet.
     pub free: Across,
+    /// Stretch along the axis minus 1 where it is held.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub l2: f64,
+    /// γ, how far lines along the direction lean along the axis, where it is held.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub gamma: f64,
     /// The cells that may be solved.
     pub cells: CellChoice,
     /// How long each roll is searched.
@@ -56,30 +58,49 @@ pub struct RollQuestion {
     /// Of tubes: how many cells go round, for each of them. None: the tightest rolls of the sheet.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub wrap: Vec<u32>,
+    /// Curvatures that are given, in 1/unit, without the sign of the axis. None, and no tubes: the tightest rolls of the sheet.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub curvatures: Vec<f64>,
 }
 
-/// What is sought of a roll: the first of a sheet, the others of a closed tube.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde gives a reference")]
+fn is_zero(x: &f64) -> bool {
+    *x == 0.0
+}
+
+/// What rolls are asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// The tightest rolls.
+    Tightest,
+    /// Closed tubes.
+    Tubes,
+    /// Sheets of given curvature.
+    AtCurvature,
+}
+
+/// What is sought of a roll: the first where it is free how far it is rolled, the others of a closed tube or at a given curvature.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Sought {
     /// The largest curvature.
     #[default]
     Tightest,
-    /// The tube with the widest gaps.
+    /// The widest gaps.
     Roomiest,
-    /// The tube of the least radius.
+    /// The least radius.
     Narrowest,
-    /// The tube of the largest radius.
+    /// The largest radius.
     Widest,
-    /// The shortest tube.
+    /// The least length along the axis.
     Shortest,
-    /// The longest tube.
+    /// The largest length along the axis.
     Longest,
 }
 
 impl Sought {
-    /// What is sought of each tube.
-    pub const OF_TUBES: [Sought; 5] =
+    /// What is sought where the turn is given; the last two, where the length along the axis is free.
+    pub const AT_TURN: [Sought; 5] =
         [Sought::Roomiest, Sought::Narrowest, Sought::Widest, Sought::Shortest, Sought::Longest];
 
     /// The name in tables.
@@ -89,26 +110,22 @@ impl Sought {
 
     /// The one with this name.
     pub fn named(name: &str) -> Option<Self> {
-        std::iter::once(Sought::Tightest).chain(Self::OF_TUBES).find(|sought| sought.name() == name)
+        std::iter::once(Sought::Tightest).chain(Self::AT_TURN).find(|sought| sought.name() == name)
     }
 
-    /// Whether it is that of a sheet, which its record does not say.
-    pub(super) fn is_of_sheet(&self) -> bool {
+    /// Whether it is the largest curvature, which a record does not say.
+    pub(super) fn is_tightest(&self) -> bool {
         *self == Sought::Tightest
     }
 
-    fn of_tube(self) -> (OfTube, Sense) {
+    fn at_turn(self) -> (OfRolled, Sense) {
         match self {
-            Sought::Tightest | Sought::Roomiest => (OfTube::Gap, Sense::Largest),
-            Sought::Narrowest => (OfTube::Radius, Sense::Least),
-            Sought::Widest => (OfTube::Radius, Sense::Largest),
-            Sought::Shortest => (OfTube::Length, Sense::Least),
-            Sought::Longest => (OfTube::Length, Sense::Largest),
+            Sought::Tightest | Sought::Roomiest => (OfRolled::Gap, Sense::Largest),
+            Sought::Narrowest => (OfRolled::Radius, Sense::Least),
+            Sought::Widest => (OfRolled::Radius, Sense::Largest),
+            Sought::Shortest => (OfRolled::Length, Sense::Least),
+            Sought::Longest => (OfRolled::Length, Sense::Largest),
         }
-    }
-
-    pub(super) fn of(sought: OfTube, sense: Sense) -> Self {
-        Self::OF_TUBES.into_iter().find(|of| of.of_tube() == (sought, sense)).unwrap_or(Sought::Roomiest)
     }
 }
 
@@ -121,8 +138,21 @@ pub struct RollKey {
     pub axis: Axis,
     /// Cells of a tube that go round.
     pub wrap: Option<u32>,
+    /// The curvature where it is given, in 1/unit, without the sign of the axis.
+    pub at_curvature: Option<f64>,
     /// What is sought.
     pub sought: Sought,
+}
+
+impl RollKey {
+    /// Its place as `--at` names it.
+    pub fn place(&self) -> String {
+        let wrap = self.wrap.map(|cells| format!(",wrap={cells}"));
+        let curvature = self.at_curvature.map(|curvature| format!(",curvature={curvature}"));
+        let sought = (self.sought != Sought::Tightest).then(|| format!(",sought={}", self.sought.name()));
+        let rest: String = [wrap, curvature, sought].into_iter().flatten().collect();
+        format!("direction={},axis={}{rest}", self.direction_deg, self.axis.name())
+    }
 }
 
 impl RollQuestion {
@@ -132,55 +162,68 @@ impl RollQuestion {
         if tubes { vec![y.atan2(x).to_degrees()] } else { (0..6).map(|k| 30.0 * f64::from(k)).collect() }
     }
 
-    /// Its rolls, in the order of the table.
-    pub fn rolls(&self) -> Vec<RollKey> {
-        let tubes = |wrap: &u32| Sought::OF_TUBES.map(|sought| (Some(*wrap), sought));
-        let sought: Vec<(Option<u32>, Sought)> = match self.wrap.is_empty() {
-            true => vec![(None, Sought::Tightest)],
-            false => self.wrap.iter().flat_map(tubes).collect(),
-        };
-        let along = |direction_deg: &f64| {
-            let of_axis = |axis: &Axis| {
-                let key = |&(wrap, sought): &(Option<u32>, Sought)| RollKey {
-                    direction_deg: *direction_deg,
-                    axis: *axis,
-                    wrap,
-                    sought,
-                };
-                sought.iter().map(key).collect::<Vec<_>>()
-            };
-            self.axes.iter().flat_map(of_axis).collect::<Vec<_>>()
-        };
-        self.directions_deg.iter().flat_map(along).collect()
+    /// What rolls it asks for.
+    pub fn kind(&self) -> Kind {
+        match () {
+            () if !self.wrap.is_empty() => Kind::Tubes,
+            () if !self.curvatures.is_empty() => Kind::AtCurvature,
+            () => Kind::Tightest,
+        }
     }
 
-    /// One of them as a question by itself.
-    pub fn question(&self, key: RollKey) -> Question {
-        let RollKey { direction_deg, axis, wrap, sought } = key;
-        let question = match wrap {
-            None => Question::curvature_along(direction_deg, axis.sense().sign()).with_free(self.free),
-            Some(cells) => {
-                let (sought, sense) = sought.of_tube();
-                let above = axis == Axis::Above;
-                Question::new(Goal::Tube { direction_deg, above, cells, sought }, sense)
+    /// What is held of the strains along the axis.
+    pub fn strains(&self) -> RollStrains {
+        match self.kind() {
+            Kind::Tubes => RollStrains::OF_TUBE,
+            _ => RollStrains { free: self.free, l2: self.l2, shear: self.gamma },
+        }
+    }
+
+    /// Its rolls, in the order of the table.
+    pub fn rolls(&self) -> Vec<RollKey> {
+        let ends = if self.strains().free.lateral_free { &Sought::AT_TURN[..] } else { &Sought::AT_TURN[..3] };
+        let turns: Vec<(Option<u32>, Option<f64>)> = match self.kind() {
+            Kind::Tightest => vec![(None, None)],
+            Kind::Tubes => self.wrap.iter().map(|cells| (Some(*cells), None)).collect(),
+            Kind::AtCurvature => self.curvatures.iter().map(|curvature| (None, Some(*curvature))).collect(),
+        };
+        let sought = if self.kind() == Kind::Tightest { &[Sought::Tightest] } else { ends };
+        let mut out = Vec::new();
+        for &direction_deg in &self.directions_deg {
+            for &axis in &self.axes {
+                for &(wrap, at_curvature) in &turns {
+                    let key = |&sought: &Sought| RollKey { direction_deg, axis, wrap, at_curvature, sought };
+                    out.extend(sought.iter().map(key));
+                }
+            }
+        }
+        out
+    }
+
+    /// One of them as a question by itself, of a design with this reference radius.
+    pub fn question(&self, key: RollKey, unit: f64) -> Question {
+        let RollKey { direction_deg, axis, wrap, at_curvature, sought } = key;
+        let (strains, above) = (self.strains(), axis == Axis::Above);
+        let turn = wrap.map(Turn::Cells).or(at_curvature.map(|curvature| Turn::Curvature(curvature * unit)));
+        let question = match turn {
+            None => Question::curvature_along(direction_deg, if above { -1.0 } else { 1.0 }).with_strains(strains),
+            Some(turn) => {
+                let (sought, sense) = sought.at_turn();
+                Question::new(Goal::Rolled { direction_deg, above, turn, strains, sought }, sense)
             }
         };
         Question { effort: self.effort, seed: self.seed, ..question }
     }
 
-    /// What is left to the sheet. Lengths of a tube are free, and its shear is held.
-    pub fn free(&self) -> Across {
-        if self.wrap.is_empty() { self.free } else { Across { lateral_free: true, shear_free: false } }
-    }
-
-    /// Whether all can be asked.
+    /// Its rolls as questions of this sheet, each checked.
     ///
     /// # Errors
-    /// Without directions, and what [`Question::check`] refuses.
-    pub fn check(&self) -> Result<(), InvalidInput> {
+    /// Without directions, and what [`Sheet::check`] refuses.
+    pub fn check(&self, sheet: &Sheet) -> Result<(), InvalidInput> {
         if self.directions_deg.is_empty() {
             return Err(InvalidInput::new("directions", "there is none", "give one or more"));
         }
-        self.rolls().into_iter().try_for_each(|roll| self.question(roll).check())
+        let unit = sheet.model().unit;
+        self.rolls().into_iter().try_for_each(|roll| sheet.check(&self.question(roll, unit)))
     }
 }

@@ -5,31 +5,53 @@ use crate::record::RecordError;
 use maille::{
     Sheet,
     answer::Answer,
-    design::Design,
     error::InvalidInput,
     lattice::Cell,
-    question::Sense,
+    model::Model,
     survey::{KnownRoll, RollTask},
 };
 use std::{
     mem,
     sync::atomic::{AtomicBool, Ordering},
-    time::Instant,
 };
 
 impl Roll {
-    /// As a search goes on from it; `None` where nothing was found, or its state is of no such design.
+    /// As a search goes on from it; `None` where its state is of no such design.
     fn known(&self, sheet: &Sheet) -> Option<KnownRoll> {
-        let cell: Cell = self.cell.parse().ok()?;
-        let own = sheet.model();
-        let state = match cell == own.cell {
-            true => self.state()?.state(own)?,
-            false => self.state()?.state(&own.in_cell(cell))?,
+        let certified = if self.is_certified() {
+            let (cell, own): (Cell, &Model) = (self.cell.parse().ok()?, sheet.model());
+            let state = match cell == own.cell {
+                true => self.state()?.state(own)?,
+                false => self.state()?.state(&own.in_cell(cell))?,
+            };
+            Some((self.value(own.unit)?, cell, state))
+        } else {
+            None
         };
-        let certified = self.curvature.filter(|_| self.is_certified()).map(|curvature| curvature * own.unit);
-        let &Roll { direction_deg, axis, n_starts, n_distinct, better_chance, .. } = self;
-        let task = RollTask { direction_deg, sense: axis.sense() };
-        Some(KnownRoll { task, cell, state, certified, n_starts, n_distinct, better_chance })
+        let &Roll { n_starts, n_distinct, better_chance, .. } = self;
+        Some(KnownRoll { task: self.key().task(), certified, n_starts, n_distinct, better_chance })
+    }
+
+    /// What is sought of it, in R or 1/R.
+    fn value(&self, unit: f64) -> Option<f64> {
+        match self.sought {
+            Sought::Tightest => self.curvature.map(|curvature| curvature * unit),
+            Sought::Roomiest => self.min_gap.map(|gap| gap / unit),
+            Sought::Narrowest | Sought::Widest => self.neutral_radius.map(|radius| radius / unit),
+            Sought::Shortest | Sought::Longest => self.l2,
+        }
+    }
+}
+
+impl RollKey {
+    fn task(self) -> RollTask {
+        RollTask { direction_deg: self.direction_deg, above: self.axis == Axis::Above }
+    }
+
+    /// The roll along another direction, or to the other side.
+    fn of_task(self, task: RollTask) -> Self {
+        let axis = if task.above { Axis::Above } else { Axis::Below };
+        RollKey { direction_deg: task.direction_deg, axis, ..self }
     }
 }
 
@@ -37,75 +59,47 @@ impl Roll {
 /// again where it goes further. After `cancel`, and after an error of `keep`, the rest does not come.
 ///
 /// # Errors
-/// That of `keep`, and what cannot be asked: see [`RollQuestion::check`]; a tube that does not close.
+/// That of `keep`, and what cannot be asked: see [`RollQuestion::check`].
 pub fn find_rolls(
     sheet: &Sheet,
-    design: &Design,
     question: &RollQuestion,
     mut rolls: Vec<Roll>,
     cancel: &AtomicBool,
     keep: &mut (dyn FnMut(&Roll) -> Result<(), RecordError> + Send),
 ) -> Result<Vec<Roll>, RollError> {
-    let asked = question.rolls();
-    if !question.wrap.is_empty() {
-        return find_tubes(sheet, design, question, rolls, cancel, keep);
-    }
-    let task = |key: &RollKey| RollTask { direction_deg: key.direction_deg, sense: key.axis.sense() };
-    let tasks: Vec<RollTask> = asked.iter().map(task).collect();
-    let known = rolls.iter().filter_map(|roll| roll.known(sheet)).collect();
+    let free = question.strains().free;
     let mut failed = None;
-    let mut found = |task: RollTask, answer: &Answer, wall_s: f64| {
-        let axis = if task.sense == Sense::Largest { Axis::Below } else { Axis::Above };
-        let key = RollKey { direction_deg: task.direction_deg, axis, wrap: None, sought: Sought::Tightest };
-        let one = question.question(key);
-        let Some(mut roll) = Roll::new(design, &one, &sheet.model_of(answer), answer, wall_s) else { return };
-        let place = rolls.iter().position(|known| known.key() == roll.key());
-        roll.wall_s += place.map_or(0.0, |k| rolls[k].wall_s);
-        if let Err(e) = keep(&roll) {
-            failed = failed.take().or(Some(e));
-            cancel.store(true, Ordering::Relaxed);
+    let mut left = question.rolls();
+    // Those that differ in direction and side alone help each other.
+    while let Some(first) = left.first().copied() {
+        let alike = |key: &RollKey| key.of_task(first.task()) == first;
+        let (now, later): (Vec<RollKey>, Vec<RollKey>) = left.into_iter().partition(alike);
+        left = later;
+        let tasks: Vec<RollTask> = now.iter().map(|key| key.task()).collect();
+        let known = rolls.iter().filter(|roll| alike(&roll.key())).filter_map(|roll| roll.known(sheet)).collect();
+        let mut found = |task: RollTask, answer: &Answer, wall_s: f64| {
+            let mut roll = Roll::new(first.of_task(task), free, &sheet.model_of(answer), answer, wall_s);
+            let place = rolls.iter().position(|known| known.key() == roll.key());
+            roll.wall_s += place.map_or(0.0, |k| rolls[k].wall_s);
+            if let Err(e) = keep(&roll) {
+                failed = failed.take().or(Some(e));
+                cancel.store(true, Ordering::Relaxed);
+            }
+            match place {
+                Some(k) => drop(mem::replace(&mut rolls[k], roll)),
+                None => rolls.push(roll),
+            }
+        };
+        sheet.rolls(&question.question(first, sheet.model().unit), &tasks, known, cancel, &mut found)?;
+        if cancel.load(Ordering::Relaxed) {
+            break;
         }
-        match place {
-            Some(k) => drop(mem::replace(&mut rolls[k], roll)),
-            None => rolls.push(roll),
-        }
-    };
-    let any = asked.first().map(|first| question.question(*first));
-    if let Some(any) = any {
-        sheet.rolls(&any, &tasks, known, cancel, &mut found)?;
     }
     in_order(&mut rolls);
     match failed {
         Some(e) => Err(e.into()),
         None => Ok(rolls),
     }
-}
-
-fn find_tubes(
-    sheet: &Sheet,
-    design: &Design,
-    question: &RollQuestion,
-    mut rolls: Vec<Roll>,
-    cancel: &AtomicBool,
-    keep: &mut (dyn FnMut(&Roll) -> Result<(), RecordError> + Send),
-) -> Result<Vec<Roll>, RollError> {
-    for key in question.rolls() {
-        if rolls.iter().any(|roll| roll.key() == key) {
-            continue;
-        }
-        let (one, begun) = (question.question(key), Instant::now());
-        let answer = sheet.answer_until(&one, cancel)?;
-        if cancel.load(Ordering::Relaxed) {
-            break;
-        }
-        let wall_s = begun.elapsed().as_secs_f64();
-        if let Some(roll) = Roll::new(design, &one, &sheet.model_of(&answer), &answer, wall_s) {
-            keep(&roll)?;
-            rolls.push(roll);
-        }
-    }
-    in_order(&mut rolls);
-    Ok(rolls)
 }
 
 /// Why rolls could not be found.

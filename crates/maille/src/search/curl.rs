@@ -3,7 +3,7 @@
 //! Images are turned about one axis across the direction u (`docs/theory/roll.md`). κ is the turn for each unit of length of the written
 //! sheet along u, and F = (1 + l1) u uᵀ + (1 + l2) w wᵀ + γ w uᵀ: lines of the sheet along the axis w stay along it. The height of the
 //! elements and l1 with κ are one geometry in many ways, so the first element's place is held, over the axis, and l1 is free in any case. l2 and γ
-//! are held at 0 or left to the sheet. Nothing bounds κ by links: where it stops rings crowd each other, and the most that is claimed is
+//! are held at given values or left to the sheet; a start is first strained to them, flat. Nothing bounds κ by links: where it stops rings crowd each other, and the most that is claimed is
 //! `local`.
 //!
 //! Starts are the written state, flat states that are stretched and pressed as far as they go, and those that are drawn.
@@ -11,7 +11,7 @@
 use super::{
     local::LocalSolution,
     multistart::{CellStarts, Entered, FollowedWaves, LargerCells, Multistart, SearchResult, Target, verdict},
-    options::{ExtremeOptions, STRAIGHT},
+    options::{ExtremeOptions, FEASIBLE, STRAIGHT},
     starts::{Start, Use, perturbed, rng},
     stop::StopRule,
 };
@@ -20,6 +20,7 @@ use crate::{
     lattice::{Across, Cell, Direction},
     model::{Model, of_cell},
     program::{LatticeFamily, Parameter, SheetProgram},
+    question::RollStrains,
     record::Status,
     solver::sqp::{SqpOptions, maximize},
     state::{Pose, Roll, State},
@@ -35,8 +36,8 @@ pub(crate) struct Curl {
     pub direction: Direction,
     /// Sign of the curvature: 1 where the axis lies below the sheet.
     pub sign: f64,
-    /// What is left to the sheet of l2, the width along the axis, and of the shear γ.
-    pub free: Across,
+    /// What is held of l2, the width along the axis, and of the shear γ.
+    pub strains: RollStrains,
 }
 
 /// Nearer to the axis than this an element lies on it, in R.
@@ -51,10 +52,42 @@ impl Curl {
 
     /// l1 and what else is free, each with its weight in what is maximised.
     fn strains(&self, model: &Model, weights: [f64; 3]) -> Vec<Parameter> {
-        let free = [true, self.free.lateral_free, self.free.shear_free];
+        let Across { lateral_free, shear_free } = self.strains.free;
+        let free = [true, lateral_free, shear_free];
         let of = |(rate, weight): ([Vec3; 2], f64)| Parameter { rate, weight, ..Parameter::default() };
         let all = self.rates(model).into_iter().zip(weights).map(of);
         all.zip(free).filter(|(_, free)| *free).map(|(parameter, _)| parameter).collect()
+    }
+
+    /// The lattice vectors where all parameters are 0.
+    fn base(&self, model: &Model) -> [Vec3; 2] {
+        let ([_, lateral, shear], RollStrains { l2, shear: gamma, .. }) = (self.rates(model), self.strains);
+        let written = [model.start.a1, model.start.a2];
+        [0, 1].map(|k| written[k] + lateral[k] * l2 + shear[k] * gamma)
+    }
+
+    /// Strains a state until what is held has its values; gives it with the quadratic programs that took, and `None` where the sheet locks before.
+    fn strained(&self, model: &Model, state: State, cancel: &AtomicBool) -> (Option<State>, u64) {
+        let (u, w) = (self.direction.along(), self.direction.across());
+        let f = state.deformation_gradient(model);
+        let RollStrains { free, l2, shear } = self.strains;
+        let missing = |free: bool, held: f64, now: f64| if free { 0.0 } else { held - now };
+        let wider = missing(free.lateral_free, l2, w.dot(&(f * w)) - 1.0);
+        let leaning = missing(free.shear_free, shear, w.dot(&(f * u)));
+        if wider.abs().max(leaning.abs()) < HELD {
+            return (Some(state), 0);
+        }
+        let [_, lateral, turned] = self.rates(model);
+        let rate = [0, 1].map(|k| lateral[k] * wider + turned[k] * leaning);
+        let share = Parameter { rate, weight: 1.0, most: Some(1.0), ..Parameter::default() };
+        let parameters: Vec<Parameter> = std::iter::once(share).chain(self.strains(model, [0.0; 3])).collect();
+        let zero = vec![0.0; parameters.len()];
+        let family = LatticeFamily { base: [state.a1, state.a2], parameters, metric: None, roll: state.roll };
+        let program = SheetProgram::new(model, &family);
+        let options = SqpOptions { enough: 1.0 - REACHED, ..SqpOptions::default() };
+        let end = maximize(&program, program.posed(state, zero), Vec::new(), &options, cancel);
+        let there = end.point.p[0] >= 1.0 - HELD && end.violation < FEASIBLE;
+        (there.then_some(end.point.state), end.iterations as u64)
     }
 
     /// How far the sheet is stretched in a state that is not, or so rolled.
@@ -63,14 +96,15 @@ impl Curl {
         let f = state.deformation_gradient(model);
         let curvature = state.roll.map_or(0.0, |roll| self.sign * roll.curvature(&model.reference_inverse));
         let along = u.dot(&(f * u)) - 1.0;
-        let lateral = self.free.lateral_free.then(|| w.dot(&(f * w)) - 1.0);
-        let shear = self.free.shear_free.then(|| w.dot(&(f * u)));
+        let lateral = self.strains.free.lateral_free.then(|| w.dot(&(f * w)) - 1.0);
+        let shear = self.strains.free.shear_free.then(|| w.dot(&(f * u)));
         [Some(curvature), Some(along), lateral, shear].into_iter().flatten().collect()
     }
 
-    /// The written state stretched and pressed, flat, along each strain that is free.
-    pub(super) fn flat_starts(&self, model: &Model, seed: u64, cancel: &AtomicBool) -> Vec<Start> {
-        let mut out = Vec::new();
+    /// The written state, and the same stretched and pressed, flat, along each strain that is free.
+    pub(super) fn usual_starts(&self, model: &Model, seed: u64, cancel: &AtomicBool) -> Vec<Start> {
+        let straight = perturbed(model, &model.start, STRAIGHT, &mut rng(seed, Use::Start, u64::from(u32::MAX)));
+        let mut out = vec![Start::written(straight)];
         for k in 0..3 {
             for sign in [1.0, -1.0] {
                 let mut weights = [0.0; 3];
@@ -83,7 +117,7 @@ impl Curl {
                 let zero = vec![0.0; parameters.len()];
                 let family = LatticeFamily { base, parameters, metric: None, roll: None };
                 let program = SheetProgram::new(model, &family);
-                let mut stream = rng(seed, Use::Start, u64::from(u32::MAX) - 1 - out.len() as u64);
+                let mut stream = rng(seed, Use::Start, u64::from(u32::MAX) - out.len() as u64);
                 let state = perturbed(model, &model.start, STRAIGHT, &mut stream);
                 // Only where it leads to matters.
                 let options = SqpOptions { pause_at: FLAT_PAUSE, ..SqpOptions::default() };
@@ -97,21 +131,25 @@ impl Curl {
 
 /// A flat state is stretched until its steps are shorter than this.
 const FLAT_PAUSE: f64 = 1e-2;
+/// What is to be reached is, where it is short by this share.
+pub(super) const REACHED: f64 = 1e-12;
+/// Strains within this of a value are held at it.
+const HELD: f64 = 1e-9;
 
 impl Target for Curl {
     /// κ first, then l1, and what else is free.
     fn family(&self, model: &Model) -> LatticeFamily {
-        let base = [model.start.a1, model.start.a2];
-        let u = self.direction.along();
+        let (base, u) = (self.base(model), self.direction.along());
+        let written = [model.start.a1, model.start.a2];
         let curvature =
-            Parameter { turn_rad: base.map(|a| self.sign * a.xy().dot(&u)), weight: 1.0, ..Parameter::default() };
+            Parameter { turn_rad: written.map(|a| self.sign * a.xy().dot(&u)), weight: 1.0, ..Parameter::default() };
         let parameters = std::iter::once(curvature).chain(self.strains(model, [0.0; 3])).collect();
         LatticeFamily { base, parameters, metric: None, roll: Some(Roll::flat(u)) }
     }
 
     /// A flat state is brought to where it is rolled about. The first element's place is held, so it is put over the axis: held beside the axis it could
     /// not come nearer to it than it is then.
-    fn enter(&self, model: &Model, start: Start, _: &AtomicBool) -> Entered {
+    fn enter(&self, model: &Model, start: Start, cancel: &AtomicBool) -> Entered {
         let mut state = start.state;
         if state.roll.is_none() {
             let own = |(pose, e): (&Pose, &crate::model::Element)| state.motion_to(e.anchor).back(&pose.position);
@@ -120,12 +158,15 @@ impl Target for Curl {
             let origin = places[0].xy().push(height);
             state.poses.iter_mut().for_each(|pose| pose.position -= origin);
         }
+        let (Some(state), iterations) = self.strained(model, state, cancel) else {
+            return Entered { at: None, iterations: 0 };
+        };
         let p = self.parameters(model, &state);
         let family = self.family(model);
         // A state of another direction has other images.
         let linked = || links_kept(model, &SheetProgram::new(model, &family).posed(state.clone(), p.clone()).state);
         let kept = state.roll.is_none() || linked();
-        Entered { at: kept.then_some((state, p)), iterations: 0 }
+        Entered { at: kept.then_some((state, p)), iterations }
     }
 
     fn start(&self, solution: &LocalSolution) -> Start {
@@ -139,9 +180,7 @@ pub(crate) fn tightest_roll(models: &[Model], target: Curl, options: &ExtremeOpt
     let model = &models[0];
     let search = Multistart { target: &target, upper_bound: f64::INFINITY, seed: options.seed, cancel };
     let stop = StopRule::of(options.effort, options.starts);
-    let straight = perturbed(model, &model.start, STRAIGHT, &mut rng(options.seed, Use::Start, u64::from(u32::MAX)));
-    let flat = target.flat_starts(model, options.seed, cancel);
-    let given = std::iter::once(Start::written(straight)).chain(flat).collect();
+    let given = target.usual_starts(model, options.seed, cancel);
     let first = search.run(model, given, stop);
     in_larger_cells(&search, models, first, stop.of_larger_cell(false))
 }
@@ -261,7 +300,8 @@ mod tests {
             let model = model(name);
             for (direction_deg, lateral_free) in [(0.0, false), (35.0, false), (90.0, true)] {
                 let free = Across { lateral_free, shear_free: lateral_free };
-                let curl = Curl { direction: Direction::of_degrees(direction_deg), sign: 1.0, free };
+                let strains = RollStrains::free(free);
+                let curl = Curl { direction: Direction::of_degrees(direction_deg), sign: 1.0, strains };
                 let Some(flat) = stretch(&model, &curl, None, None) else { continue };
                 for (held, within) in [(0.0, 1e-9), (1e-12, 1e-9), (1e-7, 1e-5)] {
                     let rolled = stretch(&model, &curl, Some(held), Some(&flat)).map(|found| found.value());

@@ -41,7 +41,7 @@ pub(crate) fn family_at(
             return Ok((query.family(model), p));
         }
         Goal::Wire { lattice_free } | Goal::Clearance { lattice_free } => lattice_free,
-        Goal::Area { .. } | Goal::Curvature { .. } | Goal::Tube { .. } => {
+        Goal::Area { .. } | Goal::Curvature { .. } | Goal::Rolled { .. } => {
             let help = "ask for a stretch, a strain, the thickest wire or the largest clearance";
             let what = if matches!(question.goal, Goal::Area { .. }) { "the area of a closest cell" } else { "a roll" };
             return Err(InvalidInput::new("goal", format!("{what} has no derivatives yet"), help));

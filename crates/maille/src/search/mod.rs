@@ -16,6 +16,7 @@ mod multistart;
 mod near;
 mod options;
 mod overlap;
+pub(crate) mod rolled;
 mod room;
 mod starts;
 mod stop;
@@ -24,7 +25,6 @@ pub mod strain;
 #[doc(hidden)]
 pub mod stretch;
 mod stretch_lattices;
-pub(crate) mod tube;
 mod unlinked;
 mod waves;
 

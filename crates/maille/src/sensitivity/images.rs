@@ -26,7 +26,7 @@ fn keeps(operation: &Operation, question: &Question) -> bool {
     match question.goal {
         Goal::Stretch { direction_deg, .. } => same_direction(operation.direction_deg(direction_deg), direction_deg),
         Goal::Wire { .. } | Goal::Clearance { .. } => true,
-        Goal::Strain { .. } | Goal::Ray { .. } | Goal::Area { .. } | Goal::Curvature { .. } | Goal::Tube { .. } => {
+        Goal::Strain { .. } | Goal::Ray { .. } | Goal::Area { .. } | Goal::Curvature { .. } | Goal::Rolled { .. } => {
             operation.keeps_deformations()
         }
     }

@@ -1,16 +1,17 @@
-//! The tightest rolls along many directions, both ways.
+//! One question on rolls along many directions, to both sides.
 //!
 //! A roll that a symmetry of the design makes the image of another one is searched from that state alone. Then rolls hand their states on: to
 //! their images, and to the rolls of the same side along the directions beside, until none goes further.
 
 use crate::{
     answer::Answer,
-    lattice::{Across, Cell, Direction},
+    lattice::{Cell, Direction},
     model::{Model, of_cell},
-    question::Sense,
+    question::{Goal, Question, RollStrains, Sense},
     search::{
         ExtremeOptions,
         curl::{Curl, roll_from, tightest_roll},
+        rolled::{Rolled, rolled},
     },
     state::State,
     symmetry::{Image, Operation, operations, same_direction},
@@ -22,16 +23,38 @@ use std::{
 
 /// States are handed on between directions that are at most so far apart, in degrees: farther ones have other links.
 const BESIDE_DEG: f64 = 15.0;
-/// A curvature that is larger by less is the same, in 1/R.
-const SAME_CURVATURE: f64 = 1e-7;
+/// A value that goes further by less is the same, in 1/R or R.
+const SAME: f64 = 1e-7;
 
 /// One roll that is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RollTask {
     /// Direction that is rolled, in degrees.
     pub direction_deg: f64,
-    /// The largest curvature has the axis below the sheet, the least above.
-    pub sense: Sense,
+    /// Whether the axis lies above the written sheet, not below.
+    pub above: bool,
+}
+
+impl RollTask {
+    /// The question of all tasks, asked of this one.
+    pub(crate) fn question(self, of_all: &Question) -> Question {
+        let mut question = of_all.clone();
+        match &mut question.goal {
+            Goal::Curvature { direction_deg, .. } => {
+                *direction_deg = self.direction_deg;
+                question.sense = if self.above { Sense::Least } else { Sense::Largest };
+            }
+            Goal::Rolled { direction_deg, above, .. } => {
+                (*direction_deg, *above) = (self.direction_deg, self.above);
+            }
+            _ => {}
+        }
+        question
+    }
+
+    fn side(self) -> f64 {
+        if self.above { -1.0 } else { 1.0 }
+    }
 }
 
 /// What is known of a roll: its state, and what its search took.
@@ -39,37 +62,31 @@ pub struct RollTask {
 pub struct KnownRoll {
     /// Which roll.
     pub task: RollTask,
-    /// The cell of the state.
-    pub cell: Cell,
-    /// The state.
-    pub state: State,
-    /// κ in 1/R, with its sign; `None` where it is not certified.
-    pub certified: Option<f64>,
+    /// The value of its answer, in R or 1/R, and its state with the cell; `None` where it is not certified.
+    pub certified: Option<(f64, Cell, State)>,
     /// Starts that were searched.
     pub n_starts: Option<u64>,
-    /// Distinct certified curvatures among their ends.
+    /// Distinct certified values among their ends.
     pub n_distinct: Option<u64>,
     /// Estimated chance that another start goes further.
     pub better_chance: Option<f64>,
 }
 
 impl KnownRoll {
-    fn new(task: RollTask, answer: &Answer) -> Option<Self> {
+    fn new(task: RollTask, answer: &Answer) -> Self {
         let Answer { cell, n_starts, n_distinct, better_chance, .. } = *answer;
-        let certified = answer.value.filter(|_| answer.is_limit());
-        let state = answer.value.map(|_| answer.state.clone())?;
-        Some(KnownRoll { task, cell, state, certified, n_starts, n_distinct, better_chance })
-    }
-
-    /// Its curvature in the sense of the roll.
-    fn reach(&self) -> f64 {
-        self.certified.map_or(f64::NEG_INFINITY, |value| self.task.sense.sign() * value)
+        let value = answer.value.filter(|_| answer.is_limit());
+        let certified = value.map(|value| (value, cell, answer.state.clone()));
+        KnownRoll { task, certified, n_starts, n_distinct, better_chance }
     }
 }
 
 /// Whether an operation makes one roll the image of another: turned over, a sheet has the axis on its other side.
-fn leads_to(operation: &Operation, from: RollTask, to: RollTask) -> bool {
-    from.sense.sign() * operation.matrix[(2, 2)] == to.sense.sign()
+fn leads_to(operation: &Operation, from: RollTask, to: RollTask, shear: f64) -> bool {
+    let in_plane = operation.matrix.fixed_view::<2, 2>(0, 0).determinant();
+    // In a mirror the sheet leans the other way.
+    (shear == 0.0 || in_plane > 0.0)
+        && from.side() * operation.matrix[(2, 2)] == to.side()
         && same_direction(operation.direction_deg(from.direction_deg), to.direction_deg)
 }
 
@@ -77,44 +94,65 @@ fn leads_to(operation: &Operation, from: RollTask, to: RollTask) -> bool {
 struct Rolls<'a> {
     models: &'a [Model],
     operations: Vec<Operation>,
-    free: Across,
-    options: &'a ExtremeOptions,
+    question: &'a Question,
+    strains: RollStrains,
     cancel: &'a AtomicBool,
 }
 
 /// See [`crate::Sheet::rolls`].
 pub(crate) fn rolls(
     models: &[Model],
-    (free, options): (Across, &ExtremeOptions),
+    question: &Question,
     tasks: &[RollTask],
     mut known: Vec<KnownRoll>,
     cancel: &AtomicBool,
     finished: &mut dyn FnMut(RollTask, &Answer, f64),
 ) {
-    let rolls = Rolls { models, operations: operations(&models[0]), free, options, cancel };
+    let (Goal::Curvature { strains, .. } | Goal::Rolled { strains, .. }) = question.goal else { return };
+    let rolls = Rolls { models, operations: operations(&models[0]), question, strains, cancel };
     for task in tasks {
         if known.iter().any(|roll| roll.task == *task) {
             continue;
         }
         let begun = Instant::now();
         let image = rolls.images(&known, *task).next().and_then(|(from, start)| rolls.image(from, *task, start));
-        let answer = image.unwrap_or_else(|| tightest_roll(models, rolls.target(*task), options, cancel));
+        let Some(answer) = image.or_else(|| rolls.answer(*task, None)) else { continue };
         if cancel.load(Ordering::Relaxed) {
             return;
         }
         finished(*task, &answer, begun.elapsed().as_secs_f64());
-        known.extend(KnownRoll::new(*task, &answer));
+        known.push(KnownRoll::new(*task, &answer));
     }
     rolls.hand_on(&mut known, finished);
 }
 
 impl Rolls<'_> {
-    fn target(&self, task: RollTask) -> Curl {
-        Curl { direction: Direction::of_degrees(task.direction_deg), sign: task.sense.sign(), free: self.free }
+    /// The answer of a roll: of a search, or of one start alone.
+    fn answer(&self, task: RollTask, start: Option<(Cell, State)>) -> Option<Answer> {
+        let question = task.question(self.question);
+        let Question { effort, starts, seed, .. } = question;
+        let options = ExtremeOptions { lattice_free: true, effort, starts, seed };
+        if let Goal::Rolled { .. } = question.goal {
+            let cell = start.as_ref().map_or(self.models[0].cell, |(cell, _)| *cell);
+            let model = of_cell(self.models, cell);
+            let target = Rolled::new(&model, &question).ok()?;
+            return Some(rolled(&model, target, start.map(|(_, state)| state), &options, self.cancel));
+        }
+        let direction = Direction::of_degrees(task.direction_deg);
+        let curl = Curl { direction, sign: task.side(), strains: self.strains };
+        Some(match start {
+            Some(start) => roll_from(self.models, start, curl, &options, self.cancel),
+            None => tightest_roll(self.models, curl, &options, self.cancel),
+        })
     }
 
-    fn from(&self, start: (Cell, State), task: RollTask) -> Answer {
-        roll_from(self.models, start, self.target(task), self.options, self.cancel)
+    /// The value of a roll, more where it goes further.
+    fn reach(&self, roll: &KnownRoll) -> f64 {
+        let sign = match self.question.goal {
+            Goal::Curvature { .. } => roll.task.side(),
+            _ => self.question.sense.sign(),
+        };
+        roll.certified.as_ref().map_or(f64::NEG_INFINITY, |(value, ..)| sign * value)
     }
 
     /// The states of which the roll `task` is an image, as images: those of certified rolls, the farthest first.
@@ -123,23 +161,24 @@ impl Rolls<'_> {
         known: &'k [KnownRoll],
         task: RollTask,
     ) -> impl Iterator<Item = (&'k KnownRoll, (Cell, State))> {
-        let mut from: Vec<&KnownRoll> = known.iter().filter(|roll| roll.certified.is_some()).collect();
-        from.sort_by(|a, b| b.reach().total_cmp(&a.reach()));
+        let mut from: Vec<&KnownRoll> = known.iter().collect();
+        from.sort_by(|a, b| self.reach(b).total_cmp(&self.reach(a)));
         from.into_iter().filter_map(move |roll| {
-            let operation = self.operations.iter().find(|operation| leads_to(operation, roll.task, task))?;
-            let cell = operation.cell(roll.cell)?;
-            let (here, there) = (of_cell(self.models, roll.cell), of_cell(self.models, cell));
+            let (_, cell, state) = roll.certified.as_ref()?;
+            let operation = self.leading(roll.task, task)?;
+            let image = operation.cell(*cell)?;
+            let (here, there) = (of_cell(self.models, *cell), of_cell(self.models, image));
             let image = Image::new(operation, &here, &there)?;
-            Some((roll, (there.cell, image.state(&roll.state))))
+            Some((roll, (there.cell, image.state(state))))
         })
     }
 
     /// The roll from the image of another one; `None` where it does not come as far.
     fn image(&self, from: &KnownRoll, task: RollTask, start: (Cell, State)) -> Option<Answer> {
-        let answer = self.from(start, task);
-        let reach = KnownRoll::new(task, &answer)?.reach();
+        let answer = self.answer(task, Some(start))?;
+        let reach = self.reach(&KnownRoll::new(task, &answer));
         let KnownRoll { n_starts, n_distinct, better_chance, .. } = *from;
-        (reach > from.reach() - SAME_CURVATURE).then_some(Answer { n_starts, n_distinct, better_chance, ..answer })
+        (reach > self.reach(from) - SAME).then_some(Answer { n_starts, n_distinct, better_chance, ..answer })
     }
 
     /// Tries the states of each roll at its images and beside it until none goes further.
@@ -163,9 +202,8 @@ impl Rolls<'_> {
                     }
                     let Some(start) = self.start(&known[from], &known[to]) else { continue };
                     let task = known[to].task;
-                    let answer = self.from(start, task);
-                    let Some(found) = KnownRoll::new(task, &answer) else { continue };
-                    if found.reach() <= known[to].reach() + SAME_CURVATURE {
+                    let Some(answer) = self.answer(task, Some(start)) else { continue };
+                    if self.reach(&KnownRoll::new(task, &answer)) <= self.reach(&known[to]) + SAME {
                         continue;
                     }
                     let old = &known[to];
@@ -176,9 +214,7 @@ impl Rolls<'_> {
                         ..answer
                     };
                     finished(task, &answer, begun.elapsed().as_secs_f64());
-                    if let Some(found) = KnownRoll::new(task, &answer) {
-                        (known[to], to_hand[to]) = (found, true);
-                    }
+                    (known[to], to_hand[to]) = (KnownRoll::new(task, &answer), true);
                 }
             }
         }
@@ -190,7 +226,7 @@ impl Rolls<'_> {
         let (n, from) = (order.len(), &known[order[place]]);
         let nearest = |step: usize| {
             let others = (1..n).map(|k| order[(place + step * k) % n]);
-            let same_side = |&to: &usize| known[to].task.sense == from.task.sense;
+            let same_side = |&to: &usize| known[to].task.above == from.task.above;
             let apart = |to: usize| {
                 let apart = (known[to].task.direction_deg - from.task.direction_deg).rem_euclid(180.0);
                 apart.min(180.0 - apart)
@@ -205,16 +241,21 @@ impl Rolls<'_> {
     }
 
     fn is_image(&self, from: &KnownRoll, to: &KnownRoll) -> bool {
-        self.operations.iter().any(|operation| leads_to(operation, from.task, to.task))
+        self.leading(from.task, to.task).is_some()
+    }
+
+    /// The first operation that makes one roll the image of another.
+    fn leading(&self, from: RollTask, to: RollTask) -> Option<&Operation> {
+        self.operations.iter().find(|operation| leads_to(operation, from, to, self.strains.shear))
     }
 
     /// The state of one roll as a start of another one: its image where it is one, and goes further.
     fn start(&self, from: &KnownRoll, to: &KnownRoll) -> Option<(Cell, State)> {
-        from.certified?;
+        let (_, cell, state) = from.certified.as_ref()?;
         if !self.is_image(from, to) {
-            return Some((from.cell, from.state.clone()));
+            return Some((*cell, state.clone()));
         }
-        let further = from.reach() > to.reach() + SAME_CURVATURE;
+        let further = self.reach(from) > self.reach(to) + SAME;
         let image = self.images(std::slice::from_ref(from), to.task).next();
         image.filter(|_| further).map(|(_, start)| start)
     }

@@ -1,10 +1,10 @@
 //! What closed tubes of a design, built in or in a file, have: gaps, radii and lengths.
 //!
-//!     cargo run --release -p maille --example one_tube -- [DESIGN] [DIRECTION_DEG] [CELLS]
+//!     cargo run --release -p maille --example one_rolled -- [DESIGN] [DIRECTION_DEG] [CELLS]
 
 use maille::{
     Cell, Question, Sheet,
-    question::{Goal, OfTube, Sense},
+    question::{Goal, OfRolled, RollStrains, Sense, Turn},
 };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -15,15 +15,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let design = maille_io::read_design(&name, maille_io::builtin(&name).ok_or("no such design")?)?;
     let sheet = Sheet::in_cells(&design, Cell::PRIMITIVE.into()).map_err(|p| format!("{name}: {}", p[0]))?;
     for (sought, sense) in [
-        (OfTube::Gap, Sense::Largest),
-        (OfTube::Radius, Sense::Least),
-        (OfTube::Radius, Sense::Largest),
-        (OfTube::Length, Sense::Least),
-        (OfTube::Length, Sense::Largest),
+        (OfRolled::Gap, Sense::Largest),
+        (OfRolled::Radius, Sense::Least),
+        (OfRolled::Radius, Sense::Largest),
+        (OfRolled::Length, Sense::Least),
+        (OfRolled::Length, Sense::Largest),
     ] {
         for above in [false, true] {
             let begun = std::time::Instant::now();
-            let goal = Goal::Tube { direction_deg, above, cells, sought };
+            let (turn, strains) = (Turn::Cells(cells), RollStrains::OF_TUBE);
+            let goal = Goal::Rolled { direction_deg, above, turn, strains, sought };
             let answer =
                 sheet.answer(&Question { effort: maille::question::Effort::Low, ..Question::new(goal, sense) })?;
             let radius = answer.state.neutral_surface_of(&sheet.model_of(&answer)).map(|n| n.radius);
