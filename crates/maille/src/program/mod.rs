@@ -332,8 +332,10 @@ impl Program for SheetProgram<'_> {
         if !flat.iter().any(|near| loads.carries(pair_key(&near.pair))) {
             return None;
         }
-        let mut rows = self.rows(x, band, Derivatives::First);
-        rows.retain(|row| !self.flat.contains(&row.key) && loads.of(row) != 0.0);
+        let rows = self.rows(x, band, Derivatives::First);
+        let carried = loads.of(&rows);
+        let carries = rows.into_iter().zip(carried).filter(|(row, mu)| *mu != 0.0 && !self.flat.contains(&row.key));
+        let mut rows: Vec<Row> = carries.map(|(row, _)| row).collect();
         let turns = self.all_turns(&x.state);
         let factored = self.pull.factored(&x.p);
         for near in flat.into_iter().filter(|near| loads.carries(pair_key(&near.pair))) {

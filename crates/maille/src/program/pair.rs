@@ -195,7 +195,7 @@ impl SheetProgram<'_> {
         let frame = self.frame(x, near);
         let required = self.required(x, near.touching);
         let loaded = |angle: f64, minimum: bool| match derivatives {
-            Derivatives::Second(loads) => loads.at(key, angle, minimum) != 0.0,
+            Derivatives::Second(loads) => loads.may_load(key, angle, minimum),
             _ => false,
         };
         let mut add = |angle: f64, minimum: bool, distance: f64, grad: &Grad, hess: Option<&Hess>| {

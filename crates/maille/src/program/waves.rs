@@ -108,7 +108,7 @@ impl SheetProgram<'_> {
             let mut rows = Vec::new();
             self.pair_rows(x, near, BAND, &local, Derivatives::Second(loads), &mut rows);
             let (mut hessian, mut gradients) = (Hess::zeros(), Vec::new());
-            let carried = rows.iter().map(|row| (row, loads.of(row))).filter(|(_, mu)| mu.abs() > CARRIED);
+            let carried = rows.iter().zip(loads.of(&rows)).filter(|(_, mu)| mu.abs() > CARRIED);
             for (row, mu) in carried {
                 hessian -= Hess::from_row_slice(&row.hessian) * mu;
                 if mu > LOADED || spread.is_some() {

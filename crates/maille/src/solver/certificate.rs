@@ -78,7 +78,7 @@ impl Certificate {
 
 /// Indices of the rows that `loads` name, with their multipliers.
 pub(super) fn matched(rows: &[Row], loads: &Loads) -> Vec<(usize, f64)> {
-    rows.iter().enumerate().map(|(k, r)| (k, loads.of(r))).filter(|(_, mu)| *mu != 0.0).collect()
+    loads.of(rows).into_iter().enumerate().filter(|(_, mu)| *mu != 0.0).collect()
 }
 
 pub(super) fn labelled(rows: &[Row], multipliers: &[f64]) -> Vec<Multiplier> {

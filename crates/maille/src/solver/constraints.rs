@@ -83,25 +83,39 @@ impl Loads {
         of_key.into_iter().any(|m| m.value > 0.0)
     }
 
-    /// Multiplier of `row`: that of the nearest angle under the same key, or 0.
-    pub fn of(&self, row: &Row) -> f64 {
-        self.at(row.key, row.angle, row.minimum)
+    /// The multiplier of each of `rows`: that of the nearest angle under the same key, or 0. Of two rows that are near to one multiplier, as two minima
+    /// of a pair are before they merge, the nearer one has it.
+    pub fn of(&self, rows: &[Row]) -> Vec<f64> {
+        let nearest: Vec<_> = rows.iter().map(|row| self.nearest(row.key, row.angle, row.minimum)).collect();
+        let mut out = vec![0.0; rows.len()];
+        let mut order: Vec<(usize, f64, usize)> =
+            nearest.iter().enumerate().filter_map(|(row, found)| found.map(|(k, apart)| (k, apart, row))).collect();
+        order.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        for of_one in order.chunk_by(|a, b| a.0 == b.0) {
+            let (k, _, row) = of_one[0];
+            out[row] = self.sorted[k].value;
+        }
+        out
     }
 
-    /// [`Self::of`] the row with this key, angle and kind.
-    pub(crate) fn at(&self, key: u64, angle: f64, minimum: bool) -> f64 {
+    /// Whether a row with this key, angle and kind may have a multiplier that is not 0.
+    pub(crate) fn may_load(&self, key: u64, angle: f64, minimum: bool) -> bool {
+        self.nearest(key, angle, minimum).is_some_and(|(k, _)| self.sorted[k].value != 0.0)
+    }
+
+    /// The place of the nearest multiplier, and how far its angle is.
+    fn nearest(&self, key: u64, angle: f64, minimum: bool) -> Option<(usize, f64)> {
         let apart = |m: &Multiplier| {
             let turn = (m.angle - angle).rem_euclid(std::f64::consts::TAU);
             turn.min(std::f64::consts::TAU - turn)
         };
-        self.sorted[self.sorted.partition_point(|m| m.key < key)..]
-            .iter()
-            .take_while(|m| m.key == key)
-            .filter(|m| m.minimum == minimum)
-            .map(|m| (apart(m), m.value))
-            .filter(|(apart, _)| *apart < if minimum { 0.4 } else { 0.05 })
-            .min_by(|a, b| a.0.total_cmp(&b.0))
-            .map_or(0.0, |(_, value)| value)
+        let first = self.sorted.partition_point(|m| m.key < key);
+        let of_key = self.sorted[first..].iter().enumerate().take_while(|(_, m)| m.key == key);
+        of_key
+            .filter(|(_, m)| m.minimum == minimum)
+            .map(|(k, m)| (first + k, apart(m)))
+            .filter(|(_, apart)| *apart < if minimum { 0.4 } else { 0.05 })
+            .min_by(|a, b| a.1.total_cmp(&b.1))
     }
 }
 
@@ -121,4 +135,21 @@ pub(crate) fn lagrangian_hessian<'r>(
         h.add(&row.columns, |p, q| -mu * row.hessian[p * k + q]);
     }
     h
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two minima of a pair that are about to merge: the force of one is not that of the other, too.
+    #[test]
+    fn of_two_rows_near_one_multiplier_the_nearer_has_it() {
+        let row = |key, angle| Row { minimum: true, ..Row::value(key, angle, 0.0) };
+        let known = |key, angle, value| Multiplier { key, angle, minimum: true, value };
+        let rows = [row(7, -1.37), row(7, -1.67), row(8, 3.1), row(9, 0.0)];
+        let of = |known: &[Multiplier]| Loads::new(known).of(&rows);
+        assert_eq!(of(&[known(7, -1.36, 0.5), known(8, -3.1, 2.0)]), [0.5, 0.0, 2.0, 0.0]);
+        assert_eq!(of(&[known(7, -1.36, 0.5), known(7, -1.7, -0.1)]), [0.5, -0.1, 0.0, 0.0]);
+        assert_eq!(of(&[known(7, -1.6, 0.5), known(9, 0.5, 1.0)]), [0.0, 0.5, 0.0, 0.0]);
+    }
 }

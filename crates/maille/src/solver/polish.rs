@@ -122,9 +122,9 @@ fn polished<P: Program>(
         // Change of the active set: take in what is violated, or let the most negative multiplier go.
         let before = active.len();
         let rows = program.rows(&x, BAND, Derivatives::None);
-        let loads = Loads::new(&active);
-        let violated = rows.iter().filter(|r| r.gap < -GAP_TOLERANCE && loads.of(r) == 0.0);
-        let taken_in: Vec<Multiplier> = violated.map(|row| row.multiplier(1e-300)).collect();
+        let loads = Loads::new(&active).of(&rows);
+        let violated = rows.iter().zip(loads).filter(|(r, mu)| r.gap < -GAP_TOLERANCE && *mu == 0.0);
+        let taken_in: Vec<Multiplier> = violated.map(|(row, _)| row.multiplier(1e-300)).collect();
         active.extend(taken_in);
         if active.len() > before {
             taken = Some(figures);
@@ -183,8 +183,7 @@ fn cleared<P: Program>(program: &P, x: &P::Point, active: &[Multiplier]) -> Opti
     let worst = violation(&program.rows(x, 0.0, Derivatives::None));
     let mut rows = program.rows(x, BAND + 4.0 * worst, Derivatives::First);
     let n = program.objective().len();
-    let loads = Loads::new(active);
-    let loads: Vec<f64> = rows.iter().map(|row| loads.of(row)).collect();
+    let loads = Loads::new(active).of(&rows);
     let metric = stiff_where_loaded(n, &rows, &loads);
     let most = MOST.min(MOST_STEP / worst);
     rows.retain_mut(|row| {

@@ -221,7 +221,7 @@ pub(crate) fn maximize<P: Program>(
         }
         end.iterations += 1;
         // Quadratic model: the Hessian of the Lagrangian, made positive definite; the constraints linearised, elastic.
-        let known: Vec<f64> = rows.iter().map(|row| loads.of(row)).collect();
+        let known = loads.of(&rows);
         let h = convexified(lagrangian_hessian(n, &rows, &known, &[]), &rows, &known, curvature_shift);
         let (step, multipliers, elastic_residual) = elastic_program(&rows, &h, &descent, penalty, radius);
         let size = step.iter().fold(0.0f64, |a, s| a.max(s.abs()));
