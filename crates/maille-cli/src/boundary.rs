@@ -2,7 +2,7 @@
 
 use crate::{
     effort::SearchArgs,
-    exit,
+    exit::{self, wrong},
     input::{DesignArgs, Input, file_name},
     interrupt,
     map::{RunArgs, pool},
@@ -84,6 +84,10 @@ pub struct Args {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let input = args.design.read()?;
+    if input.design.lattice.single {
+        let problem = format!("{} is a chain: it has a length, and no surface of strains", input.design.name);
+        return Err(wrong(exit::USAGE, problem, "ask for its limit along a1, as: maille characterize NAME"));
+    }
     let options = BoundaryOptions {
         tolerance: args.tolerance,
         most: args.vertices as usize,

@@ -14,6 +14,7 @@ use crate::{
 };
 use clap::builder::PossibleValue;
 use maille::{
+    design::Design,
     error::InvalidInput,
     lattice::Across,
     record::{LimitRow, Status},
@@ -56,10 +57,10 @@ not found (0 with --allow-incomplete; 0 where only some of the usual l2 are not 
 pub struct Args {
     #[command(flatten)]
     design: DesignArgs,
-    /// Directions of the pull, degrees counter-clockwise from x: a list, or first:last:step
-    #[arg(long, default_value = "0:180:5", value_parser = parse, allow_hyphen_values = true)]
-    directions: Numbers,
-    /// Stretch - 1 held across the pull: a list, or first:last:step [default: -0.25:0.25:0.125; none with --lateral free]
+    /// Directions of the pull, degrees counter-clockwise from x: a list, or first:last:step [default: 0:180:5; of a chain that of a1]
+    #[arg(long, value_parser = parse, allow_hyphen_values = true)]
+    directions: Option<Numbers>,
+    /// Stretch - 1 held across the pull: a list, or first:last:step [default: -0.25:0.25:0.125; none with --lateral free; 0 of a chain]
     #[arg(long, value_parser = parse_l2, allow_hyphen_values = true)]
     l2: Option<Numbers>,
     /// The width across the pull: held at each --l2, or left to the sheet as in a pull test (exact method)
@@ -198,7 +199,7 @@ enum Held {
 }
 
 /// What is asked.
-fn question(args: &Args) -> Result<MapQuestion, InvalidInput> {
+fn question(args: &Args, design: &Design) -> Result<MapQuestion, InvalidInput> {
     let across = Across { lateral_free: args.lateral == Held::Free, shear_free: args.shear == Held::Free };
     let Args { compression, search, .. } = *args;
     let SearchArgs { effort, seed, .. } = search;
@@ -206,8 +207,11 @@ fn question(args: &Args) -> Result<MapQuestion, InvalidInput> {
         MethodArg::Exact => Method::Exact(ExactOptions { effort, starts: search.starts(), seed, across, compression }),
         MethodArg::Energy => Method::energy(args.energy.options(seed), across, compression)?,
     };
-    let l2 = args.l2.clone().map(|l2| l2.0);
-    MapQuestion::new(method, args.cell.clone(), Some(args.directions.0.clone()), l2)
+    let given = |numbers: &Option<Numbers>| numbers.clone().map(|numbers| numbers.0);
+    let single = |of_chain: f64| design.lattice.single.then(|| vec![of_chain]);
+    let directions_deg = given(&args.directions).or_else(|| single(design.lattice.direction_deg()));
+    let l2 = given(&args.l2).or_else(|| single(0.0).filter(|_| !across.lateral_free));
+    MapQuestion::new(method, args.cell.clone(), directions_deg, l2)
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
@@ -256,8 +260,8 @@ fn once(args: &Args) -> Result<ExitCode> {
         let help = "leave --sensitivities out, or --method energy";
         return Err(wrong(exit::USAGE, "limits of the energy method have no forces, and so no derivatives", help));
     }
-    let question = question(args).map_err(|e| refused(&e))?;
     let input = args.design.read()?;
+    let question = question(args, &input.design).map_err(|e| refused(&e))?;
     let folder = file_name(&input.design.name) + if args.compression { "-compression" } else { "" };
     let out = args.out.clone().unwrap_or_else(|| PathBuf::from("maille-out").join(folder));
     let overwrite = args.run.overwrite || args.watch;

@@ -72,6 +72,8 @@ struct Inspection {
     cell: String,
     a1: [f64; 2],
     a2: [f64; 2],
+    /// Whether a1 is the only lattice vector: a chain.
+    single: bool,
     area: f64,
     angle_deg: f64,
     reference_radius: f64,
@@ -220,6 +222,7 @@ fn inspection(input: &Input, model: &Model, args: &Args) -> Result<Inspection> {
         cell: model.cell.to_string(),
         a1: [a1.x * model.unit, a1.y * model.unit],
         a2: [a2.x * model.unit, a2.y * model.unit],
+        single: model.single,
         area,
         angle_deg: a1.angle(&a2).to_degrees(),
         reference_radius: design.reference_radius,
@@ -269,11 +272,15 @@ fn bounds(model: &Model) -> (Vec<Chain>, Vec<Bound>) {
         length: binding.length * model.unit,
         rings: binding.rings.iter().map(|(ring, shift)| ring_name(model, *ring, *shift)).collect(),
     });
-    let bounds = BOUND_DIRECTIONS.map(|direction_deg| {
+    let directions_deg = match model.single {
+        true => vec![model.start.a1.y.atan2(model.start.a1.x).to_degrees()],
+        false => BOUND_DIRECTIONS.to_vec(),
+    };
+    let bounds = directions_deg.into_iter().map(|direction_deg| {
         let bound = best_bound(&chain, Some(&link), Direction::of_degrees(direction_deg), 0.0);
         Bound { direction_deg, l2: 0.0, l1: bound.l1(), kind: bound.kind().map(|k| k.to_string()) }
     });
-    (chains.collect(), bounds.into())
+    (chains.collect(), bounds.collect())
 }
 
 impl Element {
@@ -314,11 +321,13 @@ impl Inspection {
         };
         line(format!("{}  {}", self.design, self.title).trim_end().into());
         let vector = |v: [f64; 2]| format!("({:.4}, {:.4})", v[0], v[1]);
-        line(format!("cell {}: a1 = {}, a2 = {}{unit}", self.cell, vector(self.a1), vector(self.a2)));
-        line(format!(
-            "area {:.4}{square}, angle {:.2}°, reference radius {}{unit}",
-            self.area, self.angle_deg, self.reference_radius
-        ));
+        let radius = format!("reference radius {}{unit}", self.reference_radius);
+        if self.single {
+            line(format!("a chain: cell {}, a1 = {}{unit}, {radius}", self.cell, vector(self.a1)));
+        } else {
+            line(format!("cell {}: a1 = {}, a2 = {}{unit}", self.cell, vector(self.a1), vector(self.a2)));
+            line(format!("area {:.4}{square}, angle {:.2}°, {radius}", self.area, self.angle_deg));
+        }
         let counts = [(self.elements.len(), "element"), (self.rings, "ring"), (self.links, "link")];
         let [elements, rings, links] = counts.map(|(count, what)| output::counted(count, what));
         line(format!("{elements}, {rings}, {links} per cell\n"));
@@ -336,11 +345,12 @@ impl Inspection {
         }
         let Wire { length, length_per_area, metres_per_square_metre, kilograms_per_square_metre } = &self.wire;
         let per_area = match metres_per_square_metre {
+            _ if self.single => format!("{:.4} times its length", length / self.a1[0].hypot(self.a1[1])),
             Some(metres) => format!("{metres:.1} m per square metre of sheet"),
             None => format!("{length_per_area:.4} per unit of area"),
         };
         line(format!("wire {length:.4}{unit} per cell, {per_area}"));
-        if let Some(weight) = kilograms_per_square_metre {
+        if let Some(weight) = kilograms_per_square_metre.filter(|_| !self.single) {
             line(format!("weight {weight:.3} kg per square metre"));
         }
         for piece in self.piece.iter().chain(&self.piece_of_other_states) {

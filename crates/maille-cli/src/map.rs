@@ -1,7 +1,7 @@
 //! Maps on the command line: from a design as read to the open record, and several side by side.
 
 use crate::{
-    exit,
+    exit::{self, refused},
     input::Input,
     interrupt,
     output::{self, counted},
@@ -42,7 +42,8 @@ impl RunArgs {
 /// Compiles the design and opens the record, with what an earlier run has left there.
 pub fn open(map: &Map, input: &Input) -> Result<OpenMap> {
     let compile = |cell| input.compile(&input.design, cell);
-    let models = map.cells(&input.design).into_iter().map(compile).collect::<Result<_>>()?;
+    let models = map.cells(&input.design).into_iter().map(compile).collect::<Result<Vec<_>>>()?;
+    map.question.suits(&models[0]).map_err(|e| refused(&e))?;
     map.out.as_ref().map_or(Ok(()), |out| output::folder(out, "a record is a folder"))?;
     Ok(map.open(&input.design, models)?)
 }

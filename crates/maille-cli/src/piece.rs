@@ -10,11 +10,13 @@ use miette::Result;
 
 /// Cells that are exported and simulated where nothing is said.
 const USUAL: Tile = Tile([4, 4]);
+/// The same of a chain.
+const USUAL_OF_CHAIN: Tile = Tile([8, 1]);
 
 /// Cells, or a size.
 #[derive(clap::Args)]
 pub struct PieceArgs {
-    /// Cells along a1 and a2 [default: 4x4; of a tube all that go round]
+    /// Cells along a1 and a2 [default: 4x4; of a chain 8x1; of a tube all that go round]
     #[arg(long, value_name = "MxN")]
     tile: Option<Tile>,
     /// In place of --tile, width along a1 and height across it, as 100x100mm, 10x10cm or 4x4in: the whole cells that come nearest,
@@ -32,7 +34,10 @@ impl PieceArgs {
     /// The cells, in words where a size was asked for; `tube` are those of a tube, and `mm` is that of one unit of the file.
     pub fn tile(&self, model: &Model, state: &State, tube: Option<Tile>, mm: f64) -> (Tile, Option<String>) {
         match self.size {
-            None => (self.tile.or(tube).unwrap_or(USUAL), None),
+            None => {
+                let usual = if model.single { USUAL_OF_CHAIN } else { USUAL };
+                (self.tile.or(tube).unwrap_or(usual), None)
+            }
             Some(size) => {
                 let tile = nearest(model, state, mm, size);
                 (tile, Some(words(tile, model, state, mm)))

@@ -59,7 +59,7 @@ Exit codes: 0 every roll is certified, 5 some are not (0 with --allow-incomplete
 pub struct Args {
     #[command(flatten)]
     design: DesignArgs,
-    /// Directions that are rolled, degrees counter-clockwise from x: a list, or first:last:step [default: 0:150:30; of tubes that of a1]
+    /// Directions that are rolled, degrees counter-clockwise from x: a list, or first:last:step [default: 0:150:30; of tubes and of a chain that of a1]
     #[arg(long, value_parser = parse, allow_hyphen_values = true)]
     directions: Option<Numbers>,
     /// Closed tubes in place of the tightest rolls: so many cells along the direction go once round. A list, or first:last:step
@@ -138,7 +138,10 @@ impl Args {
         Ok(RollQuestion {
             directions_deg: self.directions.as_ref().map_or_else(usual, |directions| directions.0.clone()),
             axes,
-            free: Across { lateral_free: free(Free::Width), shear_free: free(Free::Shear) },
+            free: Across {
+                lateral_free: free(Free::Width) || !wrap.is_empty() && !design.lattice.single,
+                shear_free: free(Free::Shear),
+            },
             cells: self.cell.clone(),
             effort: self.effort,
             seed: self.seed,

@@ -187,7 +187,7 @@ fn lattice(groups: usize, kind: Kind, style: &Style, rng: &mut ChaCha8Rng) -> La
         lengths = [groups as f64 * rng.random_range(0.5..1.3), rng.random_range(2.4..4.0)];
     }
     let at = |length: f64, angle: f64| style.vector(Vec3::new(length * angle.cos(), length * angle.sin(), 0.0));
-    LatticeSpec { a1: at(lengths[0], turn_rad), a2: at(lengths[1], turn_rad + angle_rad) }
+    LatticeSpec { a1: at(lengths[0], turn_rad), a2: at(lengths[1], turn_rad + angle_rad), single: false }
 }
 
 /// Adds an element, or a ring with its twin, that overlaps no other and, but for the first, is linked with one.

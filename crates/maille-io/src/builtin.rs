@@ -43,7 +43,9 @@ const DESIGNS: &[Builtin] = embed![
     "japanese-6-in-1",
     "japanese-8-in-2",
     "japanese-12-in-2",
-    "kings-mail";
+    "kings-mail",
+    "cable",
+    "curb";
     "1.1",
     "1.2",
     "2",

@@ -232,7 +232,7 @@ impl Weave {
             minor_radius: Some(minor),
             reference_radius: major,
             allow_initial_overlap: false,
-            lattice: LatticeSpec { a1: lattice[0].map(length), a2: lattice[1].map(length) },
+            lattice: LatticeSpec { a1: lattice[0].map(length), a2: lattice[1].map(length), single: false },
             elements: placed.into_iter().map(element).collect(),
             varied: BTreeMap::new(),
             parameters: Vec::new(),

@@ -38,7 +38,7 @@ pub fn rolls(
     let question = RollQuestion {
         directions_deg: directions.unwrap_or_else(|| RollQuestion::usual_directions(&design.design, !wrap.is_empty())),
         axes,
-        free: Across { lateral_free: width_free, shear_free },
+        free: Across { lateral_free: width_free || !wrap.is_empty() && !design.design.lattice.single, shear_free },
         cells: cell.parse().map_err(|e| error::invalid(&e))?,
         effort: effort.parse().map_err(|e| refused(&e))?,
         seed,

@@ -52,7 +52,7 @@ fn single(name: &str, major: f64, minor: f64, unit: Option<String>) -> Design {
         minor_radius: Some(minor),
         reference_radius: major,
         allow_initial_overlap: false,
-        lattice: LatticeSpec { a1: [SIDE * major, 0.0, 0.0], a2: [0.0, SIDE * major, 0.0] },
+        lattice: LatticeSpec { a1: [SIDE * major, 0.0, 0.0], a2: [0.0, SIDE * major, 0.0], single: false },
         varied: BTreeMap::new(),
         parameters: Vec::new(),
         formulas: BTreeMap::new(),

@@ -85,6 +85,34 @@ pub struct LatticeSpec {
     pub a1: [f64; 3],
     /// Second lattice vector.
     pub a2: [f64; 3],
+    /// Whether a1 is the only one: the design is a chain. a2 then stands across it, so long that chains side by side do not touch.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub single: bool,
+}
+
+/// a2 of a design with a single lattice vector is so many times as long as its elements reach from the line along a1.
+const ASIDE: f64 = 10.0;
+
+impl LatticeSpec {
+    /// That of a chain of these elements along a1, whose rings without a minor radius have `minor_radius`.
+    pub fn single(a1: [f64; 3], elements: &[ElementSpec], minor_radius: Option<f64>) -> Self {
+        let (length, norm) = (a1[0].hypot(a1[1]), |v: [f64; 3]| v[0].hypot(v[1]).hypot(v[2]));
+        let (u, w) = ([a1[0] / length, a1[1] / length], [-a1[1] / length, a1[0] / length]);
+        let across = |c: [f64; 3]| {
+            norm([c[0] - u[0] * (c[0] * u[0] + c[1] * u[1]), c[1] - u[1] * (c[0] * u[0] + c[1] * u[1]), c[2]])
+        };
+        let wire = |ring: &RingSpec| ring.minor_radius.or(minor_radius).unwrap_or(0.0);
+        let reach = elements.iter().flat_map(|e| {
+            e.rings.iter().map(|ring| across(e.center) + norm(ring.offset) + ring.major_radius + wire(ring))
+        });
+        let far = ASIDE * reach.fold(0.0, f64::max).max(f64::MIN_POSITIVE);
+        LatticeSpec { a1, a2: [far * w[0], far * w[1], 0.0], single: true }
+    }
+
+    /// The direction of a1, in degrees.
+    pub fn direction_deg(&self) -> f64 {
+        self.a1[1].atan2(self.a1[0]).to_degrees()
+    }
 }
 
 /// A rigid body made of rings.

@@ -9,6 +9,7 @@ use self::number::{MOST, finite, width, within};
 use crate::{
     error::InvalidInput,
     lattice::{Across, Direction},
+    model::Model,
     program::metric::factor,
 };
 use nalgebra::Matrix2;
@@ -322,6 +323,45 @@ impl Question {
             }
         }
         self.strain_query().map(drop)
+    }
+
+    /// Whether it has a meaning for the sheet of `model`: of a chain only its length and bending along it can be asked.
+    ///
+    /// # Errors
+    /// For a chain: another direction, a width or a shear that is not 0 or that is left free, and the area.
+    pub fn suits(&self, model: &Model) -> Result<(), InvalidInput> {
+        if !model.single {
+            return Ok(());
+        }
+        let along = model.start.a1.xy().normalize();
+        let is_along = |direction_deg: f64| Direction::of_degrees(direction_deg).along().perp(&along).abs() < 1e-9;
+        let right = match &self.goal {
+            Goal::Stretch { direction_deg, l2, across } => {
+                is_along(*direction_deg) && *l2 == 0.0 && *across == Across::HELD
+            }
+            Goal::Curvature { direction_deg, strains } | Goal::Rolled { direction_deg, strains, .. } => {
+                is_along(*direction_deg) && *strains == RollStrains::default()
+            }
+            Goal::Strain { component, direction_deg, fix, free } => {
+                let turn_deg = match component {
+                    Strain::Exx => 0.0,
+                    Strain::Eyy => 90.0,
+                    Strain::Exy => f64::NAN,
+                };
+                is_along(direction_deg + turn_deg) && free.is_empty() && fix.iter().all(|(_, value)| *value == 0.0)
+            }
+            Goal::Ray { .. } | Goal::Area { .. } => false,
+            Goal::Wire { .. } | Goal::Clearance { .. } => true,
+        };
+        match right {
+            true => Ok(()),
+            false => {
+                let direction_deg = along.y.atan2(along.x).to_degrees();
+                let problem = format!("{} is a chain: it has no width and no shear", model.name);
+                let help = format!("ask along {direction_deg}\u{b0}, with nothing free and nothing held but at 0");
+                Err(InvalidInput::new("direction_deg", problem, help))
+            }
+        }
     }
 
     /// The question in the space of Green strains; `None` for goals that are no strains.

@@ -66,9 +66,10 @@ impl Sheet {
     /// Whether a question can be asked of this sheet.
     ///
     /// # Errors
-    /// What [`Question::check`] refuses; a tube that does not close.
+    /// What [`Question::check`] and [`Question::suits`] refuse; a tube that does not close.
     pub fn check(&self, question: &Question) -> Result<(), InvalidInput> {
         question.check()?;
+        question.suits(self.model())?;
         match question.goal {
             Goal::Rolled { .. } => Rolled::new(self.model(), question).map(drop),
             _ => Ok(()),
@@ -115,7 +116,7 @@ impl Sheet {
     }
 
     /// Finds the rolls of `tasks` that are not in `known`, with what `question`, one on a curvature or on a rolled sheet, seeks and holds and with
-    /// its effort; then hands states on between all of them. `finished` gets each roll as it is found, and again where it goes further, with the
+    /// its effort; then hands states on between all of them, and to them from `others`: what else is known of the same turns. `finished` gets each roll as it is found, and again where it goes further, with the
     /// seconds that it took. After `cancel` the rest does not come.
     ///
     /// # Errors
@@ -124,7 +125,7 @@ impl Sheet {
         &self,
         question: &Question,
         tasks: &[RollTask],
-        known: Vec<KnownRoll>,
+        (known, others): (Vec<KnownRoll>, &[KnownRoll]),
         cancel: &AtomicBool,
         finished: &mut dyn FnMut(RollTask, &Answer, f64),
     ) -> Result<(), InvalidInput> {
@@ -132,7 +133,7 @@ impl Sheet {
             return Err(InvalidInput::new("goal", "no roll is asked for", "ask for a curvature, or of a rolled sheet"));
         }
         tasks.iter().try_for_each(|task| self.check(&task.question(question)))?;
-        rolls(&self.models, question, tasks, known, cancel, finished);
+        rolls(&self.models, question, tasks, (known, others), cancel, finished);
         Ok(())
     }
 

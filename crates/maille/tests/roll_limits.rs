@@ -71,7 +71,7 @@ fn rolls_of_a_design_are_images_of_each_other() {
             found.retain(|(other, _)| *other != task);
             found.push((task, answer.value.unwrap()));
         };
-        sheet.rolls(&question, &tasks, Vec::new(), &cancel, &mut keep).unwrap();
+        sheet.rolls(&question, &tasks, (Vec::new(), &[]), &cancel, &mut keep).unwrap();
         assert_eq!(found.len(), tasks.len());
         for direction_deg in directions_deg {
             let of: Vec<f64> =

@@ -98,23 +98,28 @@ impl Reader<'_> {
         let reference_radius = self.required(top, "reference_radius", help).and_then(|(v, p)| self.number(v, &p));
         let allow_initial_overlap = self.optional(top, "allow_initial_overlap", Self::boolean);
         let parameters = self.optional(top, "parameters", Self::parameters);
-        let help = "[lattice] with a1 = [2.5, 0.0, 0.0] and a2 = [0.0, 2.5, 0.0], the translations to the next cells";
+        let help = "[lattice] with a1 = [2.5, 0.0, 0.0] and a2 = [0.0, 2.5, 0.0], the translations to the next cells; a chain has a1 alone";
         let lattice = self.required(top, "lattice", help).and_then(|(v, p)| self.lattice(v, &p));
         let help = "[[elements]] with name, center and rings = [{ major_radius = 1.0, normal = [0.0, 0.0, 1.0] }]";
         let elements = self
             .required(top, "elements", help)
             .and_then(|(v, p)| self.list(v, &p, "write a table [[elements]] for each element", Self::element));
+        let (elements, minor_radius) = (elements?, minor_radius?);
+        let lattice = match lattice? {
+            (a1, Some(a2)) => LatticeSpec { a1, a2, single: false },
+            (a1, None) => LatticeSpec::single(a1, &elements, minor_radius),
+        };
         Some(Design {
             schema: schema?,
             name: name?,
             title: title?.unwrap_or_default(),
             source: source?.unwrap_or_default(),
             unit: unit?,
-            minor_radius: minor_radius?,
+            minor_radius,
             reference_radius: reference_radius?,
             allow_initial_overlap: allow_initial_overlap?.unwrap_or_default(),
-            lattice: lattice?,
-            elements: elements?,
+            lattice,
+            elements,
             varied: BTreeMap::new(),
             parameters: parameters?.unwrap_or_default(),
             formulas: std::mem::take(&mut self.formulas),
@@ -162,11 +167,11 @@ impl Reader<'_> {
         })
     }
 
-    fn lattice(&mut self, value: &Value<'_>, path: &str) -> Option<LatticeSpec> {
-        let at = self.table(value, path, LATTICE, "write [lattice] with a1 and a2")?;
+    fn lattice(&mut self, value: &Value<'_>, path: &str) -> Option<([f64; 3], Option<[f64; 3]>)> {
+        let at = self.table(value, path, LATTICE, "write [lattice] with a1 and a2, or a1 alone for a chain")?;
         let a1 = self.required(&at, "a1", "a1 = [2.5, 0.0, 0.0]").and_then(|(v, p)| self.vector(v, &p));
-        let a2 = self.required(&at, "a2", "a2 = [0.0, 2.5, 0.0]").and_then(|(v, p)| self.vector(v, &p));
-        Some(LatticeSpec { a1: a1?, a2: a2? })
+        let a2 = self.optional(&at, "a2", Self::vector);
+        Some((a1?, a2?))
     }
 
     fn element(&mut self, value: &Value<'_>, path: &str) -> Option<ElementSpec> {

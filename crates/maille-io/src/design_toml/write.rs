@@ -35,7 +35,10 @@ pub fn write_design(design: &Design) -> String {
         design.parameters.iter().for_each(|p| line(format!("{} = {}", p.name, parameter(p))));
     }
     let (a1, a2) = (design.lattice.a1, design.lattice.a2);
-    line(format!("\n[lattice]\na1 = {}\na2 = {}", at.vector("lattice.a1", a1), at.vector("lattice.a2", a2)));
+    line(format!("\n[lattice]\na1 = {}", at.vector("lattice.a1", a1)));
+    if !design.lattice.single {
+        line(format!("a2 = {}", at.vector("lattice.a2", a2)));
+    }
     for (i, element) in design.elements.iter().enumerate() {
         let path = format!("elements[{i}]");
         let center = at.vector(&format!("{path}.center"), element.center);

@@ -41,7 +41,7 @@ pub struct RollQuestion {
     pub directions_deg: Vec<f64>,
     /// On which side the axis is.
     pub axes: Vec<Axis>,
-    /// What is left to the sheet.
+    /// What is left to the sheet. Of tubes the length is, and the shear is held; of a chain that closes, neither is.
     pub free: Across,
     /// Stretch along the axis minus 1 where it is held.
     #[serde(default, skip_serializing_if = "is_zero")]
@@ -156,10 +156,12 @@ impl RollKey {
 }
 
 impl RollQuestion {
-    /// The directions that are rolled where none is named: every 30°; of tubes that of a1.
+    /// The directions that are rolled where none is named: every 30°; of tubes and of a chain that of a1.
     pub fn usual_directions(design: &Design, tubes: bool) -> Vec<f64> {
-        let [x, y, _] = design.lattice.a1;
-        if tubes { vec![y.atan2(x).to_degrees()] } else { (0..6).map(|k| 30.0 * f64::from(k)).collect() }
+        match tubes || design.lattice.single {
+            true => vec![design.lattice.direction_deg()],
+            false => (0..6).map(|k| 30.0 * f64::from(k)).collect(),
+        }
     }
 
     /// What rolls it asks for.
@@ -174,7 +176,7 @@ impl RollQuestion {
     /// What is held of the strains along the axis.
     pub fn strains(&self) -> RollStrains {
         match self.kind() {
-            Kind::Tubes => RollStrains::OF_TUBE,
+            Kind::Tubes if self.free.lateral_free => RollStrains::OF_TUBE,
             _ => RollStrains { free: self.free, l2: self.l2, shear: self.gamma },
         }
     }

@@ -69,12 +69,17 @@ pub fn find_rolls(
 ) -> Result<Vec<Roll>, RollError> {
     let free = question.strains().free;
     let mut failed = None;
-    let mut left = question.rolls();
-    // Those that differ in direction and side alone help each other.
-    while let Some(first) = left.first().copied() {
+    let (mut left, mut again) = (question.rolls(), question.rolls());
+    again.retain(|key| key.sought != Sought::Tightest);
+    // Those that differ in direction and side alone help each other; in a second pass those that differ in what is sought, too.
+    while let Some(first) = left.first().or(again.first()).copied() {
         let alike = |key: &RollKey| key.of_task(first.task()) == first;
-        let (now, later): (Vec<RollKey>, Vec<RollKey>) = left.into_iter().partition(alike);
-        left = later;
+        let second = left.is_empty();
+        let list = if second { &mut again } else { &mut left };
+        let now: Vec<RollKey> = list.extract_if(.., |key| alike(key)).collect();
+        let of_turn = |key: &RollKey| second && (key.wrap, key.at_curvature) == (first.wrap, first.at_curvature);
+        let others = rolls.iter().filter(|roll| of_turn(&roll.key()) && !alike(&roll.key()));
+        let others: Vec<KnownRoll> = others.filter_map(|roll| roll.known(sheet)).collect();
         let tasks: Vec<RollTask> = now.iter().map(|key| key.task()).collect();
         let known = rolls.iter().filter(|roll| alike(&roll.key())).filter_map(|roll| roll.known(sheet)).collect();
         let mut found = |task: RollTask, answer: &Answer, wall_s: f64| {
@@ -90,7 +95,7 @@ pub fn find_rolls(
                 None => rolls.push(roll),
             }
         };
-        sheet.rolls(&question.question(first, sheet.model().unit), &tasks, known, cancel, &mut found)?;
+        sheet.rolls(&question.question(first, sheet.model().unit), &tasks, (known, &others), cancel, &mut found)?;
         if cancel.load(Ordering::Relaxed) {
             break;
         }

@@ -17,6 +17,8 @@ use std::sync::OnceLock;
 const FARTHEST: f64 = 1e4;
 /// Images of an element that are looked for, and cells that it may lie from the first one.
 const MOST_IMAGES: f64 = 1e5;
+/// Rings that overlap by less touch, in R: a limit that is written out does so by rounding.
+const ROUNDING: f64 = 1e-12;
 
 impl Model {
     /// Compiles `design` for `cell`, or returns everything that is wrong with it.
@@ -75,6 +77,7 @@ impl Model {
             name: design.name.clone(),
             cell: Cell::PRIMITIVE,
             periodic,
+            single: design.lattice.single,
             unit,
             origin,
             largest_radius: rings.iter().map(|r| r.major_radius).fold(0.0, f64::max),
@@ -214,7 +217,7 @@ impl Model {
                     format!("the core circles of {} meet in the starting state", names(pair)),
                     "move the elements apart: whether such rings are linked is undefined",
                 ));
-            } else if gap < 0.0 && !design.allow_initial_overlap {
+            } else if gap < -ROUNDING * self.unit && !design.allow_initial_overlap {
                 deep.push((-gap, pair));
             }
         }

@@ -50,6 +50,8 @@ pub struct Model {
     /// Whether the cell has images. A finite sheet has none: the only shift is (0, 0), and its lattice vectors, which
     /// nothing moves, only say where the cells were.
     pub periodic: bool,
+    /// Whether the first lattice vector is the only one: a chain, whose copies aside are too far to touch.
+    pub single: bool,
     /// Length of one unit of the model, in the file's unit: the reference radius R.
     pub unit: f64,
     /// Where the file has the model's origin, in the file's unit: its own origin, or the first element's centre where that

@@ -21,8 +21,8 @@ impl Turn {
                 let help = "give 2 or more cells";
                 Err(InvalidInput::new("cells", format!("{cells} cells do not go round"), help))
             }
-            Turn::Cells(_) if *strains != RollStrains::OF_TUBE => {
-                let problem = "a tube's length is free and its shear is 0, or it would not close";
+            Turn::Cells(_) if strains.free.shear_free || strains.shear != 0.0 => {
+                let problem = "a tube's shear is 0, or it would not close";
                 Err(InvalidInput::new("strains", problem, "take a curvature in place of cells"))
             }
             Turn::Curvature(curvature) if !(curvature.is_finite() && curvature > 0.0) => {

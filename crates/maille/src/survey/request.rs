@@ -3,6 +3,7 @@
 use crate::{
     error::InvalidInput,
     lattice::{Across, Cell},
+    model::Model,
     question::{Goal, Question, Sense},
     record::{LimitRow, StateRecord},
     relaxation::limit::EnergyOptions,
@@ -181,6 +182,14 @@ impl MapQuestion {
         let (first_deg, first_l2) = (self.directions_deg[0], self.l2[0]);
         self.directions_deg.iter().try_for_each(|direction_deg| self.limit(*direction_deg, first_l2).check())?;
         self.l2.iter().try_for_each(|l2| self.limit(first_deg, *l2).check())
+    }
+
+    /// Whether its limits have a meaning for the sheet of `model`: see [`Question::suits`].
+    ///
+    /// # Errors
+    /// Where one of them has none.
+    pub fn suits(&self, model: &Model) -> Result<(), InvalidInput> {
+        self.tasks().into_iter().try_for_each(|task| self.limit(task.direction_deg, task.l2).suits(model))
     }
 
     /// One of its limits as a question by itself.

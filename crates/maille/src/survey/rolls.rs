@@ -104,7 +104,7 @@ pub(crate) fn rolls(
     models: &[Model],
     question: &Question,
     tasks: &[RollTask],
-    mut known: Vec<KnownRoll>,
+    (mut known, others): (Vec<KnownRoll>, &[KnownRoll]),
     cancel: &AtomicBool,
     finished: &mut dyn FnMut(RollTask, &Answer, f64),
 ) {
@@ -122,6 +122,12 @@ pub(crate) fn rolls(
         }
         finished(*task, &answer, begun.elapsed().as_secs_f64());
         known.push(KnownRoll::new(*task, &answer));
+    }
+    for roll in &mut known {
+        let task = roll.task;
+        for (_, cell, state) in others.iter().filter(|other| other.task == task).filter_map(|o| o.certified.as_ref()) {
+            rolls.improve(roll, (*cell, state.clone()), finished);
+        }
     }
     rolls.hand_on(&mut known, finished);
 }
@@ -196,28 +202,37 @@ impl Rolls<'_> {
                     continue;
                 }
                 for to in self.beside(known, &order, place) {
-                    let begun = Instant::now();
-                    if self.cancel.load(Ordering::Relaxed) {
-                        return;
-                    }
                     let Some(start) = self.start(&known[from], &known[to]) else { continue };
-                    let task = known[to].task;
-                    let Some(answer) = self.answer(task, Some(start)) else { continue };
-                    if self.reach(&KnownRoll::new(task, &answer)) <= self.reach(&known[to]) + SAME {
-                        continue;
-                    }
-                    let old = &known[to];
-                    let answer = Answer {
-                        n_starts: old.n_starts.map(|starts| starts + answer.runs),
-                        n_distinct: old.n_distinct.map(|distinct| distinct + 1),
-                        better_chance: old.better_chance,
-                        ..answer
-                    };
-                    finished(task, &answer, begun.elapsed().as_secs_f64());
-                    (known[to], to_hand[to]) = (KnownRoll::new(task, &answer), true);
+                    to_hand[to] |= self.improve(&mut known[to], start, finished);
                 }
             }
         }
+    }
+
+    /// Tries a roll from another state; whether it goes further.
+    fn improve(
+        &self,
+        known: &mut KnownRoll,
+        start: (Cell, State),
+        finished: &mut dyn FnMut(RollTask, &Answer, f64),
+    ) -> bool {
+        if self.cancel.load(Ordering::Relaxed) {
+            return false;
+        }
+        let (begun, task) = (Instant::now(), known.task);
+        let Some(answer) = self.answer(task, Some(start)) else { return false };
+        if self.reach(&KnownRoll::new(task, &answer)) <= self.reach(known) + SAME {
+            return false;
+        }
+        let answer = Answer {
+            n_starts: known.n_starts.map(|starts| starts + answer.runs),
+            n_distinct: known.n_distinct.map(|distinct| distinct + 1),
+            better_chance: known.better_chance,
+            ..answer
+        };
+        finished(task, &answer, begun.elapsed().as_secs_f64());
+        *known = KnownRoll::new(task, &answer);
+        true
     }
 
     /// Rolls to which the roll at `place` of `order` hands its state: on the same side along the nearest direction to the left and to the right, and

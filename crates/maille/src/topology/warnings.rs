@@ -95,7 +95,7 @@ fn loose(model: &Model) -> Option<InvalidInput> {
         |v: &[i32; 2], w: &[i32; 2]| i64::from(v[0]) * i64::from(w[1]) != i64::from(v[1]) * i64::from(w[0]);
     let problem = match vectors.first() {
         None => "no chain of links joins the cells: no pull has a limit".to_owned(),
-        Some(first) if !vectors.iter().any(|v| independent(first, v)) => {
+        Some(first) if !model.single && !vectors.iter().any(|v| independent(first, v)) => {
             let along = model.start.translation(*first);
             let direction_deg = along.y.atan2(along.x).to_degrees().rem_euclid(180.0);
             format!(
