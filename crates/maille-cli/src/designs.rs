@@ -31,6 +31,7 @@ pub fn run(args: &Args) -> Result<()> {
                     "title": d.title,
                     "source": d.source,
                     "unit": d.unit,
+                    "single": d.lattice.single,
                     "elements": d.elements.len(),
                     "rings": rings(d),
                     "minor_radius": d.minor_radius,

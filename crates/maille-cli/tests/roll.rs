@@ -297,6 +297,42 @@ fn sheets_of_given_curvature_and_strains_and_no_planted_fault_passes() {
     assert!(code == 0 && said.contains("20 of 20 certified ones proved"), "{said}");
 }
 
+#[test]
+fn a_chain_has_a_length_and_a_bend_and_no_width() {
+    let dir = tempfile::tempdir().unwrap();
+    let folder = dir.path();
+    for refused in [
+        "roll cable --directions 30",
+        "roll cable --free width",
+        "characterize cable --directions 0,30",
+        "characterize cable --l2=-0.1",
+        "limit cable --maximize eyy",
+        "limit cable --maximize exx --free eyy",
+        "boundary cable",
+    ] {
+        let (code, _, problem) = maille(folder, &format!("{refused} --out r"));
+        assert!(code == 2 && problem.contains("chain"), "{refused}: {code} {problem}");
+    }
+    let (code, said, problem) = maille(folder, "check cable curb");
+    assert!(code == 0 && said.matches(": OK;").count() == 2 && problem.is_empty(), "{said} {problem}");
+    assert_eq!(maille(folder, "characterize cable --out c --quiet").0, 0);
+    assert!(read(folder, "c/limits.csv").contains(",global,"), "{}", read(folder, "c/limits.csv"));
+    assert_eq!(maille(folder, "roll cable --out r --quiet --threads 1").0, 0);
+    assert_eq!(maille(folder, "roll cable --out t --quiet --threads 1 --wrap 4,6 --axis below").0, 0);
+    for record in ["c", "r", "t"] {
+        let (code, said, _) = maille(folder, &format!("verify {record}"));
+        assert!(code == 0 && !said.contains("0 of 0"), "{record}: {said}");
+    }
+    // A piece is eight cells long and one chain wide: 13.2 mm for each cell, and rings of 12.1 mm.
+    assert_eq!(maille(folder, "export cable --out a.stl --quiet").0, 0);
+    let [x, y, z] = sizes(&fs::read(folder.join("a.stl")).unwrap());
+    assert!((x - (7.5 * 13.2 + 12.1)).abs() < 0.3 && (y - z).abs() < 0.3 && y < 12.2, "{x} {y} {z}");
+    // Closed, four cells go round.
+    assert_eq!(maille(folder, "export --from t --at wrap=4,sought=widest --out ring.stl --quiet").0, 0);
+    let [x, y, z] = sizes(&fs::read(folder.join("ring.stl")).unwrap());
+    assert!((x - z).abs() < 1.0 && y < 12.2 && x > 2.0 * 9.5, "{x} {y} {z}");
+}
+
 fn sum(text: &str) -> String {
     Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect()
 }

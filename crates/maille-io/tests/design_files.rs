@@ -108,3 +108,19 @@ fn numbers_and_odd_names_survive_the_round_trip_bit_for_bit() {
     }
     assert_eq!(read_design("written", &write_design(&design)).unwrap(), design);
 }
+
+/// A chain has a1 alone in its file; the second vector stands across it, too far to touch.
+#[test]
+fn a_chain_is_read_and_written_without_a2() {
+    let chain = design("cable");
+    assert!(chain.lattice.single && chain.lattice.a2[0] == 0.0 && chain.lattice.a2[1] > 10.0 * chain.reference_radius);
+    let written = write_design(&chain);
+    assert!(written.contains("a1 = ") && !written.contains("a2"), "{written}");
+    assert_eq!(read_design("written", &written).unwrap(), chain);
+    let turned = written.replace("a1 = [13.2, 0.0, 0.0]", "a1 = [0.0, 13.2, 0.0]");
+    let turned = read_design("turned", &turned).unwrap().lattice;
+    assert!(turned.a2[0] < -10.0 && turned.a2[1] == 0.0 && turned.direction_deg() == 90.0);
+    assert!(!design("1.1").lattice.single);
+    let json = serde_json::to_string(&chain).unwrap();
+    assert_eq!(serde_json::from_str::<Design>(&json).unwrap(), chain);
+}

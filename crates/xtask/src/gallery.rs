@@ -38,7 +38,7 @@ pub fn write(root: &Path, quick: bool, program: Option<&str>) -> Result<(), Stri
     for design in designs["designs"].as_array().ok_or("`maille designs --json` lists no designs")? {
         let begun = Instant::now();
         let name = design["name"].as_str().ok_or("a design has no name")?;
-        let limits = house.show(name)?;
+        let limits = house.show(name, design["single"] == true)?;
         let inspected = house.json(&format!("inspect {name} --json"))?;
         pages.push(Page::of(&inspected, &limits).ok_or_else(|| format!("{name}: the program's JSON lacks a key"))?);
         println!("{name}  {:.1} s", begun.elapsed().as_secs_f64());
@@ -59,13 +59,17 @@ struct House {
 
 impl House {
     /// Solves, draws and plots one design; gives the summary of its limits.
-    fn show(&self, name: &str) -> Result<Value, String> {
+    fn show(&self, name: &str, single: bool) -> Result<Value, String> {
         let record = self.scratch.join(name).to_string_lossy().into_owned();
         let file = |ending: &str| self.folder.join(format!("{name}{ending}")).to_string_lossy().into_owned();
-        let solve = format!("characterize {name} {} --overwrite --json", self.pulls);
+        // A chain is pulled along itself alone.
+        let pulls = if single { "" } else { self.pulls };
+        let solve = format!("characterize {name} {pulls} --overwrite --json");
         let limits = parsed(&self.run(&solve, &["--out", &record])?, &solve)?;
         self.run(&format!("render {name} {RENDER} --quiet --overwrite"), &["--out", &file(".png")])?;
-        self.run(&format!("plot {PLOT} --overwrite"), &[&record, "--output", &file("-polar.png")])?;
+        if !single {
+            self.run(&format!("plot {PLOT} --overwrite"), &[&record, "--output", &file("-polar.png")])?;
+        }
         Ok(limits)
     }
 
@@ -121,16 +125,23 @@ impl Page {
             limits["statuses"]["global"].as_u64().unwrap_or(0),
             of_l2.iter().map(|entry| entry["asked"].as_u64()).sum::<Option<u64>>()?,
         );
-        let wire = match inspected["wire"]["metres_per_square_metre"].as_f64() {
+        let single = inspected["single"] == true;
+        let wire = match inspected["wire"]["metres_per_square_metre"].as_f64().filter(|_| !single) {
             Some(metres) => format!("wire {wire:.1} {unit} per cell, {metres:.0} m per square metre"),
             None => format!("wire {wire:.2} per cell"),
         };
         let gap = format!("{gap:.4} {unit}");
+        let pictures = match single {
+            true => format!("![{name}, a piece of the chain]({name}.png)\n"),
+            false => format!(
+                "| start | limits |\n| --- | --- |\n\
+                | ![{name}, a patch of the sheet]({name}.png) | ![{name}, largest stretch in each direction]({name}-polar.png) |\n"
+            ),
+        };
         let section = format!(
             "\n## {name} {title}\n\n\
             {rings} rings and {links} links per cell; smallest gap {}; {wire}.\n\n\
-            | start | limits |\n| --- | --- |\n\
-            | ![{name}, a patch of the sheet]({name}.png) | ![{name}, largest stretch in each direction]({name}-polar.png) |\n",
+            {pictures}",
             gap.trim_end(),
         );
         Some(Page { line, section })

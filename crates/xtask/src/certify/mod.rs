@@ -205,7 +205,8 @@ impl House {
                 .zip(design["reference_radius"].as_f64())
                 .map(|((name, radius), reference)| (name, radius, reference))
                 .ok_or("a built-in design has no name or no radius")?;
-            if quick && !QUICK_DESIGNS.contains(&name) {
+            // A chain is pulled along itself alone.
+            if design["single"] == true || quick && !QUICK_DESIGNS.contains(&name) {
                 continue;
             }
             // Designs of the thesis have two radii: R/10 and R/20.
