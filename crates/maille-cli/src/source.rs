@@ -394,7 +394,10 @@ impl Source {
         roll.wrap?;
         let whole = |k: usize| (turns[k] * around(turns[k]) - 1.0).abs() < 1e-9;
         match turns.map(|turn| turn > 1e-9) {
-            [true, false] if whole(0) => Some(Tile([around(turns[0]) as u32, TUBE_LENGTH])),
+            [true, false] if whole(0) => {
+                let long = if self.model.single { 1 } else { TUBE_LENGTH };
+                Some(Tile([around(turns[0]) as u32, long]))
+            }
             [false, true] if whole(1) => Some(Tile([TUBE_LENGTH, around(turns[1]) as u32])),
             _ => None,
         }

@@ -310,7 +310,7 @@ fn a_chain_has_a_length_and_a_bend_and_no_width() {
         "limit cable --maximize exx --free eyy",
         "boundary cable",
     ] {
-        let (code, _, problem) = maille(folder, &format!("{refused} --out r"));
+        let (code, _, problem) = maille(folder, refused);
         assert!(code == 2 && problem.contains("chain"), "{refused}: {code} {problem}");
     }
     let (code, said, problem) = maille(folder, "check cable curb");
