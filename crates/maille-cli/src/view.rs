@@ -11,7 +11,7 @@ use std::path::PathBuf;
 /// Starts a server that only this machine can reach, and opens its page: the sheet in 3D beside its limit map. Wire,
 /// spacing, width and the parameters of the file are dragged and solved anew as `characterize` does; designs are drawn,
 /// edited, checked and exported.
-/// Records, simulations and sweeps are opened without solving; the page lists those in maille-out, and compares any two.
+/// Records, simulations, rolls and sweeps are opened without solving; the page lists those in maille-out, and compares any two.
 /// Ctrl-C ends it.
 #[derive(clap::Args)]
 #[command(after_help = "\
@@ -21,6 +21,7 @@ Examples:
   maille view my-weave.toml --set play=1.1  the same with another value for one of its parameters
   maille view maille-out/1.1               a record: its limits, with nothing solved
   maille view maille-out/1.1-simulate      a simulation: its states and its forces
+  maille view maille-out/1.1-roll          rolls: a piece of the sheet in each state
   maille view maille-out/radius            a sweep: its first record, and a list of the others
   maille view 3.1 --no-open --port 8080    prints the address alone
   maille view 1.1 --bundle 1.1.html        one file that opens without a server, to send or to publish
@@ -29,7 +30,7 @@ Examples:
 The viewer is built with the program by `cargo xtask view`, which needs Node.js.")]
 pub struct Args {
     /// A built-in design (see `maille designs`), a TOML file, - for standard input, or the folder of a record, a
-    /// simulation or a sweep
+    /// simulation, rolls or a sweep
     #[arg(default_value = "1.1")]
     design: String,
     /// A value for a parameter of the design's file, that its slider begins with, as radius=5.0; several with commas
@@ -116,8 +117,8 @@ mod with_viewer {
                 return Err(wrong(exit::USAGE, format!("--set is for designs, and {what} is a folder"), help));
             }
             let none = || {
-                let help = "give a folder that `maille characterize`, `maille simulate` or `maille sweep` wrote";
-                wrong(exit::RECORD, format!("{what} holds no record, no simulation and no sweep"), help)
+                let help = "give a folder that `maille characterize`, `maille simulate`, `maille roll` or `maille sweep` wrote";
+                wrong(exit::RECORD, format!("{what} holds no record, no simulation, no rolls and no sweep"), help)
             };
             return Opened::folder(what, path)?.ok_or_else(none);
         }

@@ -68,7 +68,7 @@ pub struct Shown {
     pub simulation: Option<ShownSimulation>,
 }
 
-/// A finite sheet that was simulated.
+/// A finite sheet that was simulated, or a piece of a sheet that was rolled.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct ShownSimulation {
     /// Its folder.
@@ -98,6 +98,8 @@ pub struct Frame {
     pub stretch: Option<f64>,
     /// Mean force along the pull, in the unit of weights.
     pub mean_force: Option<f64>,
+    /// Which roll it is, where it is no state of a simulation.
+    pub roll: Option<String>,
     /// Poses of the elements.
     pub poses: Vec<PoseRecord>,
 }

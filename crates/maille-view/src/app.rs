@@ -5,7 +5,7 @@ use crate::{
     error::ViewError,
     records::{self, Opened, Recorded, USUAL},
     refusal::Refusal,
-    sheet, simulated,
+    rolled, sheet, simulated,
     work::Work,
 };
 use maille_io::{
@@ -92,6 +92,7 @@ fn shown(opened: &Opened) -> Result<Shown, Refusal> {
     match &opened.record {
         Some((name, Recorded::Limits(record))) => map = Some(sheet::shown_map(name.clone(), record)?),
         Some((name, Recorded::Simulation(files))) => simulation = Some(simulated::shown(name.clone(), files)?),
+        Some((name, Recorded::Rolls(rolls))) => simulation = Some(rolled::shown(name.clone(), &rolls.0, &rolls.1)?),
         None => {}
     }
     Ok(Shown {

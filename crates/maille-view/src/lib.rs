@@ -13,6 +13,7 @@ mod guard;
 mod new_design;
 mod records;
 mod refusal;
+mod rolled;
 mod routes;
 mod save;
 mod sheet;

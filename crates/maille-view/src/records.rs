@@ -1,8 +1,9 @@
-//! Folders that the page may open: records of limits and of simulations, alone or in the folder of a sweep.
+//! Folders that the page may open: records of limits, simulations and rolls, alone or in the folder of a sweep.
 
 use crate::api::Listed;
 use maille_io::{
     record::{Record, RecordError, SIMULATION, SimulationFiles, open_simulation},
+    roll::{ROLL, Roll, RollRecordFile, open_rolls},
     write_design,
 };
 use std::{
@@ -39,20 +40,24 @@ pub enum Recorded {
     Limits(Box<Record>),
     /// States of a finite sheet.
     Simulation(Box<SimulationFiles>),
+    /// Rolls.
+    Rolls(Box<(RollRecordFile, Vec<Roll>)>),
 }
 
 impl Opened {
-    /// Opens a record, a simulation, or the first record of a sweep; `name` is what the page shows. None where the folder
+    /// Opens a record, a simulation, rolls, or the first record of a sweep; `name` is what the page shows. None where the folder
     /// holds none of them.
     pub fn folder(name: &str, path: &Path) -> Result<Option<Self>, RecordError> {
         let Some((name, path)) = within(name.to_owned(), path.to_owned()).into_iter().next() else { return Ok(None) };
         let recorded = match holds(&path) {
             Some("limits") => Recorded::Limits(Box::new(Record::read(&path)?)),
+            Some("rolls") => Recorded::Rolls(Box::new(open_rolls(&path)?)),
             _ => Recorded::Simulation(Box::new(open_simulation(&path)?)),
         };
         let text = match &recorded {
             Recorded::Limits(record) => write_design(&record.run.design),
             Recorded::Simulation(files) => write_design(&files.record.design),
+            Recorded::Rolls(rolls) => write_design(&rolls.0.design),
         };
         Ok(Some(Opened {
             name: name.clone(),
@@ -96,7 +101,11 @@ fn within(name: String, path: PathBuf) -> Vec<(String, PathBuf)> {
 /// What kind of record the folder is.
 fn holds(path: &Path) -> Option<&'static str> {
     let has = |file: &str| path.join(file).is_file();
-    if has(RUN) { Some("limits") } else { has(SIMULATION[0]).then_some("simulation") }
+    match () {
+        () if has(RUN) => Some("limits"),
+        () if has(ROLL) => Some("rolls"),
+        () => has(SIMULATION[0]).then_some("simulation"),
+    }
 }
 
 /// Folders of a folder, by name.

@@ -42,6 +42,7 @@ pub fn shown(source: String, files: &SimulationFiles) -> Result<ShownSimulation,
             energy: frames[number].energy,
             stretch: of_row(|row| row.stretch),
             mean_force: of_row(|row| row.mean_force),
+            roll: None,
             poses: frames[number].poses.clone(),
         }
     };

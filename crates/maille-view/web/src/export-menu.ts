@@ -60,14 +60,16 @@ export class ExportMenu {
       rows: format === "csv" || format === "svg" ? this.rows() : [],
     };
     const of = limit ? `_dir${limit.row.direction_deg}_l2_${limit.row.l2}` : "";
-    const place = frames ? `-simulate_frame${frames.at(t).number}` : of;
+    const shown = frames?.at(t);
+    const rolled = shown && shown.roll !== null;
+    const place = shown ? (rolled ? `-roll_${shown.number + 1}` : `-simulate_frame${shown.number}`) : of;
     const name = (a.own?.name ?? "sheet").replace(/[^\w.-]/g, "_");
     this.said.textContent = "writing …";
     try {
       const url = URL.createObjectURL(await api.exported(request));
       h("a", { href: url, download: `${name}${place}.${format}` }).click();
       setTimeout(() => URL.revokeObjectURL(url), KEEP_MS);
-      const what = frames ? `frame ${frames.at(t).number} is` : limit ? "the locked state is" : "the start is";
+      const what = rolled ? "the roll is" : shown ? `frame ${shown.number} is` : limit ? "the locked state is" : "the start is";
       this.said.textContent = format === "csv" || format === "svg" ? "the limits are written" : `${what} written`;
     } catch (error) {
       const refused = error instanceof api.Refusal ? error.refused : { problem: String(error), help: "" };

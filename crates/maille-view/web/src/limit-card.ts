@@ -67,8 +67,9 @@ function differenceOfLimits(a: Side, b: Side): [string, string][] {
 }
 
 function differenceOfFrames(first: Frame, second: Frame): [string, string][] {
-  const out: [string, string][] = [["share of the pull", `${signed(100 * (second.share - first.share), 2)} %`]];
   const both = (x: number | null, y: number | null) => (x === null || y === null ? "–" : signed(y - x, 6));
+  if (first.roll !== null || second.roll !== null) return [["stretch", both(first.stretch, second.stretch)]];
+  const out: [string, string][] = [["share of the pull", `${signed(100 * (second.share - first.share), 2)} %`]];
   out.push(["stretch", both(first.stretch, second.stretch)]);
   out.push(["mean force", both(first.mean_force, second.mean_force)]);
   out.push(["energy, β R²", both(first.energy, second.energy)]);
@@ -83,9 +84,10 @@ const ENDS: Record<End, string> = {
 };
 
 function frameEntry(name: string, frames: Frames, t: number): HTMLElement {
-  const { share, stretch, mean_force, energy } = frames.at(t);
+  const { share, stretch, mean_force, energy, roll } = frames.at(t);
   const { end, note } = frames.simulation;
   const value = (x: number | null, digits: number) => (x === null ? "–" : short(x, digits));
+  if (roll !== null) return card(`${name}${roll}`, [["stretch along the direction", value(stretch, 6)]]);
   const facts: [string, string][] = [
     ["stretch between the pulled places", value(stretch, 6)],
     ["mean force on a pulled element", value(mean_force, 6)],

@@ -68,7 +68,8 @@ export class PlotCard {
   }
 
   private get simulated(): Side[] {
-    return this.sides.filter((side) => side.frames);
+    // Rolls follow no course.
+    return this.sides.filter((side) => side.frames?.simulation.frames[0]?.roll === null);
   }
 
   draw(): void {

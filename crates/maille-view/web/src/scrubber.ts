@@ -55,6 +55,7 @@ export class Scrubber {
 }
 
 function frameWords(frames: Frames, t: number): string {
-  const { number, share } = frames.at(t);
+  const { number, share, roll } = frames.at(t);
+  if (roll !== null) return `${number + 1} of ${frames.simulation.total}: ${roll}`;
   return `frame ${number} (the last is ${frames.simulation.total - 1}), ${short(100 * share, 1)} % of the pull`;
 }

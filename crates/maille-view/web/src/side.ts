@@ -307,7 +307,10 @@ export class Side {
   /** The command that gives the chosen number. */
   get command(): string {
     const quoted = (text: string) => (/[^\w./+-]/.test(text) ? `'${text}'` : text);
-    if (this.frames) return `maille plot ${quoted(this.name)} --kind force`;
+    if (this.frames) {
+      const pulled = this.frames.simulation.frames[0]?.roll === null;
+      return pulled ? `maille plot ${quoted(this.name)} --kind force` : `maille table ${quoted(this.name)}`;
+    }
     if (this.source !== null) {
       const place = this.choice ? ` --where 'direction_deg=${this.choice.direction},l2=${this.choice.l2}'` : "";
       return `maille table ${quoted(this.source)}${place}`;

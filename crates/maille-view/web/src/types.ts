@@ -81,6 +81,7 @@ export interface Frame {
   stretch: number | null;
   mean_force: number | null;
   poses: PoseRecord[];
+  roll: string | null;
 }
 
 export interface Judged {

@@ -53,6 +53,25 @@ test("a simulation is played, its states have their forces and gaps", async ({ p
   expect(written.length).toBe(readFileSync(join(program.folder, "program.stl")).length);
 });
 
+test("rolls are looked through, a piece of the sheet in each", async ({ page, program }) => {
+  program.run("roll", "european-4-in-1", "--directions", "0,90", "--quiet", "--out", "rolls");
+  await page.goto(await program.view("rolls"));
+  await expect(page.locator(".progress")).toHaveText("4 states of rolls");
+  await expect(page.locator(".force-map circle.limit")).toHaveCount(0);
+  await page.locator(".scrubber input").fill("0");
+  await expect(page.locator(".way")).toHaveText("1 of 4: along 0°, axis below, radius 9.0175 mm: local");
+  await expect(page.locator(".card dd").nth(0)).toHaveText(/^0\.9633/);
+  await page.locator(".scrubber input").fill("1");
+  await expect(page.locator(".way")).toHaveText("4 of 4: along 90°, axis above, radius 23.0437 mm: local");
+  // Rings of a certified roll touch.
+  await page.getByLabel("Element", { exact: true }).selectOption({ index: 6 });
+  await expect(page.locator(".info")).toContainText(/smallest gap (−?0\.0000|0neighbour)/);
+  const waiting = page.waitForEvent("download");
+  await page.getByText("Export", { exact: true }).click();
+  await page.getByRole("button", { name: "STL" }).click();
+  expect((await waiting).suggestedFilename()).toBe("european-4-in-1-roll_4.stl");
+});
+
 test("a sweep is looked through, and two of its records compared", async ({ page, program }) => {
   program.run("characterize", "1.1", "--directions", "0:180:45", "--l2", "-0.125,0", "--quiet");
   for (const r of ["0.05", "0.12"]) {

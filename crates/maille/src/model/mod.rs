@@ -191,6 +191,18 @@ impl State {
         }
     }
 
+    /// A piece of the sheet in this state of the cell of `model`: the state of the finite sheet `piece` of the same design. The model of `piece` says which
+    /// cells it has.
+    pub fn of_piece(&self, model: &Model, piece: &Model) -> State {
+        let of_cell = model.elements.len() / model.cell.copies();
+        let places = piece.cell.cosets().into_iter().flat_map(|place| {
+            let (copy, shift) = model.cell.copy_at(place);
+            (0..of_cell).map(move |e| (copy * of_cell + e, shift))
+        });
+        let poses = places.map(|(e, shift)| self.image(shift).pose(&self.poses[e])).collect();
+        State { poses, ..piece.start.clone() }
+    }
+
     /// The neutral surface of a rolled state; `None` where nothing turns.
     pub fn neutral_surface_of(&self, model: &Model) -> Option<NeutralSurface> {
         let anchors: Vec<[f64; 2]> = model.elements.iter().map(|e| e.anchor).collect();
