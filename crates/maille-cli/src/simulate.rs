@@ -46,6 +46,7 @@ Examples:
   maille simulate 1.1 --tile 1x6 --fix top --gravity 0,-1,0         a strip that hangs
   maille simulate shirt.toml --size 100x150mm --fix top --gravity 0,-1,0    a piece of this size
   maille simulate 1.1 --tile 4x4 --gravity 0,0,-1 --floor -3        a sheet that falls on a floor
+  maille simulate european-4-in-1 --tile 8x14 --bend 0.01,0.01    onto a sphere
   maille simulate 1.1 --tile 1x6 --fix top --force flat@0,0=0,-5,0  a strip with a load on one ring
   maille simulate 1.1 --tile 8x2 --fix left --pull right=-6,0,0/0,0,0 --gravity 0,0,-1 --floor -3   folded and unfolded
   maille simulate 2 --tile 10x10 --fix left --pull right=0.5,0,0 --frames all-frames
@@ -75,6 +76,10 @@ pub struct Args {
     /// Constant force on a place besides, in the unit of --gravity; may be given for several places
     #[arg(long, value_name = "PLACE=X,Y,Z", value_parser = parse_force, allow_hyphen_values = true)]
     force: Vec<LoadedPlace>,
+    /// Bend the sheet onto z = -(KX x² + KY y²)/2 about its middle: curvatures in 1/unit, as 0.02,0.02 for a sphere of radius 50 and
+    /// 0.02,-0.02 for a saddle. All that is not held is drawn there, in equal steps, until the sheet locks
+    #[arg(long, value_name = "KX,KY", value_parser = parse_bend, allow_hyphen_values = true)]
+    bend: Option<[f64; 2]>,
     /// A floor at this height, in the file's unit
     #[arg(long, value_name = "Z", allow_hyphen_values = true, value_parser = parse_number)]
     floor: Option<f64>,
@@ -131,6 +136,15 @@ fn parse_vector(text: &str) -> Result<[f64; 3], String> {
     match parts.as_deref() {
         Ok(&[x, y, z]) => Ok([x, y, z]),
         _ => Err(format!("\"{text}\" is not a vector; give three numbers, as 0,0,-1")),
+    }
+}
+
+/// `0.02,-0.02`.
+fn parse_bend(text: &str) -> Result<[f64; 2], String> {
+    let parts = text.split(',').map(parse_number).collect::<Result<Vec<f64>, String>>();
+    match parts.as_deref() {
+        Ok(&[x, y]) if [x, y] != [0.0; 2] => Ok([x, y]),
+        _ => Err(format!("\"{text}\" is no bend; give two curvatures that are not both 0, as 0.02,0.02")),
     }
 }
 
@@ -238,6 +252,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             "frames": rests.len(),
             "stretch": last.and_then(|row| row.stretch),
             "mean_force": last.and_then(|row| row.mean_force),
+            "bend_force": last.and_then(|row| row.bend_force),
             "reactions": last.map(|row| forces.places.iter().zip(&row.forces).collect::<BTreeMap<_, _>>()),
             "wall_s": wall_s,
         }))?;
@@ -272,6 +287,7 @@ fn plan(args: &Args) -> Result<SheetPlan> {
         gravity: args.gravity,
         force: args.force.clone(),
         floor: args.floor,
+        bend: args.bend,
         steps: args.steps,
         drag: args.drag,
         alpha: args.alpha,
@@ -301,6 +317,7 @@ fn summary(
 ) {
     let percent = 100.0 * end.share;
     let what = match end.end {
+        End::Reached if args.bend.is_some() => "bent all the way".into(),
         End::Reached if args.pull.is_empty() => "at rest".into(),
         End::Reached => "the whole pull was done".into(),
         End::Locked => format!("locked at {percent:.1} % of the pull"),
@@ -308,6 +325,13 @@ fn summary(
         End::Interrupted => format!("interrupted after {percent:.1} % of the pull"),
     };
     output::say!("{}, {tile} cells, {}: {what}", model.name, counted(model.elements.len(), "element"));
+    if let Some(bend) = args.bend {
+        let [x, y] = bend.map(|curvature| curvature * end.share);
+        output::say!("  bent to the curvatures {x:.6} and {y:.6} along x and y");
+        if let Some(force) = forces.rows.last().and_then(|row| row.bend_force) {
+            output::say!("  force of the surface {force:.2} in all, in the unit of --force");
+        }
+    }
     for pull in &args.pull {
         let way: Vec<Vec3> = pull.way.iter().map(|by| Vec3::from(*by)).collect();
         let by = along(&way, end.share);

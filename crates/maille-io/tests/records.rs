@@ -333,17 +333,25 @@ fn tables_of_forces_are_read_as_they_were_written() {
         deformation: Some([[1.44, 1e-300], [-1e21, 0.9]]),
         energy: f64::MIN_POSITIVE,
         floor_force: Some(12.0),
+        bend_force: None,
         forces: vec![[0.1, 0.2, 0.3], [4.0, 5.0, 6.0]],
     };
     let empty = ForceRow { stretch: None, mean_force: None, deformation: None, floor_force: None, ..full.clone() };
     let places = vec!["flat@0,2".to_owned(), "a \"b\"\n_x".to_owned()];
-    let table = ForceTable { places, rows: vec![full, empty] };
+    let table = ForceTable { places, bent: false, rows: vec![full, empty] };
     let text = write_forces(&table);
     assert_eq!(read_forces("forces.csv", &text).unwrap(), table);
     let none = ForceTable::default();
     assert_eq!(read_forces("forces.csv", &write_forces(&none)).unwrap(), none);
-    let still = ForceTable { places: Vec::new(), rows: vec![ForceRow { forces: Vec::new(), ..table.rows[0].clone() }] };
+    let still = ForceTable {
+        places: Vec::new(),
+        bent: false,
+        rows: vec![ForceRow { forces: Vec::new(), ..table.rows[0].clone() }],
+    };
     assert_eq!(read_forces("forces.csv", &write_forces(&still)).unwrap(), still);
+    let rows = table.rows.iter().cloned().map(|row| ForceRow { bend_force: Some(0.5), ..row }).collect();
+    let bent = ForceTable { bent: true, rows, ..table.clone() };
+    assert_eq!(read_forces("forces.csv", &write_forces(&bent)).unwrap(), bent);
 
     let plain = write_forces(&ForceTable { places: vec!["left".into(), "right".into()], ..table });
     for (from, to, line, problem) in [

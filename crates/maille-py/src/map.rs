@@ -129,7 +129,8 @@ pub fn open(
 ) -> PyResult<maille_io::run::OpenMap> {
     let question = serde_json::from_str(question).map_err(|e| error::other(&format!("no question: {e}")))?;
     let map = Map { question, quantity: quantity(quantity_name)?, out, overwrite, sensitivities };
-    let models = map.cells(&design.design).into_iter().map(|cell| design.compile(cell)).collect::<PyResult<_>>()?;
+    let models =
+        map.cells(&design.design).into_iter().map(|cell| design.compile(cell)).collect::<PyResult<Vec<_>>>()?;
     map.question.suits(&models[0]).map_err(|e| error::invalid(&e))?;
     map.open(&design.design, models).map_err(|e| error::record(&e))
 }

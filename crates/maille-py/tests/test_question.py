@@ -121,6 +121,13 @@ def test_rolls_and_tubes():
     table = tubes.to_numpy()
     assert table["sought"].tolist() == ["roomiest", "narrowest", "widest", "shortest", "longest"]
     assert table["neutral_radius"][1].round(4) == 15.1027 and table["wrap"].tolist() == [8.0] * 5
+    bent = maille.roll("european-4-in-1", curvature=[0.03], directions=[90], axis="below", lateral="free", threads=1)
+    table = bent.to_numpy()
+    assert table["neutral_stretch"][2].round(4) == 1.1294 and table["at_curvature"].tolist() == [0.03] * 5
+    sheared = maille.roll("european-4-in-1", directions=[90], axis="below", l2=-0.02, gamma=0.03, threads=1).to_numpy()
+    assert np.allclose([sheared["l2"][0], sheared["gamma"][0]], [-0.02, 0.03], rtol=0, atol=1e-9)
+    assert maille.characterize("cable", threads=1).to_numpy()["l1"].round(4).tolist() == [0.1364]
+    assert maille.roll("cable", axis="below", threads=1).to_numpy()["neutral_radius"].round(4).tolist() == [2.1962]
     with pytest.raises(maille.ArgumentError, match="side of the sheet"):
         maille.roll("1.1", axis="left")
     with pytest.raises(maille.MailleError, match="no lattice vector lies along 20"):

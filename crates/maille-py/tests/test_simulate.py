@@ -124,3 +124,10 @@ def test_states_are_drawn_from_above():
     assert len(axes.lines) == 3 * 2 * 3
     assert len(maille.limit("1.1", maximize="exx").plot().lines) == 12
     assert maille.tightest("1.1", starts=1).to_polars()["minor_radius"][0] == pytest.approx(1 - np.sqrt(0.5))
+
+
+def test_a_sheet_is_bent_onto_a_surface():
+    bent = maille.simulate("1.1", (3, 3), bend=(0.03, -0.03), steps=3)
+    assert bent.end == "reached" and bent.forces["bend_force"][-1] < 0.1
+    with pytest.raises(maille.ArgumentError, match="two curvatures"):
+        maille.simulate("1.1", (3, 3), bend=(0.03,))

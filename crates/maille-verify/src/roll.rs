@@ -143,6 +143,9 @@ fn of_sheet() -> String {
 /// What is sought where the turn is given; the last two, where the length along the axis is free.
 const AT_TURN: [&str; 5] = ["roomiest", "narrowest", "widest", "shortest", "longest"];
 
+/// The cells that go round and the bits of the curvature, where one of them is given.
+type GivenTurn = (Option<u32>, Option<u64>);
+
 /// What tells a roll from the others.
 type Key = (u64, String, Option<u32>, Option<u64>, String);
 
@@ -343,8 +346,8 @@ fn belongs(head: &Head, first: &FirstLine, rolls: &[Roll]) -> Finding {
     if let Some(pair) = rolls.windows(2).find(|pair| pair[0].key() == pair[1].key()) {
         return wrong(format!("the roll along {}°, axis {}, is there twice", pair[0].direction_deg, pair[0].axis));
     }
-    let all_ends = |turn: (Option<u32>, Option<u64>)| ends.iter().map(move |sought| (turn, (*sought).to_owned()));
-    let sought: Vec<((Option<u32>, Option<u64>), String)> = match (tubes, bent) {
+    let all_ends = |turn: GivenTurn| ends.iter().map(move |sought| (turn, (*sought).to_owned()));
+    let sought: Vec<(GivenTurn, String)> = match (tubes, bent) {
         (true, _) => head.question.wrap.iter().flat_map(|cells| all_ends((Some(*cells), None))).collect(),
         (_, true) => head.question.curvatures.iter().flat_map(|k| all_ends((None, Some(k.to_bits())))).collect(),
         _ => vec![((None, None), of_sheet())],

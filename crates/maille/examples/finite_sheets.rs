@@ -35,6 +35,7 @@ fn main() {
                 gravity: Vec3::zeros(),
                 forces: Vec::new(),
                 floor: None,
+                bend: None,
                 steps: 10,
                 drag: None,
                 options: EnergyOptions { tau: TAU, max_iterations: 2000, ..EnergyOptions::default() },

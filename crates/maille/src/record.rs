@@ -69,6 +69,8 @@ pub struct ForceRow {
     pub energy: f64,
     /// Force of the floor along z.
     pub floor_force: Option<f64>,
+    /// Sum of the sizes of the forces with which the surface of a bend draws the elements.
+    pub bend_force: Option<f64>,
     /// Force of each place that is fixed or pulled on the sheet.
     pub forces: Vec<[f64; 3]>,
 }

@@ -11,7 +11,7 @@ use maille::{
         Configuration, ContactOptions, MinimaMethod, SheetEnergy,
         barrier::ContactLaw,
         limit::EnergyOptions,
-        load::{Drag, Floor, Loads, PositionTarget},
+        load::{Bend, Drag, Floor, Loads, PositionTarget},
         simulate::{
             End, Setup, Simulation, TAU, WEIGHT_UNIT, along, elements_at,
             force::{Grip, deformation_gradient, force_row},
@@ -36,6 +36,7 @@ fn setup(model: &Model, fix: &str, pull: Option<(&str, Vec3)>, gravity: Vec3) ->
         gravity,
         forces: Vec::new(),
         floor: None,
+        bend: None,
         steps: 4,
         drag: None,
         options: EnergyOptions { tau: TAU, ..EnergyOptions::default() },
@@ -108,6 +109,12 @@ fn loads_match_finite_differences() {
         held: vec![1],
         floor: Some(Floor { height: -1.08, alpha: 30.0 }),
         drag: Some(Drag { from: shaken(&model, 0.4, 6).poses, coefficient: 0.7 }),
+        bend: Some(Bend {
+            curvature: [0.3, -0.2],
+            middle: [0.4, 0.1],
+            heights: vec![(0, 0.2), (2, -0.1)],
+            weight: 1.5,
+        }),
     };
     let energy = SheetEnergy { loads, ..SheetEnergy::new(&model, &contacts) };
     let x = Configuration::start(shaken(&model, 0.03, 5));
@@ -481,4 +488,38 @@ fn grips_and_floor_carry_the_weight() {
             assert!(row.floor_force.is_some_and(|force| force > 0.1 * count), "{row:?}");
         }
     }
+}
+
+/// Onto a gentle sphere and saddle a slack sheet comes without force; a sharp one stops it.
+#[test]
+fn a_sheet_is_bent_onto_a_surface_until_it_locks() {
+    let model = sheet("1.1", "3x3");
+    let bent = |curvature: [f64; 2], steps: u32| {
+        let still = setup(&model, "left", None, Vec3::zeros());
+        let setup = Setup { fix: Vec::new(), bend: Some(curvature), steps, ..still };
+        let end = run(&model, &setup);
+        let row = force_row(&model, &setup, &[], end.share, end.energy, &end.state);
+        (end, row.bend_force.unwrap())
+    };
+    let middle = |axis: usize| {
+        model.start.poses.iter().map(|pose| pose.position[axis]).sum::<f64>() / model.elements.len() as f64
+    };
+    let middle = [middle(0), middle(1)];
+    for curvature in [[0.03, 0.03], [0.03, -0.03]] {
+        let (end, force) = bent(curvature, 3);
+        assert!(end.end == End::Reached && end.links_ok && force < 0.1, "{curvature:?}: {:?} {force}", end.end);
+        for (now, start) in end.state.poses.iter().zip(&model.start.poses) {
+            let at = now.position;
+            let [x, y] = [at.x - middle[0], at.y - middle[1]];
+            let height = start.position.z - 0.5 * (curvature[0] * x * x + curvature[1] * y * y);
+            assert!((at.z - height).abs() < TAU, "{at:?} {height}");
+        }
+    }
+    // Between two edges that are held it has to stretch, and locks.
+    let held = setup(&model, "left", None, Vec3::zeros());
+    let right = elements_at(&model, "right").unwrap();
+    let fix = held.fix.iter().copied().chain(right).collect();
+    let end = run(&model, &Setup { fix, bend: Some([2.0, 0.0]), steps: 8, ..held });
+    assert!(end.end == End::Locked && (0.01..1.0).contains(&end.share), "{:?} {}", end.end, end.share);
+    assert!(end.links_ok);
 }

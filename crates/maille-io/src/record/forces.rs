@@ -17,6 +17,9 @@ use maille::{
 pub const FORCE_COLUMNS: [&str; 10] =
     ["frame", "share", "stretch", "mean_force", "f_xx", "f_xy", "f_yx", "f_yy", "energy", "floor_force"];
 
+/// The column after these of a sheet that is bent.
+pub const BEND_COLUMN: &str = "bend_force";
+
 /// The columns of a place, with its name for `PLACE`: the force that it exerts on the sheet.
 pub const PLACE_COLUMNS: [&str; 3] = ["force_PLACE_x", "force_PLACE_y", "force_PLACE_z"];
 
@@ -25,6 +28,8 @@ pub const PLACE_COLUMNS: [&str; 3] = ["force_PLACE_x", "force_PLACE_y", "force_P
 pub struct ForceTable {
     /// Names of the places that are fixed, then of those that are pulled.
     pub places: Vec<String>,
+    /// Whether the sheet is bent.
+    pub bent: bool,
     /// The rows.
     pub rows: Vec<ForceRow>,
 }
@@ -38,14 +43,16 @@ impl ForceTable {
             [] => vec![row(end.share, end.energy, &end.state)],
             rests => end.path.iter().zip(rests).map(|(frame, state)| row(frame.share, frame.energy, state)).collect(),
         };
-        Ok(ForceTable { places: grips.into_iter().map(|grip| grip.name).collect(), rows })
+        let places = grips.into_iter().map(|grip| grip.name).collect();
+        Ok(ForceTable { places, bent: plan.bend.is_some(), rows })
     }
 
     /// Names of the columns.
     pub fn columns(&self) -> Vec<String> {
         let of_places =
             self.places.iter().flat_map(|place| PLACE_COLUMNS.map(|column| column.replacen("PLACE", place, 1)));
-        FORCE_COLUMNS.iter().map(|column| (*column).to_owned()).chain(of_places).collect()
+        let bend = self.bent.then(|| BEND_COLUMN.to_owned());
+        FORCE_COLUMNS.iter().map(|column| (*column).to_owned()).chain(bend).chain(of_places).collect()
     }
 }
 
@@ -57,7 +64,7 @@ pub fn write_forces(table: &ForceTable) -> String {
         let f = row.deformation.map(|[[xx, xy], [yx, yy]]| [xx, xy, yx, yy]);
         let f = (0..4).map(|k| f.map(|f| f[k]));
         let cells = [Some(row.share), row.stretch, row.mean_force].into_iter().chain(f);
-        let cells = cells.chain([Some(row.energy), row.floor_force]);
+        let cells = cells.chain([Some(row.energy), row.floor_force]).chain(table.bent.then_some(row.bend_force));
         let cells = cells.chain(row.forces.iter().flatten().copied().map(Some));
         let cells: Vec<String> = std::iter::once(frame.to_string()).chain(cells.map(csv_number)).collect();
         out += &(cells.join(",") + "\n");
@@ -68,7 +75,8 @@ pub fn write_forces(table: &ForceTable) -> String {
 /// Reads the table; `file` is the name to show in errors.
 pub fn read_forces(file: &str, text: &str) -> Result<ForceTable, RecordError> {
     let (header, lines) = csv_lines(file, text)?;
-    let mut table = ForceTable { places: places(&header), rows: Vec::new() };
+    let bent = header.get(FORCE_COLUMNS.len()) == Some(BEND_COLUMN);
+    let mut table = ForceTable { places: places(&header, bent), bent, rows: Vec::new() };
     let columns = table.columns();
     let wrong = (0..columns.len().max(header.len())).find(|&i| header.get(i) != columns.get(i).map(String::as_str));
     if let Some(i) = wrong {
@@ -77,19 +85,19 @@ pub fn read_forces(file: &str, text: &str) -> Result<ForceTable, RecordError> {
         return Err(RecordError::malformed(file, 1, problem));
     }
     for (frame, (line, cells)) in lines.iter().enumerate() {
-        let found = row(&columns, cells, frame);
+        let found = row(&columns, bent, cells, frame);
         table.rows.push(found.map_err(|problem| RecordError::malformed(file, *line, problem))?);
     }
     Ok(table)
 }
 
 /// The places that a header names: what is between `force_` and `_x`.
-fn places(header: &StringRecord) -> Vec<String> {
+fn places(header: &StringRecord, bent: bool) -> Vec<String> {
     let of = |name: &str| name.strip_prefix("force_")?.strip_suffix("_x").map(str::to_owned);
-    header.iter().skip(FORCE_COLUMNS.len()).step_by(3).map_while(of).collect()
+    header.iter().skip(FORCE_COLUMNS.len() + usize::from(bent)).step_by(3).map_while(of).collect()
 }
 
-fn row(columns: &[String], record: &StringRecord, frame: usize) -> Result<ForceRow, String> {
+fn row(columns: &[String], bent: bool, record: &StringRecord, frame: usize) -> Result<ForceRow, String> {
     if record.len() != columns.len() {
         return Err(format!("{} columns, expected {}", record.len(), columns.len()));
     }
@@ -116,6 +124,10 @@ fn row(columns: &[String], record: &StringRecord, frame: usize) -> Result<ForceR
         deformation,
         energy: there(7)?,
         floor_force: cells[8],
-        forces: (FORCE_COLUMNS.len() - 1..cells.len()).step_by(3).map(place).collect::<Result<_, String>>()?,
+        bend_force: if bent { cells[9] } else { None },
+        forces: (FORCE_COLUMNS.len() - 1 + usize::from(bent)..cells.len())
+            .step_by(3)
+            .map(place)
+            .collect::<Result<_, String>>()?,
     })
 }

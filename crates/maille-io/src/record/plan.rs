@@ -25,6 +25,9 @@ pub struct SheetPlan {
     pub force: Vec<LoadedPlace>,
     /// Height of a floor.
     pub floor: Option<f64>,
+    /// Curvatures along x and y, in 1/unit, of the surface onto which the sheet is bent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bend: Option<[f64; 2]>,
     /// Steps of the pull; with a drag, of the whole motion.
     pub steps: u32,
     /// What slows the sheet.
@@ -73,9 +76,12 @@ fn elements_of(model: &Model, field: &str, place: &str) -> Result<Vec<usize>, In
 }
 
 impl SheetPlan {
-    /// Whether nothing is pulled and no force acts.
+    /// Whether nothing is pulled or bent and no force acts.
     pub fn is_still(&self) -> bool {
-        self.pull.is_empty() && self.force.is_empty() && self.gravity.is_none_or(|g| g == [0.0; 3])
+        self.bend.is_none_or(|bend| bend == [0.0; 2])
+            && self.pull.is_empty()
+            && self.force.is_empty()
+            && self.gravity.is_none_or(|g| g == [0.0; 3])
     }
 
     /// The places that are held, on the elements of a sheet: fixed ones, then pulled ones. An element of two fixed
@@ -118,6 +124,7 @@ impl SheetPlan {
         };
         let gravity = self.gravity.map_or_else(Vec3::zeros, Vec3::from);
         let floor = self.floor.map(|height| (height - model.origin.z) / model.unit);
-        Ok(Setup { fix, pull, gravity, forces, floor, steps: self.steps, drag: self.drag, options })
+        let bend = self.bend.map(|curvature| curvature.map(|k| k * model.unit));
+        Ok(Setup { fix, pull, gravity, forces, floor, bend, steps: self.steps, drag: self.drag, options })
     }
 }

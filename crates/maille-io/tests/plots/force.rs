@@ -20,6 +20,7 @@ fn simulation(name: &str, tile: &str, end: End, curve: &[(f64, f64)]) -> NamedSi
         deformation: None,
         energy: 0.0,
         floor_force: None,
+        bend_force: None,
         forces: vec![[0.0; 3]],
     };
     let rows = curve.iter().map(|&(stretch, force)| row(Some(stretch), Some(force))).chain([row(None, None)]).collect();
@@ -32,7 +33,7 @@ fn simulation(name: &str, tile: &str, end: End, curve: &[(f64, f64)]) -> NamedSi
         "outcome": { "end": end, "share": 0.5, "smallest_gap": null, "links_ok": true, "iterations": 1, "kicks": 0, "note": null },
     });
     let record: SimulationRecord = serde_json::from_value(document).unwrap();
-    NamedSimulation { name: name.into(), record, forces: ForceTable { places: vec!["left".into()], rows } }
+    NamedSimulation { name: name.into(), record, forces: ForceTable { places: vec!["left".into()], bent: false, rows } }
 }
 
 /// Free at first, then a hard stop: along the axis, then straight up; the legend says where, the caption what was done.

@@ -228,6 +228,13 @@ def characterize(
     >>> record.to_numpy()["l1"].round(9).tolist(), record.to_numpy()["status"].tolist()
     ([0.44], ['global'])
     """
+    inner = chosen(design, minor_radius)._inner
+    lattice = json.loads(inner.to_json())["lattice"]
+    if lattice.get("single"):
+        # A chain is pulled along itself, and has no width.
+        along = np.degrees(np.arctan2(lattice["a1"][1], lattice["a1"][0]))
+        directions = [float(along)] if directions is None else directions
+        l2 = [0.0] if l2 is None and lateral == "fixed" else l2
     question = _question(
         directions,
         l2,
@@ -243,7 +250,7 @@ def characterize(
     )
     with _Bar(progress) as told:
         native = _native.characterize(
-            chosen(design, minor_radius)._inner,
+            inner,
             question,
             quantity,
             out=None if out is None else os.fspath(out),

@@ -159,6 +159,7 @@ def simulate(
     gravity: ArrayLike | None = None,
     force: Mapping[str, ArrayLike] | None = None,
     floor: float | None = None,
+    bend: Sequence[float] | None = None,
     drag: float | None = None,
     steps: int = 10,
     minor_radius: float | None = None,
@@ -173,7 +174,8 @@ def simulate(
 
     Places are `left`, `right`, `top`, `bottom`, an element (`flat`), or its copy in one cell (`flat@0,2`). `pull` moves places by a
     vector (3,), or along several (N, 3), all from the start, in the design's unit. `gravity` is the weight of every element, `force`
-    acts on places; 1 is a thousandth of the stiffness of a pull at R. `floor` is a height, `drag` slows the sheet. With `out` the
+    acts on places; 1 is a thousandth of the stiffness of a pull at R. `floor` is a height, `bend` the curvatures along x and y of a surface onto
+    which the sheet is bent, `drag` slows the sheet. With `out` the
     folder of `maille simulate` is written.
 
     >>> sheet = simulate("1.1", (2, 2), fix="left", pull={"right": (0.2, 0, 0)}, steps=1)
@@ -188,6 +190,7 @@ def simulate(
         "gravity": None if gravity is None else _vector("gravity", gravity),
         "force": forces,
         "floor": None if floor is None else _number("floor", floor),
+        **({} if bend is None else {"bend": _pair("bend", bend)}),
         "drag": None if drag is None else _positive("drag", drag),
         "steps": _whole("steps", steps, 1),
         "max_iterations": _whole("max_iterations", max_iterations, 1),
@@ -219,6 +222,13 @@ def _positive(name: str, value: float) -> float:
     if not (np.isfinite(value) and value > 0):
         raise ArgumentError(name, f"{value!r} is not positive", "give a positive number")
     return float(value)
+
+
+def _pair(name: str, values: Sequence[float]) -> list[float]:
+    found = [_number(name, value) for value in values]
+    if len(found) != 2:
+        raise ShapeError(name, f"has {len(found)} numbers", "give two curvatures, as (0.02, -0.02)", value=(len(found),))
+    return found
 
 
 def _vectors(name: str, values: ArrayLike) -> list[list[float]]:

@@ -39,6 +39,43 @@ pub struct Floor {
 /// Points of a core circle that feel the floor.
 pub(crate) const FLOOR_POINTS: usize = 32;
 
+/// A surface to which reference points are drawn: z = ζ_e − (κ_x X² + κ_y Y²)/2 with X, Y from `middle` and ζ_e the element's height at the
+/// start, of the energy β q², q the height of the point above it. κ above 0 bends downwards, as the axis of a roll lies below.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bend {
+    /// κ_x and κ_y.
+    pub curvature: [f64; 2],
+    /// Where the surface is level.
+    pub middle: [f64; 2],
+    /// The elements that are drawn, with ζ_e.
+    pub heights: Vec<(usize, f64)>,
+    /// β.
+    pub weight: f64,
+}
+
+impl Bend {
+    /// q of a point with the height ζ, and ∂q/∂x.
+    fn above(&self, position: &Vec3, height: f64) -> (f64, Vec3) {
+        let [x, y] = [position.x - self.middle[0], position.y - self.middle[1]];
+        let [kx, ky] = self.curvature;
+        let q = position.z - height + 0.5 * (kx * x * x + ky * y * y);
+        (q, Vec3::new(kx * x, ky * y, 1.0))
+    }
+
+    /// The largest |q| of the elements.
+    pub(crate) fn miss(&self, state: &State) -> f64 {
+        self.heights.iter().map(|(e, z)| self.above(&state.poses[*e].position, *z).0.abs()).fold(0.0, f64::max)
+    }
+
+    /// The force of the surface on each element, −2 β q ∂q/∂x.
+    pub(crate) fn forces(&self, state: &State) -> impl Iterator<Item = Vec3> {
+        self.heights.iter().map(|(e, z)| {
+            let (q, slope) = self.above(&state.poses[*e].position, *z);
+            slope * (-2.0 * self.weight * q)
+        })
+    }
+}
+
 /// Resistance to motion: an implicit step of overdamped motion from the poses `from`.
 ///
 /// Energy of an element that has moved by Δx and turned by the angle θ since: c/2 |Δx|² + c R² (1 − cos θ), where
@@ -75,6 +112,8 @@ pub struct Loads {
     pub floor: Option<Floor>,
     /// Resistance to motion.
     pub drag: Option<Drag>,
+    /// A surface that draws elements.
+    pub bend: Option<Bend>,
 }
 
 impl Loads {
@@ -143,7 +182,11 @@ impl Loads {
                 dragged += drag.coefficient * (0.5 * moved + drag.turned(e, pose).0);
             }
         }
-        forces + targets + floor + dragged
+        let bent = |bend: &Bend| {
+            bend.heights.iter().map(|(e, z)| bend.above(&state.poses[*e].position, *z).0.powi(2)).sum::<f64>()
+                * bend.weight
+        };
+        forces + targets + floor + dragged + self.bend.as_ref().map_or(0.0, bent)
     }
 
     /// Adds gradient and Hessian.
@@ -176,6 +219,15 @@ impl Loads {
                     _ => 0.0,
                 });
             }
+        }
+        for (bend, (e, z)) in self.bend.iter().flat_map(|bend| bend.heights.iter().map(move |at| (bend, at))) {
+            let (q, slope) = bend.above(&state.poses[*e].position, *z);
+            (0..3).for_each(|axis| gradient[6 * e + axis] += 2.0 * bend.weight * q * slope[axis]);
+            let entries: Vec<(usize, usize, f64)> = (0..3).map(|k| (k, 6 * e + k, 1.0)).collect();
+            let curved = |k: usize| bend.curvature.get(k).map_or(0.0, |curvature| q * curvature);
+            hessian.add(&entries, 3, |a, b| {
+                2.0 * bend.weight * (slope[a] * slope[b] + if a == b { curved(a) } else { 0.0 })
+            });
         }
         let Some(plane) = self.floor else { return };
         let rings: Vec<usize> = (0..model.rings.len()).collect();

@@ -14,7 +14,7 @@ use crate::{
     relaxation::{
         Configuration, SheetEnergy,
         limit::EnergyOptions,
-        load::{Drag, Floor, Loads, PositionTarget},
+        load::{Bend, Drag, Floor, Loads, PositionTarget},
     },
     solver::newton::{Outcome, minimize},
     state::State,
@@ -80,6 +80,8 @@ pub struct Setup {
     pub forces: Vec<(usize, Vec3)>,
     /// Height of a floor.
     pub floor: Option<f64>,
+    /// Curvatures along x and y of a surface to which all elements that are not held are drawn at the end of the pull, in 1/R: see [`Bend`].
+    pub bend: Option<[f64; 2]>,
     /// Steps of the pull; with a drag, of the whole motion.
     pub steps: u32,
     /// With a drag the sheet does not come to rest: each step is one implicit step of overdamped motion. Under weight 1 a
@@ -227,7 +229,17 @@ impl Setup {
             held: self.fix.clone(),
             floor: self.floor.map(|height| Floor { height, alpha }),
             drag: None,
+            bend: self.bend.map(|curvature| self.bent(model, curvature.map(|k| k * share), stiffness.max(1.0))),
         }
+    }
+
+    /// The surface with these curvatures through the middle of the sheet.
+    fn bent(&self, model: &Model, curvature: [f64; 2], weight: f64) -> Bend {
+        let places = || model.start.poses.iter().map(|pose| pose.position);
+        let middle = [0, 1].map(|axis| places().map(|x| x[axis]).sum::<f64>() / model.elements.len() as f64);
+        let free = |e: &usize| !self.fix.contains(e) && !self.pull.iter().any(|(pulled, _)| pulled == e);
+        let heights = places().map(|x| x.z).enumerate().filter(|(e, _)| free(e)).collect();
+        Bend { curvature, middle, heights, weight }
     }
 
     /// The longest way of a pulled element in one step.
@@ -305,7 +317,8 @@ impl Run<'_> {
         self.kicks += end.kicks;
         let state = end.point.state;
         let far = |t: &PositionTarget| (state.poses[t.element].position - t.position).norm();
-        let miss = energy.loads.targets.iter().map(far).fold(0.0, f64::max);
+        let above = energy.loads.bend.as_ref().map_or(0.0, |bend| bend.miss(&state));
+        let miss = energy.loads.targets.iter().map(far).fold(above, f64::max);
         Rest { state, energy: end.energy, outcome: end.outcome, gradient_norm: end.gradient_norm, miss }
     }
 
@@ -350,7 +363,8 @@ pub fn simulate(
     let mut run = Run { model, setup, cancel, watch, runs: 0, iterations: 0, kicks: 0, unbalanced: 0, path, rests };
     let (mut share, mut rest) = (0.0, run.relax(0.0, &model.start));
     // The last position that was reached, then the first one that was missed.
-    let steps = if setup.pull.is_empty() && setup.drag.is_none() { 0 } else { setup.steps.max(1) };
+    let moves = !setup.pull.is_empty() || setup.drag.is_some() || setup.bend.is_some();
+    let steps = if moves { setup.steps.max(1) } else { 0 };
     let mut missed = (!run.reached(&rest)).then_some(0.0);
     let mut step = 0;
     let mut failed = None;
@@ -364,7 +378,9 @@ pub fn simulate(
         }
     }
     let Some(mut missed) = missed else { return Ok(run.end(End::Reached, share, &rest, None)) };
-    let way = setup.longest_step() * f64::from(setup.steps.max(1));
+    // How far the surface moves where it is farthest from the middle.
+    let sag = setup.bend.map_or(0.0, |curvature| setup.bent(model, curvature, 1.0).miss(&model.start));
+    let way = (setup.longest_step() * f64::from(setup.steps.max(1))).max(sag);
     for halving in 0..MOST_HALVINGS {
         let locks = failed.as_ref().is_some_and(|trial| trial.outcome == Outcome::Minimum);
         let fine = !locks || (missed - share) * way <= FINEST * setup.options.tau;

@@ -43,7 +43,8 @@ const ON_ONE_LINE: f64 = 1e-9;
 pub fn force_row(model: &Model, setup: &Setup, grips: &[Grip], share: f64, energy: f64, state: &State) -> ForceRow {
     let loads = setup.loads(model, share, setup.options.alpha);
     let contacts = setup.options.contacts(model);
-    let unheld = Loads { forces: loads.forces.clone(), floor: loads.floor, ..Loads::default() };
+    let unheld =
+        Loads { forces: loads.forces.clone(), floor: loads.floor, bend: loads.bend.clone(), ..Loads::default() };
     let sheet = SheetEnergy { loads: unheld, ..SheetEnergy::new(model, &contacts) };
     let (_, slope) = sheet.gradient(&Configuration::start(state.clone()));
     let mut on = vec![Vec3::zeros(); model.elements.len()];
@@ -61,7 +62,8 @@ pub fn force_row(model: &Model, setup: &Setup, grips: &[Grip], share: f64, energ
         mean_force: axis.map(|axis| axis.direction.dot(&force(axis.pulled)) / axis.pulled.elements.len() as f64),
         deformation: deformation_gradient(model, state).map(|f| [[f.m11, f.m12], [f.m21, f.m22]]),
         energy,
-        floor_force: loads.floor.is_some().then(|| floor_force(model, loads, state) / WEIGHT_UNIT),
+        floor_force: loads.floor.is_some().then(|| floor_force(model, &loads, state) / WEIGHT_UNIT),
+        bend_force: loads.bend.as_ref().map(|bend| bend.forces(state).map(|f| f.norm()).sum::<f64>() / WEIGHT_UNIT),
         forces: grips.iter().map(|grip| force(grip).into()).collect(),
     }
 }
@@ -87,7 +89,7 @@ pub fn deformation_gradient(model: &Model, state: &State) -> Option<Matrix2<f64>
 }
 
 /// The force of the floor along z.
-fn floor_force(model: &Model, loads: Loads, state: &State) -> f64 {
+fn floor_force(model: &Model, loads: &Loads, state: &State) -> f64 {
     let unknowns = 6 * model.elements.len();
     let mut slope = vec![0.0; unknowns];
     let floor = Loads { floor: loads.floor, ..Loads::default() };
