@@ -196,8 +196,9 @@ fn curvatures(program: &SheetProgram<'_>, model: &Model, x: &Posed, multipliers:
     let mut hessian = DMatrix::<f64>::zeros(n, n);
     let mut gram = DMatrix::<f64>::zeros(n, n);
     let mut used = 0.0;
-    for row in program.rows(x, 1e-2, Derivatives::Second(&loads)) {
-        let mu = loads.of(&row);
+    let rows = program.rows(x, 1e-2, Derivatives::Second(&loads));
+    let carried = loads.of(&rows);
+    for (row, mu) in rows.into_iter().zip(carried) {
         if mu <= 1e-9 {
             continue;
         }
