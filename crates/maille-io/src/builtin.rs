@@ -45,7 +45,9 @@ const DESIGNS: &[Builtin] = embed![
     "japanese-12-in-2",
     "kings-mail",
     "cable",
-    "curb";
+    "curb",
+    "byzantine",
+    "box";
     "1.1",
     "1.2",
     "2",

@@ -63,7 +63,7 @@ impl House {
         let record = self.scratch.join(name).to_string_lossy().into_owned();
         let file = |ending: &str| self.folder.join(format!("{name}{ending}")).to_string_lossy().into_owned();
         // A chain is pulled along itself alone.
-        let pulls = if single { "" } else { self.pulls };
+        let pulls = if single { "--cell 1x1" } else { self.pulls };
         let solve = format!("characterize {name} {pulls} --overwrite --json");
         let limits = parsed(&self.run(&solve, &["--out", &record])?, &solve)?;
         self.run(&format!("render {name} {RENDER} --quiet --overwrite"), &["--out", &file(".png")])?;

@@ -292,13 +292,16 @@ mod tests {
         Model::compile(&serde_json::from_str(&text).unwrap(), Cell::PRIMITIVE).unwrap()
     }
 
-    /// With κ held at 0 the limits are those of a flat sheet, and with little κ they are near them: all built-in designs, from the flat limit. Pairs
+    /// With κ held at 0 the limits are those of a flat sheet, and with little κ they are near them: all built-in sheets, from the flat limit. Pairs
     /// that touch along whole circles nearly do with little κ, and then have no certificate.
     #[test]
     fn a_roll_without_curvature_is_flat() {
         let mut lost = Vec::new();
         for name in maille_io::builtin_designs().iter().map(|design| design.name) {
             let model = model(name);
+            if model.single {
+                continue;
+            }
             for (direction_deg, lateral_free) in [(0.0, false), (35.0, false), (90.0, true)] {
                 let free = Across { lateral_free, shear_free: lateral_free };
                 let strains = RollStrains::free(free);

@@ -23,7 +23,12 @@ macro_rules! designs {
 
         #[test]
         fn every_builtin_design_is_compared() {
-            let all: Vec<_> = maille_io::builtin_designs().iter().map(|builtin| builtin.name).collect();
+            // A chain has no derivatives across itself.
+            let is_sheet = |builtin: &&maille_io::Builtin| {
+                !maille_io::read_design(builtin.name, builtin.toml).unwrap().lattice.single
+            };
+            let all: Vec<_> =
+                maille_io::builtin_designs().iter().filter(is_sheet).map(|builtin| builtin.name).collect();
             assert_eq!(all, [$($name),*]);
         }
     };
