@@ -101,7 +101,8 @@ impl Files<'_> {
         };
         let free = stretches().next().is_none() && ratios().next().is_some();
         let wanted = stretches().map(|(direction, _)| direction).chain(ratios());
-        let mut directions_deg = distinct(wanted.chain((0..=180).step_by(15).map(f64::from))).0;
+        let between = (0..=180).step_by(15).filter(|_| !self.fitted.lattice.single).map(f64::from);
+        let mut directions_deg = distinct(wanted.chain(between)).0;
         directions_deg.sort_by(f64::total_cmp);
         let l2 = if free { vec![0.0] } else { distinct(stretches().map(|(_, l2)| l2)).0 };
         let options: &FitOptions = &self.request.options;

@@ -314,6 +314,7 @@ fn print_at_turn(question: &RollQuestion, design: &Design, rolls: &[Roll], known
     let turn = |roll: &Roll| (roll.direction_deg, roll.axis, roll.wrap, roll.at_curvature);
     for states in rolls.chunk_by(|a, b| turn(a) == turn(b)) {
         let (first, mut statuses) = (&states[0], states.iter().map(|roll| roll.status.name()).collect::<Vec<_>>());
+        statuses.sort_unstable();
         statuses.dedup();
         let of = |sought: Sought, value: fn(&Roll) -> Option<f64>| {
             states.iter().find(|roll| roll.sought == sought).and_then(value)
@@ -344,7 +345,7 @@ fn print_at_turn(question: &RollQuestion, design: &Design, rolls: &[Roll], known
         states.iter().find_map(|roll| roll.note.as_deref()).into_iter().for_each(|note| say!("              {note}"));
     }
     say!(
-        "{}: at the mean distance of the elements from the axis; certified, and the best of the starts that were searched",
+        "{}: at the mean distance of the elements from the axis; of the starts that were searched, the best",
         head[1].split(',').next().unwrap_or_default()
     );
 }

@@ -316,13 +316,14 @@ fn summary(
     wall_s: f64,
 ) {
     let percent = 100.0 * end.share;
+    let way = if args.bend.is_some() && args.pull.is_empty() { "bend" } else { "pull" };
     let what = match end.end {
         End::Reached if args.bend.is_some() => "bent all the way".into(),
         End::Reached if args.pull.is_empty() => "at rest".into(),
         End::Reached => "the whole pull was done".into(),
-        End::Locked => format!("locked at {percent:.1} % of the pull"),
-        End::NotConverged => format!("a step after {percent:.1} % of the pull did not converge"),
-        End::Interrupted => format!("interrupted after {percent:.1} % of the pull"),
+        End::Locked => format!("locked at {percent:.1} % of the {way}"),
+        End::NotConverged => format!("a step after {percent:.1} % of the {way} did not converge"),
+        End::Interrupted => format!("interrupted after {percent:.1} % of the {way}"),
     };
     output::say!("{}, {tile} cells, {}: {what}", model.name, counted(model.elements.len(), "element"));
     if let Some(bend) = args.bend {

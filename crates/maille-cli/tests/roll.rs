@@ -278,7 +278,9 @@ fn sheets_of_given_curvature_and_strains_and_no_planted_fault_passes() {
     for (name, copy) in [("rolls.jsonl", "good.jsonl"), ("rolls.csv", "good.csv"), ("roll.json", "good.json")] {
         fs::copy(folder.join("r").join(name), folder.join(copy)).unwrap();
     }
-    for (name, value) in [("at_curvature", Value::from(0.031)), ("sought", "longest".into()), ("gamma", 0.031.into())] {
+    forge_roll(folder, 3, |roll| roll["gamma"] = 0.031.into());
+    assert!(refuted(folder).iter().any(|name| name == "deformation"));
+    for (name, value) in [("at_curvature", Value::from(0.031)), ("sought", "longest".into())] {
         forge_roll(folder, 3, |roll| roll[name] = value.clone());
         let (code, said, _) = maille(folder, "verify r");
         assert!(code == 4 && said.to_lowercase().contains("false"), "{name}: {said}");

@@ -70,6 +70,9 @@ pub(crate) struct Design {
 pub(crate) struct Lattice {
     pub a1: [f64; 3],
     pub a2: [f64; 3],
+    /// Whether a1 is the only one.
+    #[serde(default)]
+    pub single: bool,
 }
 
 #[derive(Clone, Debug, Deserialize)]

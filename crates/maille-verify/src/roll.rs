@@ -330,7 +330,10 @@ fn belongs(head: &Head, first: &FirstLine, rolls: &[Roll]) -> Finding {
     let word = |free: bool| if free { "free" } else { "fixed" };
     let tubes = !head.question.wrap.is_empty();
     let bent = !tubes && !head.question.curvatures.is_empty();
-    let free = [head.question.free.lateral_free, head.question.free.shear_free && !tubes];
+    let free = match tubes {
+        true => [!head.design.lattice.single, false],
+        false => [head.question.free.lateral_free, head.question.free.shear_free],
+    };
     let held = free.map(word);
     let ends = if free[0] { &AT_TURN[..] } else { &AT_TURN[..3] };
     let is_asked = |roll: &Roll| {

@@ -14,8 +14,9 @@ use maille_io::{
 /// Cells of a piece along a1 and a2, and of a chain.
 const PIECE: [i32; 2] = [4, 4];
 const PIECE_OF_CHAIN: [i32; 2] = [8, 1];
-/// Rows of a tube.
+/// Rows of a tube, and cells round it at most.
 const ROWS: i32 = 6;
+const MOST_ROUND: i32 = 200;
 
 /// The rolls that have a state, in the order of the table.
 pub fn shown(source: String, record: &RollRecordFile, rolls: &[Roll]) -> Result<ShownSimulation, Refusal> {
@@ -25,12 +26,13 @@ pub fn shown(source: String, record: &RollRecordFile, rolls: &[Roll]) -> Result<
         unusable(problems.iter().map(|p| p.problem.clone()).collect::<Vec<_>>().join("; "))
     };
     let design = tolerant(&record.design);
-    let [m, n] = piece(record, rolls);
+    let (round, [m, n]) = piece(record, rolls);
     let tile = Cell::new([[m, 0], [0, n]]).map_err(|e| unusable(e.problem))?;
     let piece = Model::compile_sheet(&design, tile).map_err(problems)?;
     let mut frames = Vec::new();
     for roll in rolls {
-        let Some(state) = roll.state() else { continue };
+        // Tubes of fewer cells would lie on themselves.
+        let Some(state) = roll.state().filter(|_| roll.wrap == round) else { continue };
         let cell: Cell = roll.cell.parse().map_err(|e: InvalidInput| unusable(e.problem))?;
         let model = Model::compile(&design, cell).map_err(problems)?;
         let state = mesh::state_of(&model, &state).map_err(|e| unusable(e.to_string()))?;
@@ -48,24 +50,27 @@ pub fn shown(source: String, record: &RollRecordFile, rolls: &[Roll]) -> Result<
         return Err(unusable("none of them has a state".into()));
     }
     let total = frames.len();
+    let note = round.map(|cells| format!("tubes of {cells} cells; export and render show the others"));
     for (k, frame) in frames.iter_mut().enumerate() {
         frame.share = k as f64 / (total - 1).max(1) as f64;
     }
-    let note = None;
     Ok(ShownSimulation { sheet: sheet(&piece, &record.design), frames, total, end: End::Reached, note, source })
 }
 
-/// How many cells are shown: of tubes all that go round the one with most.
-fn piece(record: &RollRecordFile, rolls: &[Roll]) -> [i32; 2] {
-    let round = rolls.iter().filter_map(|roll| roll.wrap).max().and_then(|cells| i32::try_from(cells).ok());
-    let turns = rolls.iter().filter(|roll| roll.wrap.is_some()).find_map(|roll| roll.roll).map(|roll| roll.turn_rad);
+/// How many cells are shown: of tubes all that go round the first one, and only tubes with as many.
+fn piece(record: &RollRecordFile, rolls: &[Roll]) -> (Option<u32>, [i32; 2]) {
+    let first = rolls.iter().find(|roll| roll.wrap.is_some() && roll.roll.is_some());
+    let round = first.and_then(|roll| roll.wrap);
+    let turns = first.and_then(|roll| roll.roll).map(|roll| roll.turn_rad);
     let aside = if record.design.lattice.single { 1 } else { ROWS };
-    match (round, turns) {
-        (Some(cells), Some([a, b])) if a.abs() > b.abs() => [cells, aside],
-        (Some(cells), Some(_)) => [aside, cells],
-        _ if record.design.lattice.single => PIECE_OF_CHAIN,
-        _ => PIECE,
-    }
+    let cells = round.map_or(1, |cells| i32::try_from(cells).unwrap_or(MOST_ROUND).min(MOST_ROUND));
+    let piece = match turns {
+        Some([a, b]) if a.abs() > b.abs() => [cells, aside],
+        Some(_) => [aside, cells],
+        None if record.design.lattice.single => PIECE_OF_CHAIN,
+        None => PIECE,
+    };
+    (round, piece)
 }
 
 /// Which roll it is, its radius and its status.

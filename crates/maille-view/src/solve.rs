@@ -120,6 +120,12 @@ pub fn open(map: &Map, subject: &Subject) -> Result<(Read, Vec<Model>, OpenMap),
     let read = subject.read()?;
     let models = map.cells(&read.design).into_iter().map(|cell| read.compile(&read.design, cell));
     let models = models.collect::<Result<Vec<_>, _>>()?;
+    let mut map = map.clone();
+    if read.design.lattice.single {
+        // A chain is pulled along itself, and has no width.
+        (map.question.directions_deg, map.question.l2) = (vec![read.design.lattice.direction_deg()], vec![0.0]);
+    }
+    map.question.suits(&models[0]).map_err(|e| Refusal::wrong(e.problem, e.help))?;
     let open = map.open(&read.design, models.clone()).map_err(Refusal::fault)?;
     Ok((read, models, open))
 }

@@ -96,8 +96,10 @@ const ASIDE: f64 = 10.0;
 impl LatticeSpec {
     /// That of a chain of these elements along a1, whose rings without a minor radius have `minor_radius`.
     pub fn single(a1: [f64; 3], elements: &[ElementSpec], minor_radius: Option<f64>) -> Self {
-        let (length, norm) = (a1[0].hypot(a1[1]), |v: [f64; 3]| v[0].hypot(v[1]).hypot(v[2]));
-        let (u, w) = ([a1[0] / length, a1[1] / length], [-a1[1] / length, a1[0] / length]);
+        // An a1 without a direction is refused by itself.
+        let a1_or_x = if a1[0].hypot(a1[1]) > 0.0 { a1 } else { [1.0, 0.0, 0.0] };
+        let (length, norm) = (a1_or_x[0].hypot(a1_or_x[1]), |v: [f64; 3]| v[0].hypot(v[1]).hypot(v[2]));
+        let (u, w) = ([a1_or_x[0] / length, a1_or_x[1] / length], [-a1_or_x[1] / length, a1_or_x[0] / length]);
         let across = |c: [f64; 3]| {
             norm([c[0] - u[0] * (c[0] * u[0] + c[1] * u[1]), c[1] - u[1] * (c[0] * u[0] + c[1] * u[1]), c[2]])
         };

@@ -270,7 +270,7 @@ impl Question {
     ///
     /// # Errors
     /// Without starts; for a number that is not finite, a direction or l2 beyond a million, an l2 of −1 or less, a strain that is named twice, strains that no
-    /// lattice has, a ray whose direction is no unit vector, for the least wire or clearance, which nothing bounds, for the largest area,
+    /// lattice has, a roll whose turn or strains cannot be, a ray whose direction is no unit vector, for the least wire or clearance, which nothing bounds, for the largest area,
     /// and for a gap below 0.
     pub fn check(&self) -> Result<(), InvalidInput> {
         if self.starts == Some(0) {
@@ -333,7 +333,7 @@ impl Question {
         if !model.single {
             return Ok(());
         }
-        let along = model.start.a1.xy().normalize();
+        let along = model.cell.primitive(model.start.a1, model.start.a2)[0].xy().normalize();
         let is_along = |direction_deg: f64| Direction::of_degrees(direction_deg).along().perp(&along).abs() < 1e-9;
         let right = match &self.goal {
             Goal::Stretch { direction_deg, l2, across } => {

@@ -177,6 +177,7 @@ impl RollQuestion {
     pub fn strains(&self) -> RollStrains {
         match self.kind() {
             Kind::Tubes if self.free.lateral_free => RollStrains::OF_TUBE,
+            Kind::Tubes => RollStrains::default(),
             _ => RollStrains { free: self.free, l2: self.l2, shear: self.gamma },
         }
     }
@@ -224,6 +225,12 @@ impl RollQuestion {
     pub fn check(&self, sheet: &Sheet) -> Result<(), InvalidInput> {
         if self.directions_deg.is_empty() {
             return Err(InvalidInput::new("directions", "there is none", "give one or more"));
+        }
+        if self.kind() == Kind::Tubes
+            && (!self.curvatures.is_empty() || self.free.shear_free || (self.l2, self.gamma) != (0.0, 0.0))
+        {
+            let problem = "a tube has its own curvature, width and shear";
+            return Err(InvalidInput::new("wrap", problem, "leave curvature, l2 and shear out"));
         }
         let unit = sheet.model().unit;
         self.rolls().into_iter().try_for_each(|roll| sheet.check(&self.question(roll, unit)))

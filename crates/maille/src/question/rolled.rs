@@ -14,6 +14,10 @@ pub enum Turn {
     Curvature(f64),
 }
 
+/// |κ| R is from this to that: below, a sheet is flat to rounding.
+const LEAST: f64 = 1e-6;
+const MOST: f64 = 1e3;
+
 impl Turn {
     pub(super) fn check(&self, strains: &RollStrains) -> Result<(), InvalidInput> {
         match *self {
@@ -25,9 +29,9 @@ impl Turn {
                 let problem = "a tube's shear is 0, or it would not close";
                 Err(InvalidInput::new("strains", problem, "take a curvature in place of cells"))
             }
-            Turn::Curvature(curvature) if !(curvature.is_finite() && curvature > 0.0) => {
-                let problem = format!("a curvature of {curvature}");
-                let help = "give a number above 0; on which side the axis is, is asked beside it";
+            Turn::Curvature(curvature) if !(LEAST..=MOST).contains(&curvature) => {
+                let problem = format!("a curvature of {curvature} by R");
+                let help = format!("give {LEAST} to {MOST}, above 0; on which side the axis is, is asked beside it");
                 Err(InvalidInput::new("curvature", problem, help))
             }
             _ => Ok(()),

@@ -42,6 +42,13 @@ pub(crate) struct Curl {
 
 /// Nearer to the axis than this an element lies on it, in R.
 const ON_AXIS: f64 = 1e-6;
+/// See [`is_on_axis`].
+pub(super) const ON_AXIS_NOTE: &str = "the first element lies on the axis: whether it could move off it is not known";
+
+/// Whether the first element lies on the axis: there its place is no longer held without loss.
+pub(super) fn is_on_axis(model: &Model, state: &State) -> bool {
+    state.axis_distance(0, model.elements[0].anchor).is_some_and(|away| away < ON_AXIS)
+}
 
 impl Curl {
     /// Rates of the lattice with l1, l2 and γ.
@@ -66,7 +73,7 @@ impl Curl {
         [0, 1].map(|k| written[k] + lateral[k] * l2 + shear[k] * gamma)
     }
 
-    /// Strains a state until what is held has its values; gives it with the quadratic programs that took, and `None` where the sheet locks before.
+    /// Strains a flat state until what is held has its values; gives it with the quadratic programs that took, and `None` where the sheet locks before.
     fn strained(&self, model: &Model, state: State, cancel: &AtomicBool) -> (Option<State>, u64) {
         let (u, w) = (self.direction.along(), self.direction.across());
         let f = state.deformation_gradient(model);
@@ -74,7 +81,9 @@ impl Curl {
         let missing = |free: bool, held: f64, now: f64| if free { 0.0 } else { held - now };
         let wider = missing(free.lateral_free, l2, w.dot(&(f * w)) - 1.0);
         let leaning = missing(free.shear_free, shear, w.dot(&(f * u)));
-        if wider.abs().max(leaning.abs()) < HELD {
+        // A rolled state of another direction has other images: it is taken as it is, and the search mends what then overlaps.
+        let is_rolled = state.roll.is_some_and(|roll| roll.turn_rad != [0.0; 2]);
+        if is_rolled || wider.abs().max(leaning.abs()) < HELD {
             return (Some(state), 0);
         }
         let [_, lateral, turned] = self.rates(model);
@@ -158,9 +167,8 @@ impl Target for Curl {
             let origin = places[0].xy().push(height);
             state.poses.iter_mut().for_each(|pose| pose.position -= origin);
         }
-        let (Some(state), iterations) = self.strained(model, state, cancel) else {
-            return Entered { at: None, iterations: 0 };
-        };
+        let (state, iterations) = self.strained(model, state, cancel);
+        let Some(state) = state else { return Entered { at: None, iterations } };
         let p = self.parameters(model, &state);
         let family = self.family(model);
         // A state of another direction has other images.
@@ -236,9 +244,7 @@ impl Curl {
             return counted(Answer::new(model, status));
         };
         let outside = !winds(model, &best.state);
-        // There its place is no longer held without loss.
-        let away = best.state.axis_distance(0, model.elements[0].anchor);
-        let on_axis = away.is_some_and(|away| away < ON_AXIS);
+        let on_axis = is_on_axis(model, &best.state);
         let status = match () {
             () if interrupted => Status::Interrupted,
             () if outside || on_axis => Status::Uncertified,
@@ -246,9 +252,7 @@ impl Curl {
         };
         let note = match () {
             () if outside => Some("the axis comes to pass through the sheet: nothing else stops the roll".to_owned()),
-            () if on_axis => {
-                Some("the first element lies on the axis: whether it could move off it is not known".to_owned())
-            }
+            () if on_axis => Some(ON_AXIS_NOTE.to_owned()),
             () => None,
         };
         let value = Some(self.sign * best.value());

@@ -2,14 +2,14 @@
 //! given curvature.
 //!
 //! N times the shortest lattice vector v along the direction goes once round a tube, so the turn for each unit of the written length is
-//! κ = 2π / (N |v|). The shear is 0, or the tube would not close; l1 and l2 are free. Elements that count for each other are at most half a turn
+//! κ = 2π / (N |v|). The shear is 0, or the tube would not close; l1 is free, and l2 where it is not held. Elements that count for each other are at most half a turn
 //! apart, which names each pair of the tube once. What is sought is the state with the widest gaps, or the largest or least length along the axis
 //! or radius of the neutral surface.
 //!
 //! A start is first rolled until its turn is the given one, as in [`super::curl`].
 
 use super::{
-    curl::{Curl, REACHED},
+    curl::{Curl, ON_AXIS_NOTE, REACHED, is_on_axis},
     local::LocalSolution,
     multistart::{Entered, Multistart, SearchResult, Target, verdict},
     options::{ExtremeOptions, FEASIBLE},
@@ -105,9 +105,8 @@ impl Target for Rolled {
     }
 
     fn enter(&self, model: &Model, start: Start, cancel: &AtomicBool) -> Entered {
-        let Entered { at: Some((state, p)), iterations } = self.curl.enter(model, start, cancel) else {
-            return Entered { at: None, iterations: 0 };
-        };
+        let Entered { at, iterations } = self.curl.enter(model, start, cancel);
+        let Some((state, p)) = at else { return Entered { at: None, iterations } };
         let mut family = self.curl.family(model);
         family.parameters[0].most = Some(self.curvature);
         let program = SheetProgram::new(model, &family);
@@ -157,8 +156,14 @@ pub(crate) fn rolled(
         let note = Some("no start could be rolled so far: that no such state exists is not proved".to_owned());
         return found.counted(Answer { note, ..Answer::new(model, status) });
     };
-    let status = if interrupted { Status::Interrupted } else { verdict(&best, f64::INFINITY) };
+    let on_axis = is_on_axis(model, &best.state);
+    let status = match () {
+        () if interrupted => Status::Interrupted,
+        () if on_axis => Status::Uncertified,
+        () => verdict(&best, f64::INFINITY),
+    };
+    let note = on_axis.then(|| ON_AXIS_NOTE.to_owned());
     let sense = if target.sought == OfRolled::Gap { 1.0 } else { target.sense };
     let (value, gradient) = (Some(sense * best.value()), best.state.deformation_gradient(model));
-    found.counted(Answer { value, gradient, ..Answer::new(model, status) }).with_solution(model, best)
+    found.counted(Answer { value, gradient, note, ..Answer::new(model, status) }).with_solution(model, best)
 }
