@@ -30,7 +30,7 @@ mod states;
 pub(crate) use csv::{csv_number, csv_text};
 pub use error::RecordError;
 pub use folder::{NamedRecord, Record, RecordFolder, file_name};
-pub use forces::{FORCE_COLUMNS, ForceTable, PLACE_COLUMNS, read_forces, write_forces};
+pub use forces::{BEND_COLUMN, FORCE_COLUMNS, ForceTable, PLACE_COLUMNS, read_forces, write_forces};
 pub(crate) use limits::csv_cell;
 pub use limits::{read_limits, write_limits};
 pub use lock::FolderLock;

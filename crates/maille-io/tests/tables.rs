@@ -5,7 +5,9 @@ mod rows;
 
 use maille::record::{Column, LIMIT_COLUMNS, RECORD_SCHEMA, Status};
 use maille_io::NumberPath;
-use maille_io::record::{FORCE_COLUMNS, NamedRecord, PLACE_COLUMNS, SENSITIVITY_COLUMNS, read_limits, write_limits};
+use maille_io::record::{
+    BEND_COLUMN, FORCE_COLUMNS, NamedRecord, PLACE_COLUMNS, SENSITIVITY_COLUMNS, read_limits, write_limits,
+};
 use maille_io::table::{Condition, Extent, Field, SortKey, Table};
 use rows::{design, record, row};
 use serde_json::Value;
@@ -145,7 +147,7 @@ fn the_page_of_columns_says_what_the_program_says() {
         format!("| `{}` |{unit} | {} | {} | {} |", c.name, c.kind.name(), c.since, c.meaning)
     };
     assert_eq!(lines, LIMIT_COLUMNS.iter().map(line).collect::<Vec<_>>());
-    assert_eq!(names(forces), FORCE_COLUMNS.into_iter().chain(PLACE_COLUMNS).collect::<Vec<_>>());
+    assert_eq!(names(forces), FORCE_COLUMNS.into_iter().chain([BEND_COLUMN]).chain(PLACE_COLUMNS).collect::<Vec<_>>());
     assert!(LIMIT_COLUMNS.iter().all(|c| (1..=RECORD_SCHEMA).contains(&c.since)));
     assert_eq!(names(statuses), Status::ALL.map(Status::name));
     assert_eq!(names(derivatives), SENSITIVITY_COLUMNS);

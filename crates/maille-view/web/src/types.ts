@@ -80,8 +80,8 @@ export interface Frame {
   energy: number;
   stretch: number | null;
   mean_force: number | null;
-  poses: PoseRecord[];
   roll: string | null;
+  poses: PoseRecord[];
 }
 
 export interface Judged {
