@@ -69,6 +69,7 @@ fn absent(registry: &Registry) -> BTreeMap<String, Vec<String>> {
         ("StateRecord", serde_json::to_value(StateRecord::default()).unwrap()),
         ("RingSpec", serde_json::to_value(&design.elements[0].rings[0]).unwrap()),
         ("Design", serde_json::to_value(&design).unwrap()),
+        ("LatticeSpec", serde_json::to_value(&design.lattice).unwrap()),
         ("Parameter", serde_json::to_value(&parameter).unwrap()),
     ];
     let of = |(name, value): (&str, serde_json::Value)| {

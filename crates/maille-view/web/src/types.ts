@@ -93,6 +93,7 @@ export interface Judged {
 export interface LatticeSpec {
   a1: [number, number, number];
   a2: [number, number, number];
+  single?: boolean;
 }
 
 export interface Limit {
