@@ -2,7 +2,7 @@
 
 use crate::{
     effort::SearchArgs,
-    exit::{self, wrong},
+    exit::{self, refused},
     input::{DesignArgs, Input, file_name},
     interrupt,
     map::{RunArgs, pool},
@@ -15,7 +15,7 @@ use maille::{
     record::Status,
     survey::{
         CellChoice,
-        surface::{Boundary, BoundaryOptions, BoundaryVertex, boundary},
+        surface::{Boundary, BoundaryOptions, BoundaryVertex, boundary, has_surface},
     },
 };
 use maille_io::{
@@ -84,10 +84,6 @@ pub struct Args {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let input = args.design.read()?;
-    if input.design.lattice.single {
-        let problem = format!("{} is a chain: it has a length, and no surface of strains", input.design.name);
-        return Err(wrong(exit::USAGE, problem, "ask for its limit along a1, as: maille characterize NAME"));
-    }
     let options = BoundaryOptions {
         tolerance: args.tolerance,
         most: args.vertices as usize,
@@ -97,6 +93,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         cells: args.cell.clone(),
     };
     let model = input.compile(&input.design, options.cell())?;
+    has_surface(&model).map_err(|e| refused(&e))?;
     let usual = || PathBuf::from("maille-out").join(format!("{}-boundary", file_name(&input.design.name)));
     let out = args.out.clone().unwrap_or_else(usual);
     let head = BoundaryHead::new(&input.design, &options);

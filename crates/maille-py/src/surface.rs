@@ -8,7 +8,7 @@ use crate::{
 };
 use maille::{
     survey::CellChoice,
-    survey::surface::{BoundaryOptions, BoundaryVertex, Ray, RaySolver, boundary_by as boundary_by_rays},
+    survey::surface::{BoundaryOptions, BoundaryVertex, Ray, RaySolver, boundary_by as boundary_by_rays, has_surface},
 };
 use maille_io::boundary::BoundaryHead;
 use pyo3::prelude::*;
@@ -69,6 +69,7 @@ pub fn boundary(
 ) -> PyResult<Surface> {
     let options = options(search)?;
     let model = design.compile(options.cell())?;
+    has_surface(&model).map_err(|e| error::invalid(&e))?;
     let found = wait(py, threads, progress.as_ref(), |cancel, tell| {
         let mut planned = |rays| tell(Step::More(rays));
         let found = |_: &_| tell(Step::Done);

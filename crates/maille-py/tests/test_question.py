@@ -128,6 +128,11 @@ def test_rolls_and_tubes():
     assert np.allclose([sheared["l2"][0], sheared["gamma"][0]], [-0.02, 0.03], rtol=0, atol=1e-9)
     assert maille.characterize("cable", threads=1).to_numpy()["l1"].round(4).tolist() == [0.1364]
     assert maille.roll("cable", axis="below", threads=1).to_numpy()["neutral_radius"].round(4).tolist() == [2.1962]
+    for asked in ({"wrap": [8], "gamma": 0.1}, {"wrap": [8], "shear": "free"}, {"wrap": [8], "curvature": [0.1]}):
+        with pytest.raises(maille.MailleError, match="a tube has its own"):
+            maille.roll("european-4-in-1", **asked)
+    with pytest.raises(maille.MailleError, match="chain"):
+        maille.boundary("cable")
     with pytest.raises(maille.ArgumentError, match="side of the sheet"):
         maille.roll("1.1", axis="left")
     with pytest.raises(maille.MailleError, match="no lattice vector lies along 20"):

@@ -269,9 +269,9 @@ impl Question {
     /// Whether it can be asked.
     ///
     /// # Errors
-    /// Without starts; for a number that is not finite, a direction or l2 beyond a million, an l2 of −1 or less, a strain that is named twice, strains that no
-    /// lattice has, a roll whose turn or strains cannot be, a ray whose direction is no unit vector, for the least wire or clearance, which nothing bounds, for the largest area,
-    /// and for a gap below 0.
+    /// Without starts; for a number that is not finite, a direction or l2 beyond a million, an l2 of −1 or less, a strain that is named twice,
+    /// strains that no lattice has, a roll whose turn or strains cannot be, a ray whose direction is no unit vector, for the least wire or
+    /// clearance, which nothing bounds, for the largest area, and for a gap below 0.
     pub fn check(&self) -> Result<(), InvalidInput> {
         if self.starts == Some(0) {
             return Err(InvalidInput::new("starts", "0 starts find nothing", "give 1 or more"));

@@ -176,8 +176,7 @@ impl RollQuestion {
     /// What is held of the strains along the axis.
     pub fn strains(&self) -> RollStrains {
         match self.kind() {
-            Kind::Tubes if self.free.lateral_free => RollStrains::OF_TUBE,
-            Kind::Tubes => RollStrains::default(),
+            Kind::Tubes => RollStrains::free(self.free),
             _ => RollStrains { free: self.free, l2: self.l2, shear: self.gamma },
         }
     }
@@ -226,13 +225,15 @@ impl RollQuestion {
         if self.directions_deg.is_empty() {
             return Err(InvalidInput::new("directions", "there is none", "give one or more"));
         }
+        let model = sheet.model();
+        let of_tube = Across { lateral_free: !model.single, shear_free: false };
         if self.kind() == Kind::Tubes
-            && (!self.curvatures.is_empty() || self.free.shear_free || (self.l2, self.gamma) != (0.0, 0.0))
+            && (!self.curvatures.is_empty() || self.free != of_tube || (self.l2, self.gamma) != (0.0, 0.0))
         {
-            let problem = "a tube has its own curvature, width and shear";
-            return Err(InvalidInput::new("wrap", problem, "leave curvature, l2 and shear out"));
+            let problem = "a tube has its own curvature and shear, and its length is free";
+            return Err(InvalidInput::new("wrap", problem, "leave out what is held or free, and the curvature"));
         }
-        let unit = sheet.model().unit;
+        let unit = model.unit;
         self.rolls().into_iter().try_for_each(|roll| sheet.check(&self.question(roll, unit)))
     }
 }

@@ -30,8 +30,10 @@ impl Turn {
                 Err(InvalidInput::new("strains", problem, "take a curvature in place of cells"))
             }
             Turn::Curvature(curvature) if !(LEAST..=MOST).contains(&curvature) => {
-                let problem = format!("a curvature of {curvature} by R");
-                let help = format!("give {LEAST} to {MOST}, above 0; on which side the axis is, is asked beside it");
+                let problem = format!("the curvature times R is {curvature:e}");
+                let help = format!(
+                    "give a curvature with which it is {LEAST} to {MOST}; the side of the axis is asked apart from it"
+                );
                 Err(InvalidInput::new("curvature", problem, help))
             }
             _ => Ok(()),
@@ -86,10 +88,12 @@ impl RollStrains {
         width(self.l2)?;
         within("shear", "shear", self.shear)?;
         let Across { lateral_free, shear_free } = self.free;
-        for (field, value, free) in [("l2", self.l2, lateral_free), ("shear", self.shear, shear_free)] {
+        for (field, what, value, free) in
+            [("l2", "width", self.l2, lateral_free), ("shear", "shear", self.shear, shear_free)]
+        {
             if free && value != 0.0 {
-                let problem = format!("{value} is given for what is left to the sheet");
-                return Err(InvalidInput::new(field, problem, "give a value, or leave it free"));
+                let problem = format!("{field} = {value} is given, and the {what} is left to the sheet");
+                return Err(InvalidInput::new(field, problem, "leave one of them out"));
             }
         }
         Ok(())

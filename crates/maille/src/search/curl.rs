@@ -3,8 +3,8 @@
 //! Images are turned about one axis across the direction u (`docs/theory/roll.md`). κ is the turn for each unit of length of the written
 //! sheet along u, and F = (1 + l1) u uᵀ + (1 + l2) w wᵀ + γ w uᵀ: lines of the sheet along the axis w stay along it. The height of the
 //! elements and l1 with κ are one geometry in many ways, so the first element's place is held, over the axis, and l1 is free in any case. l2 and γ
-//! are held at given values or left to the sheet; a start is first strained to them, flat. Nothing bounds κ by links: where it stops rings crowd each other, and the most that is claimed is
-//! `local`.
+//! are held at given values or left to the sheet; a start is first strained to them, flat. Nothing bounds κ by links: where it stops rings crowd
+//! each other, and the most that is claimed is `local`.
 //!
 //! Starts are the written state, flat states that are stretched and pressed as far as they go, and those that are drawn.
 
@@ -73,7 +73,8 @@ impl Curl {
         [0, 1].map(|k| written[k] + lateral[k] * l2 + shear[k] * gamma)
     }
 
-    /// Strains a flat state until what is held has its values; gives it with the quadratic programs that took, and `None` where the sheet locks before.
+    /// Strains a flat state until what is held has its values; gives it with the quadratic programs that took, and `None` where the sheet locks
+    /// before.
     fn strained(&self, model: &Model, state: State, cancel: &AtomicBool) -> (Option<State>, u64) {
         let (u, w) = (self.direction.along(), self.direction.across());
         let f = state.deformation_gradient(model);
@@ -86,8 +87,8 @@ impl Curl {
         if is_rolled || wider.abs().max(leaning.abs()) < HELD {
             return (Some(state), 0);
         }
-        let [_, lateral, turned] = self.rates(model);
-        let rate = [0, 1].map(|k| lateral[k] * wider + turned[k] * leaning);
+        let [_, lateral, shearing] = self.rates(model);
+        let rate = [0, 1].map(|k| lateral[k] * wider + shearing[k] * leaning);
         let share = Parameter { rate, weight: 1.0, most: Some(1.0), ..Parameter::default() };
         let parameters: Vec<Parameter> = std::iter::once(share).chain(self.strains(model, [0.0; 3])).collect();
         let zero = vec![0.0; parameters.len()];

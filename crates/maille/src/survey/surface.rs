@@ -15,9 +15,10 @@ use super::{
     request::CellChoice,
 };
 use crate::{
+    error::InvalidInput,
     lattice::Cell,
     model::Model,
-    question::{Effort, Sense, StrainQuery},
+    question::{Effort, Goal, Question, Sense, StrainQuery},
     record::Status,
     search::strain::{OtherStarts, StrainMethod, StrainOptions},
     state::{Pose, State},
@@ -193,6 +194,14 @@ impl<'a> RaySolver<'a> {
             poses: answer.state.poses.iter().map(pose).collect(),
         })
     }
+}
+
+/// Whether the sheet of `model` has a surface of strains: a chain has none.
+///
+/// # Errors
+/// That of [`Question::suits`] for a ray.
+pub fn has_surface(model: &Model) -> Result<(), InvalidInput> {
+    Question::new(Goal::Ray { direction: [1.0, 0.0, 0.0] }, Sense::Largest).suits(model)
 }
 
 /// Finds the surface on the current thread pool; the result does not depend on the number of threads. `known` are vertices of
