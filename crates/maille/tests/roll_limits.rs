@@ -7,7 +7,8 @@ use maille::{
     question::{Goal, OfRolled, RollStrains, Sense, Turn},
     survey::RollTask,
 };
-use maille_geometry::circle_distance_minima;
+use maille_geometry::{Vec3, circle_distance_minima};
+use nalgebra::{SMatrix, SVector};
 use std::{f64::consts::TAU, sync::atomic::AtomicBool};
 
 /// A built-in design in one cell.
@@ -187,4 +188,63 @@ fn shear_that_is_given_has_its_mirror_image() {
     };
     let [left, none, right] = [-0.1, 0.0, 0.1].map(ask);
     assert!((left - right).abs() < 1e-8 && (left - none).abs() > 1e-4, "{left} {none} {right}");
+}
+
+/// What must hold in the tightest roll of a chain of thick rings (docs/theory/roll.md), of the contact's angles s and t, the turn φ
+/// of a cell, the distance ρ from the axis, the tilt τ and the offset h.
+fn of_tightest_chain(r: f64, v: &SVector<f64, 6>) -> SVector<f64, 6> {
+    let [s, t, turn, rho, tilt, h]: [f64; 6] = (*v).into();
+    let (sin, cos) = (turn / 2.0).sin_cos();
+    let half_turned = |p: Vec3| Vec3::new(p.z * sin - p.x * cos, -p.y, p.x * sin + p.z * cos);
+    let point = |s: f64| Vec3::new(s.cos(), s.sin() * tilt.cos() - h, s.sin() * tilt.sin() + rho);
+    let tangent = |s: f64| Vec3::new(-s.sin(), s.cos() * tilt.cos(), s.cos() * tilt.sin());
+    let tilted = |s: f64| Vec3::new(0.0, -s.sin() * tilt.sin(), s.sin() * tilt.cos());
+    let n = half_turned(point(t)) - point(s);
+    let reach = (cos * cos + (tilt.sin() * sin).powi(2)).sqrt();
+    let by_rho = [sin, n.dot(&(half_turned(Vec3::z()) - Vec3::z()))];
+    let by_tilt = [-tilt.sin() * tilt.cos() * sin * sin / reach, n.dot(&(half_turned(tilted(t)) - tilted(s)))];
+    SVector::from([
+        rho * sin - reach - r,
+        n.norm_squared() - 4.0 * r * r,
+        n.dot(&tangent(s)),
+        n.dot(&half_turned(tangent(t))),
+        n.y,
+        by_rho[0] * by_tilt[1] - by_rho[1] * by_tilt[0],
+    ])
+}
+
+/// The solution near `v`, by Newton's method.
+fn tightest_chain(r: f64, mut v: SVector<f64, 6>) -> SVector<f64, 6> {
+    for _ in 0..30 {
+        let jacobian = SMatrix::<f64, 6, 6>::from_columns(&std::array::from_fn::<_, 6, _>(|i| {
+            let step = SVector::from_fn(|k, _| if k == i { 1e-6 } else { 0.0 });
+            (of_tightest_chain(r, &(v + step)) - of_tightest_chain(r, &(v - step))) / 2e-6
+        }));
+        v -= jacobian.lu().solve(&of_tightest_chain(r, &v)).unwrap();
+    }
+    assert!(of_tightest_chain(r, &v).amax() < 1e-14, "{r} {v}");
+    v
+}
+
+#[test]
+fn a_chain_of_thick_rings_rolls_as_far_as_six_equations_say() {
+    let mut known = SVector::from([-0.9709, -0.0153, 3.3286, 0.4353, 0.0959, -0.4184]);
+    for (r, pitch) in [(0.3, 2.61), (0.3, 2.75), (0.31, 2.65), (0.32, 2.65), (0.29, 2.61), (0.27, 2.61)] {
+        known = tightest_chain(r, known);
+        let design = format!(
+            "schema = 1\nname = \"chain\"\nminor_radius = {r}\nreference_radius = 1.0\n\
+             [lattice]\na1 = [{pitch}, 0.0, 0.0]\n\
+             [[elements]]\nname = \"flat\"\ncenter = [0.0, 0.0, 0.0]\n\
+             rings = [{{ major_radius = 1.0, normal = [0.0, 0.0, 1.0] }}]\n\
+             [[elements]]\nname = \"upright\"\ncenter = [{}, 0.0, 0.0]\n\
+             rings = [{{ major_radius = 1.0, normal = [0.0, 1.0, 0.0] }}]\n",
+            pitch / 2.0
+        );
+        let design = maille_io::read_design("chain", &design).unwrap();
+        let sheet = Sheet::in_cells(&design, "1x1".parse::<Cell>().unwrap().into()).unwrap();
+        let answer = sheet.answer(&Question::curvature_along(0.0, 1.0)).unwrap();
+        assert_eq!(answer.status, Status::Local, "{r}");
+        let found = answer.value.unwrap() * pitch;
+        assert!((found - known[2]).abs() < 1e-10, "{r} {pitch}: {found} {}", known[2]);
+    }
 }
