@@ -9,10 +9,12 @@ mod common;
 use common::{Family, Pair, circle, degenerate, direction, linked, near_degenerate, rng, symmetric, thin_gap, uniform};
 use divan::{Bencher, black_box, counter::ItemsCount};
 use maille_geometry::{
-    Approaches, Instructions, circle_distance_approaches_with, circle_distance_lower_bound, circle_distance_minima,
-    circle_distance_minima_polynomial, linking_number, point_circle_distance,
+    Approaches, Arc, Circle, Instructions, Piece, Segment, Vec3, circle_distance_approaches_with,
+    circle_distance_lower_bound, circle_distance_minima, circle_distance_minima_polynomial, linking_number,
+    piece_distance_minima, point_circle_distance,
 };
 use rand::RngExt;
+use std::f64::consts::TAU;
 
 const PAIRS: usize = 1_000;
 const FAMILIES: [&str; 8] =
@@ -99,6 +101,26 @@ fn linking(bencher: Bencher<'_, '_>, family: &str) {
 #[divan::bench(args = ["uniform"])]
 fn point(bencher: Bencher<'_, '_>, family: &str) {
     time(bencher, family, |(a, b)| point_circle_distance(&b.center, a));
+}
+
+/// Pieces that lie about one another at random.
+#[divan::bench(args = ["segment, segment", "segment, arc", "arc, arc"])]
+fn pieces(bencher: Bencher<'_, '_>, kinds: &str) {
+    let mut rng = rng(98);
+    let mut piece = |kind: &str| {
+        let at = Vec3::from_fn(|_, _| rng.random_range(-1.0..1.0));
+        let other = at + *direction(&mut rng) * rng.random_range(0.5..2.0);
+        let circle = Circle::new(at, direction(&mut rng), rng.random_range(0.3..1.5));
+        let arc = Arc::new(circle, rng.random_range(0.0..TAU), rng.random_range(0.5..5.0)).unwrap();
+        if kind == "arc" { Piece::Arc(arc) } else { Piece::Segment(Segment::new(at, other).unwrap()) }
+    };
+    let (a, b) = kinds.split_once(", ").unwrap();
+    let pairs: Vec<(Piece, Piece)> = (0..PAIRS).map(|_| (piece(a), piece(b))).collect();
+    bencher.counter(ItemsCount::new(PAIRS)).bench(|| {
+        for (a, b) in &pairs {
+            black_box(&piece_distance_minima(black_box(a), b));
+        }
+    });
 }
 
 /// Neighbouring rings of a weave: linked, with a distance of the core circles between 0.02 R and 0.4 R.

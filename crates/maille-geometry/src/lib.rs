@@ -1,8 +1,9 @@
 //! Exact distances, gaps and linking numbers of circles and tori in three-dimensional space.
 //!
 //! A ring of round wire is a [`Torus`]: a core [`Circle`] of radius `R` and a wire of radius `r`. Whether two rings
-//! touch, overlap or are linked follows from their core circles alone, so this crate is about two circles. All
-//! functions work on `f64`, start no threads and allocate nothing on the heap.
+//! touch, overlap or are linked follows from their core circles alone, so most of this crate is about two
+//! circles. Other curves are made of [pieces](Piece), segments and arcs. All functions work on `f64`, start no
+//! threads and allocate nothing on the heap.
 //!
 //! # Example
 //!
@@ -38,6 +39,7 @@
 //! | A cheap lower bound of the distance | [`circle_distance_lower_bound`] | `circle_circle/lower_bound.rs` |
 //! | A cross-check of the minima by polynomial roots | [`circle_distance_minima_polynomial`] | `circle_circle/polynomial.rs` |
 //! | How wide is the gap between two tori? | [`torus_gap`], [`torus_gaps`] | `torus.rs` |
+//! | Where are the local minima of the distance of two segments or arcs? | [`piece_distance_minima`] | `piece` |
 //! | Are two circles linked, and with which sign? | [`linking_number`], [`interlocks`] | `linking.rs` |
 //!
 //! # Method
@@ -57,8 +59,8 @@
 //!
 //! A file imports only files above it in this list: `tolerance`, `circle`, `simd`, then within `circle_circle` the
 //! result types (`minimum`, `approach`), the frames (`angle`, `normalized_pair`, `pair_frame`, `simd_frame`),
-//! `fast` and `exhaustive`, `one_pair`, `many_pairs`; `lower_bound`, `polynomial`, `linking` and `torus` stand
-//! beside or above them.
+//! `fast` and `exhaustive`, `one_pair`, `many_pairs`; `lower_bound`, `polynomial`, `piece`, `linking` and `torus`
+//! stand beside or above them.
 //!
 //! # Accuracy
 //!
@@ -90,6 +92,7 @@
 mod circle;
 mod circle_circle;
 mod linking;
+mod piece;
 mod simd;
 mod tolerance;
 mod torus;
@@ -102,6 +105,7 @@ pub use circle_circle::minimum::{MAX_MINIMA, Minima, Minimum, PairKind};
 pub use circle_circle::one_pair::circle_distance_minima;
 pub use circle_circle::polynomial::circle_distance_minima_polynomial;
 pub use linking::{interlocks, linking_number};
+pub use piece::{Arc, MAX_PIECE_MINIMA, Piece, PieceMinima, PieceMinimum, Place, Segment, piece_distance_minima};
 pub use tolerance::ROUNDING;
 pub use torus::{Torus, torus_gap, torus_gaps};
 

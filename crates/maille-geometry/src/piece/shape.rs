@@ -1,0 +1,188 @@
+//! Straight segments and circular arcs.
+
+use crate::circle::{Circle, Vec3};
+use nalgebra::UnitVector3;
+use std::f64::consts::PI;
+
+/// A straight segment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Segment {
+    start: Vec3,
+    end: Vec3,
+    along: UnitVector3<f64>,
+    length: f64,
+}
+
+impl Segment {
+    /// The segment between two points, or none if they are one, or not finite.
+    pub fn new(start: Vec3, end: Vec3) -> Option<Self> {
+        let length = (end - start).norm();
+        (length > 0.0 && length.is_finite()).then(|| {
+            let along = UnitVector3::new_unchecked((end - start) / length);
+            Self { start, end, along, length }
+        })
+    }
+
+    /// The unit vector from the start to the end.
+    pub fn along(&self) -> UnitVector3<f64> {
+        self.along
+    }
+}
+
+/// An arc of a circle, or the whole circle.
+///
+/// It runs counter-clockwise, seen from the side to which the circle's normal points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arc {
+    circle: Circle,
+    /// Unit vector from the centre to the middle of the arc.
+    middle: Vec3,
+    /// Half of the angle, at most π, with its cosine and sine.
+    half_angle_rad: f64,
+    half_cos: f64,
+    half_sin: f64,
+}
+
+impl Arc {
+    /// The arc that starts at an angle of the circle's [frame](Circle::frame) and goes on by `sweep_rad`; the whole
+    /// circle if that is 2π or more. None if the sweep is not positive.
+    pub fn new(circle: Circle, start_rad: f64, sweep_rad: f64) -> Option<Self> {
+        let half_angle_rad = (0.5 * sweep_rad).min(PI);
+        (half_angle_rad > 0.0 && start_rad.is_finite()).then(|| {
+            let (u, v) = circle.frame();
+            let (sin, cos) = (start_rad + half_angle_rad).sin_cos();
+            let (half_sin, half_cos) = half_angle_rad.sin_cos();
+            Self { circle, middle: u * cos + v * sin, half_angle_rad, half_cos, half_sin }
+        })
+    }
+
+    /// The arc from `start` to `end` that leaves `start` along `tangent`. None if the points are one, if `tangent` is
+    /// zero, or if it points along the line through them: then no circle does this.
+    pub fn from_tangent(start: Vec3, tangent: Vec3, end: Vec3) -> Option<Self> {
+        let (chord, tangent) = (end - start, tangent.try_normalize(0.0)?);
+        // The chord makes half of the arc's angle with the tangent.
+        let normal = UnitVector3::try_new(tangent.cross(&chord), 0.0)?;
+        let inward = normal.cross(&tangent);
+        let (ahead, aside) = (chord.dot(&tangent), chord.dot(&inward));
+        let radius = chord.norm_squared() / (2.0 * aside);
+        if !radius.is_finite() {
+            return None;
+        }
+        let half_angle_rad = aside.atan2(ahead);
+        let (half_sin, half_cos) = half_angle_rad.sin_cos();
+        let middle = tangent * half_sin - inward * half_cos;
+        let circle = Circle { center: start + inward * radius, normal, radius };
+        Some(Self { circle, middle, half_angle_rad, half_cos, half_sin })
+    }
+
+    /// The circle on which it lies.
+    pub fn circle(&self) -> &Circle {
+        &self.circle
+    }
+
+    /// Its angle, at most 2π.
+    pub fn sweep_rad(&self) -> f64 {
+        2.0 * self.half_angle_rad
+    }
+
+    /// Whether it is the whole circle.
+    pub fn is_closed(&self) -> bool {
+        self.half_angle_rad == PI
+    }
+
+    /// Unit vector in its plane, a quarter turn on from the middle.
+    fn aside(&self) -> Vec3 {
+        self.circle.normal.cross(&self.middle)
+    }
+}
+
+/// A piece of a curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Piece {
+    /// A straight one.
+    Segment(Segment),
+    /// A circular one, or a whole circle.
+    Arc(Arc),
+}
+
+/// Where on a piece a point lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// Between its ends, or anywhere on a whole circle.
+    Inside,
+    /// At its start.
+    Start,
+    /// At its end.
+    End,
+}
+
+impl Piece {
+    /// The whole circle.
+    pub fn circle(circle: Circle) -> Self {
+        let middle = circle.frame().0;
+        Piece::Arc(Arc { circle, middle, half_angle_rad: PI, half_cos: -1.0, half_sin: 0.0 })
+    }
+
+    /// Its length.
+    pub fn length(&self) -> f64 {
+        match self {
+            Piece::Segment(segment) => segment.length,
+            Piece::Arc(arc) => arc.circle.radius * arc.sweep_rad(),
+        }
+    }
+
+    /// The point at `t`, from 0 at the start to 1 at the end.
+    pub fn point(&self, t: f64) -> Vec3 {
+        match self {
+            Piece::Segment(segment) => segment.start + (segment.end - segment.start) * t,
+            Piece::Arc(arc) => {
+                let (sin, cos) = (arc.half_angle_rad * (2.0 * t - 1.0)).sin_cos();
+                arc.circle.center + (arc.middle * cos + arc.aside() * sin) * arc.circle.radius
+            }
+        }
+    }
+
+    /// Start and end with the unit tangents that point into the piece; none for a whole circle.
+    pub(super) fn ends(&self) -> Option<[(Place, Vec3, Vec3); 2]> {
+        match self {
+            Piece::Segment(segment) => {
+                let along = *segment.along;
+                Some([(Place::Start, segment.start, along), (Place::End, segment.end, -along)])
+            }
+            Piece::Arc(arc) if arc.is_closed() => None,
+            Piece::Arc(arc) => {
+                let (middle, aside, radius) = (arc.middle, arc.aside(), arc.circle.radius);
+                let (cos, sin) = (arc.half_cos, arc.half_sin);
+                let end = |sign: f64| arc.circle.center + (middle * cos + aside * (sign * sin)) * radius;
+                let inward = |sign: f64| middle * sin - aside * (sign * cos);
+                Some([(Place::Start, end(-1.0), inward(-1.0)), (Place::End, end(1.0), inward(1.0))])
+            }
+        }
+    }
+
+    /// The point nearest to `p` on the whole line or circle, if it lies between the ends. From the axis of the circle,
+    /// where all are equally near, it is the middle of the arc.
+    pub(super) fn foot(&self, p: &Vec3) -> Option<Vec3> {
+        match self {
+            Piece::Segment(segment) => {
+                let t = (p - segment.start).dot(&segment.along);
+                (t > 0.0 && t < segment.length).then(|| segment.start + *segment.along * t)
+            }
+            Piece::Arc(arc) => {
+                let delta = p - arc.circle.center;
+                let flat = delta - *arc.circle.normal * arc.circle.normal.dot(&delta);
+                let direction = flat.try_normalize(0.0).unwrap_or(arc.middle);
+                let inside = arc.is_closed() || direction.dot(&arc.middle) > arc.half_cos;
+                inside.then(|| arc.circle.center + direction * arc.circle.radius)
+            }
+        }
+    }
+
+    /// A point of the piece, and its size: the longer of length and radius.
+    pub(super) fn extent(&self) -> (Vec3, f64) {
+        match self {
+            Piece::Segment(segment) => (segment.start, segment.length),
+            Piece::Arc(arc) => (arc.circle.center, arc.circle.radius),
+        }
+    }
+}
