@@ -40,6 +40,7 @@
 //! | A cross-check of the minima by polynomial roots | [`circle_distance_minima_polynomial`] | `circle_circle/polynomial.rs` |
 //! | How wide is the gap between two tori? | [`torus_gap`], [`torus_gaps`] | `torus.rs` |
 //! | Where are the local minima of the distance of two segments or arcs? | [`piece_distance_minima`] | `piece` |
+//! | How often are two closed curves of them linked? | [`curve_linking_number`] | `piece/linking.rs` |
 //! | Are two circles linked, and with which sign? | [`linking_number`], [`interlocks`] | `linking.rs` |
 //!
 //! # Method
@@ -105,7 +106,10 @@ pub use circle_circle::minimum::{MAX_MINIMA, Minima, Minimum, PairKind};
 pub use circle_circle::one_pair::circle_distance_minima;
 pub use circle_circle::polynomial::circle_distance_minima_polynomial;
 pub use linking::{interlocks, linking_number};
-pub use piece::{Arc, MAX_PIECE_MINIMA, Piece, PieceMinima, PieceMinimum, Place, Segment, piece_distance_minima};
+pub use piece::{
+    Arc, MAX_PIECE_MINIMA, Piece, PieceMinima, PieceMinimum, Place, Segment, biarc, curve_linking_number,
+    piece_distance_minima,
+};
 pub use tolerance::ROUNDING;
 pub use torus::{Torus, torus_gap, torus_gaps};
 

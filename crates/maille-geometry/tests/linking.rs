@@ -5,7 +5,10 @@ mod common;
 use std::f64::consts::{PI, TAU};
 
 use common::{FAMILIES, circle, oracle, rng, sample_angles, uniform};
-use maille_geometry::{Circle, Torus, circle_distance_minima, interlocks, linking_number, torus_gap, torus_gaps};
+use maille_geometry::{
+    Arc, Circle, Piece, Segment, Torus, Vec3, circle_distance_minima, curve_linking_number, interlocks, linking_number,
+    torus_gap, torus_gaps,
+};
 use rand::RngExt;
 
 /// `1/4π ∮∮ (A − B)·(dA × dB)/|A − B|³` by the trapezoidal rule, which converges exponentially for disjoint circles.
@@ -98,4 +101,73 @@ fn gaps_are_distances_minus_radii() {
             assert!((gap + p.minor_radius + q.minor_radius - distance).abs() < 1e-12);
         }
     }
+}
+
+/// A circle in so many arcs.
+fn arcs(c: &Circle, count: usize) -> Vec<Piece> {
+    let sweep = TAU / count as f64;
+    (0..count).map(|i| Piece::Arc(Arc::new(*c, 0.3 + i as f64 * sweep, sweep).unwrap())).collect()
+}
+
+#[test]
+fn circles_in_arcs_are_linked_as_circles() {
+    let mut rng = rng(26);
+    for (name, family) in FAMILIES {
+        let mut linked = 0;
+        for _ in 0..300 {
+            let (a, b) = family(&mut rng);
+            if circle_distance_minima(&a, &b).closest().distance < 1e-4 * a.radius.max(b.radius) {
+                continue;
+            }
+            let known = linking_number(&a, &b);
+            linked += known.abs();
+            assert_eq!(curve_linking_number(&arcs(&a, 1), &arcs(&b, 1)), Some(known), "{name} {a:?} {b:?}");
+            assert_eq!(curve_linking_number(&arcs(&b, 2), &arcs(&a, 5)), Some(known), "{name} {a:?} {b:?}");
+        }
+        assert!(name != "linked" || linked > 100);
+    }
+}
+
+/// A closed curve that winds q times about the ring while it goes round once, and one that goes round p times.
+#[test]
+fn curves_on_a_torus_have_their_winding_numbers() {
+    let wound = |p: i32, q: i32, tube: f64| -> Vec<Piece> {
+        let n = 40 * (p + q.abs());
+        let at = |i: i32| {
+            let t = TAU * f64::from(i % n) / f64::from(n);
+            let ((sin, cos), (aside, along)) = ((f64::from(q) * t).sin_cos(), (f64::from(p) * t).sin_cos());
+            Vec3::new((1.0 + tube * cos) * along, (1.0 + tube * cos) * aside, tube * sin)
+        };
+        (0..n).map(|i| Piece::Segment(Segment::new(at(i), at(i + 1)).unwrap())).collect()
+    };
+    let core = Circle::new(Vec3::zeros(), Vec3::z_axis(), 1.0);
+    let axis = Circle::new(Vec3::new(20.0, 0.0, 0.0), Vec3::y_axis(), 20.0);
+    let number = |q: i32| curve_linking_number(&[Piece::circle(core)], &wound(1, q, 0.3)).unwrap();
+    let sign = number(1);
+    assert_eq!(sign.abs(), 1);
+    for q in -4..=4 {
+        assert_eq!(number(q), sign * q, "{q}");
+    }
+    for p in 1..4 {
+        let round = curve_linking_number(&wound(p, 1, 0.3), &[Piece::circle(axis)]).unwrap();
+        assert_eq!(round.abs(), p);
+        // Reversed, the sign changes.
+        let back: Vec<Piece> = wound(p, 1, 0.3)
+            .iter()
+            .rev()
+            .map(|piece| Piece::Segment(Segment::new(piece.point(1.0), piece.point(0.0)).unwrap()))
+            .collect();
+        assert_eq!(curve_linking_number(&back, &[Piece::circle(axis)]), Some(-round));
+    }
+    // Two curves of the same torus: on one inside the other, both numbers of windings multiply.
+    assert_eq!(curve_linking_number(&wound(2, 3, 0.4), &wound(1, 0, 0.2)).unwrap().abs(), 3);
+}
+
+#[test]
+fn open_and_touching_curves_have_no_linking_number() {
+    let ring = |x: f64| Circle::new(Vec3::new(x, 0.0, 0.0), Vec3::z_axis(), 1.0);
+    assert_eq!(curve_linking_number(&arcs(&ring(0.0), 3)[..2], &arcs(&ring(5.0), 1)), None);
+    assert_eq!(curve_linking_number(&[], &arcs(&ring(5.0), 1)), None);
+    assert_eq!(curve_linking_number(&arcs(&ring(0.0), 1), &arcs(&ring(1.0), 1)), None);
+    assert_eq!(curve_linking_number(&arcs(&ring(0.0), 1), &arcs(&ring(5.0), 1)), Some(0));
 }
