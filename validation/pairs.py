@@ -1,12 +1,15 @@
-"""The hardest of the adversarial pairs of circles, solved with 50 digits.
+"""The hardest of the adversarial pairs of circles, and of segments and arcs, solved with 50 digits.
 
     MAILLE_PAIRS=1000000 MAILLE_HARDEST=/tmp/hardest.csv cargo test --release -p maille-geometry --test adversarial
+    MAILLE_HARDEST=/tmp/pieces.csv cargo test --release -p maille-geometry --test pieces -- --ignored
     python validation/pairs.py /tmp/hardest.csv
+    python validation/pairs.py /tmp/pieces.csv
 
-A line: centre, normal and radius of A and of B, and the distances that were found. The distance of a point of B from A is
+A line of circles: centre, normal and radius of A and of B, and the distances that were found. The distance of a point of B from A is
 d^2 = z^2 + (rho - R)^2; its local minima along B are bracketed by 4,096 samples and around each distance that was found,
 and refined by golden section with mpmath. Compared are the least distance, and every minimum with a barrier of 1e-9 of the
-pair's size. Needs numpy and mpmath.
+pair's size. A line of pieces has both, and the distances. A is then gone along by t = (1 - cos angle) / 2, so that its
+ends are minima of the angle where they are minima; B is exact. Needs numpy and mpmath.
 """
 
 import sys
@@ -81,6 +84,84 @@ class Pair:
         return (low + high) / 2
 
 
+def read_piece(text):
+    kind, *numbers = text.split()
+    return kind, vector(numbers)
+
+
+class Pieces(Pair):
+    """Two segments or arcs with the functions of a pair of circles."""
+
+    def __init__(self, a, b):
+        self.a, self.b = read_piece(a), read_piece(b)
+        coordinates = max(abs(float(x)) for _, numbers in (self.a, self.b) for x in numbers)
+        self.size = max(self.length(piece) for piece in (self.a, self.b))
+        self.rounding = 8 * 2.3e-16 * coordinates
+
+    @staticmethod
+    def length(piece):
+        kind, v = piece
+        return mp.sqrt(sum((y - x) ** 2 for x, y in zip(v[:3], v[3:]))) if kind == "segment" else v[6] * v[10]
+
+    @staticmethod
+    def frame(v):
+        """Centre, unit vector to the start and one a quarter turn on, normal."""
+        start = unit([s - c for s, c in zip(v[7:10], v[:3])])
+        normal = unit(v[3:6])
+        return v[:3], start, cross(normal, start), normal
+
+    def point(self, t):
+        kind, v = self.a
+        if kind == "segment":
+            return [x + (y - x) * t for x, y in zip(v[:3], v[3:])]
+        center, start, aside, _ = self.frame(v)
+        c, s = v[6] * mp.cos(v[10] * t), v[6] * mp.sin(v[10] * t)
+        return [x + c * u + s * w for x, u, w in zip(center, start, aside)]
+
+    def from_b(self, p):
+        kind, v = self.b
+        far = lambda q: mp.sqrt(sum((x - y) ** 2 for x, y in zip(p, q)))
+        if kind == "segment":
+            along = [y - x for x, y in zip(v[:3], v[3:])]
+            t = min(max(dot([x - y for x, y in zip(p, v[:3])], along) / dot(along, along), mp.mpf(0)), mp.mpf(1))
+            return far([x + t * u for x, u in zip(v[:3], along)])
+        center, start, aside, normal = self.frame(v)
+        d = [x - c for x, c in zip(p, center)]
+        z, x, y = dot(d, normal), dot(d, start), dot(d, aside)
+        if mp.atan2(y, x) % (2 * mp.pi) <= v[10]:
+            return mp.sqrt(z * z + (mp.sqrt(x * x + y * y) - v[6]) ** 2)
+        ends = [(mp.mpf(1), mp.mpf(0)), (mp.cos(v[10]), mp.sin(v[10]))]
+        return min(mp.sqrt((x - v[6] * c) ** 2 + (y - v[6] * s) ** 2 + z * z) for c, s in ends)
+
+    def distance(self, angle):
+        return self.from_b(self.point((1 - mp.cos(angle)) / 2))
+
+    def samples(self):
+        angle = np.arange(SAMPLES) * (2 * np.pi / SAMPLES)
+        half = [float(self.coarse((1 - np.cos(x)) / 2)) for x in angle[: SAMPLES // 2 + 1]]
+        return angle, np.array(half + half[-2:0:-1])
+
+    def coarse(self, t):
+        """The distance in double precision."""
+        if not hasattr(self, "double"):
+            self.double = [(kind, [float(x) for x in v]) for kind, v in (self.a, self.b)]
+            self.frames = [None if k == "segment" else [np.array([float(x) for x in w]) for w in self.frame(v)] for k, v in (self.a, self.b)]
+        (kind, v), frame = self.double[0], self.frames[0]
+        if kind == "segment":
+            p = np.array(v[:3]) + t * (np.array(v[3:]) - np.array(v[:3]))
+        else:
+            p = frame[0] + v[6] * (np.cos(v[10] * t) * frame[1] + np.sin(v[10] * t) * frame[2])
+        (kind, v), frame = self.double[1], self.frames[1]
+        if kind == "segment":
+            start, along = np.array(v[:3]), np.array(v[3:]) - np.array(v[:3])
+            return np.linalg.norm(p - start - along * np.clip((p - start) @ along / (along @ along), 0, 1))
+        d = p - frame[0]
+        z, x, y = d @ frame[3], d @ frame[1], d @ frame[2]
+        if np.arctan2(y, x) % (2 * np.pi) <= v[10]:
+            return np.hypot(z, np.hypot(x, y) - v[6])
+        return min(np.sqrt((x - v[6] * c) ** 2 + (y - v[6] * s) ** 2 + z * z) for c, s in [(1, 0), (np.cos(v[10]), np.sin(v[10]))])
+
+
 def significant(distance, k, size):
     """Whether barriers stand on both sides of sample k before anything lower."""
     for step in (1, -1):
@@ -91,14 +172,27 @@ def significant(distance, k, size):
     return True
 
 
+def valleys(places, distance, size):
+    """Of the places in one valley without a barrier between them, the lowest."""
+    out = []
+    for k in sorted(places, key=lambda k: distance[k]):
+        low = np.roll(distance, -k) <= distance[k] + SIGNIFICANT * size
+        ahead, behind = (len(way) if way.all() else int(np.argmin(way)) for way in (low, np.roll(low[::-1], 1)))
+        if not any((j - k) % len(distance) < ahead or (k - j) % len(distance) < behind for j in out):
+            out.append(k)
+    return out
+
+
 def check(line):
     numbers = line.strip().split(",")
-    pair, found = Pair(numbers[:14]), [float(x) for x in numbers[14].split()]
+    pair = Pieces(*numbers[:2]) if len(numbers) == 3 else Pair(numbers[:14])
+    found = [float(x) for x in numbers[-1].split()]
     angle, distance = pair.samples()
     size, width = float(pair.size), 2 * np.pi / SAMPLES
     places = np.flatnonzero((distance <= np.roll(distance, 1)) & (distance < np.roll(distance, -1)))
     lowest = int(np.argmin(distance))
     places = [k for k in places.tolist() if k == lowest or significant(distance, k, size)] or [lowest]
+    places = valleys(places, distance, size)
     missed, least = 0, mp.inf
     for k in places:
         exact = pair.distance(pair.refine(angle[k] - width, angle[k] + width))

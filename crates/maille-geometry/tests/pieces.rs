@@ -1,4 +1,7 @@
 //! No minimum of two pieces is missed, and none is false: `piece_distance_minima` against a search on a grid.
+//!
+//! `MAILLE_HARDEST` names a file for the pairs nearest to a change of what is a minimum, which `validation/pairs.py`
+//! solves with 50 digits.
 
 mod common;
 
@@ -197,7 +200,45 @@ fn problem(a: &Piece, b: &Piece) -> Option<String> {
     None
 }
 
+/// How far a minimum inside is from an end, and one at an end from moving inside, as the slope there; relative to the
+/// pair's size.
+fn hardness(a: &Piece, b: &Piece) -> f64 {
+    let size = a.length().max(b.length());
+    let of = |piece: &Piece, place: Place, x: &Vec3, y: &Vec3| match place {
+        Place::Inside => (x - piece.point(0.0)).norm().min((x - piece.point(1.0)).norm()) / size,
+        Place::Start => (x - y).dot(&(piece.point(1e-7) - x)).abs() / (1e-7 * piece.length() * size),
+        Place::End => (x - y).dot(&(piece.point(1.0 - 1e-7) - x)).abs() / (1e-7 * piece.length() * size),
+    };
+    let minima = piece_distance_minima(a, b);
+    let each = minima
+        .as_slice()
+        .iter()
+        .map(|m| of(a, m.place_a, &m.point_a, &m.point_b).min(of(b, m.place_b, &m.point_b, &m.point_a)));
+    each.fold(f64::INFINITY, f64::min)
+}
+
+/// A line for `validation/pairs.py`: both pieces, and the distances found. The first piece must have ends.
+fn line(a: &Piece, b: &Piece) -> Option<String> {
+    let is_closed = |piece: &Piece| matches!(piece, Piece::Arc(arc) if arc.is_closed());
+    let (a, b) = if is_closed(a) { (b, a) } else { (a, b) };
+    if is_closed(a) {
+        return None;
+    }
+    let numbers = |v: &Vec3| v.iter().map(f64::to_string).collect::<Vec<_>>().join(" ");
+    let piece = |piece: &Piece| match piece {
+        Piece::Segment(_) => format!("segment {} {}", numbers(&piece.point(0.0)), numbers(&piece.point(1.0))),
+        Piece::Arc(arc) => {
+            let (circle, start) = (arc.circle(), piece.point(0.0));
+            let [center, normal, start] = [&circle.center, &*circle.normal, &start].map(numbers);
+            format!("arc {center} {normal} {} {start} {}", circle.radius, arc.sweep_rad())
+        }
+    };
+    let found: Vec<_> = piece_distance_minima(a, b).as_slice().iter().map(|m| m.distance.to_string()).collect();
+    Some(format!("{},{},{}\n", piece(a), piece(b), found.join(" ")))
+}
+
 fn compare(pairs: usize) {
+    let mut hardest = Vec::new();
     for (seed, (name, family)) in FAMILIES.iter().enumerate() {
         let mut rng = rng(seed as u64);
         let mut most = 0;
@@ -207,8 +248,14 @@ fn compare(pairs: usize) {
                 panic!("{name} {index}: {problem}\n{a:?}\n{b:?}\n{:?}", piece_distance_minima(&a, &b));
             }
             most = most.max(piece_distance_minima(&a, &b).as_slice().len());
+            hardest.extend(line(&a, &b).map(|line| (hardness(&a, &b), line)));
         }
         println!("{name}: {pairs} pairs, at most {most} minima");
+    }
+    if let Some(file) = std::env::var_os("MAILLE_HARDEST") {
+        hardest.sort_by(|x, y| x.0.total_cmp(&y.0));
+        let lines: String = hardest.into_iter().take(2_000).map(|(_, line)| line).collect();
+        std::fs::write(file, lines).unwrap();
     }
 }
 

@@ -126,7 +126,7 @@ pub fn solve_rays(py: Python<'_>, design: &Design, rays: Vec<String>, search: &s
 #[pyfunction]
 pub fn boundary_by(design: &Design, search: &str, known: Vec<String>, solve: &Bound<'_, PyAny>) -> PyResult<Surface> {
     let options = options(search)?;
-    design.compile(options.cell())?;
+    has_surface(&design.compile(options.cell())?).map_err(|e| error::invalid(&e))?;
     let known = read::<BoundaryVertex>(&known)?;
     let (cancel, failure) = (AtomicBool::new(false), RefCell::new(None));
     let mut by_solve = |rays: &[Ray], new: bool| {
