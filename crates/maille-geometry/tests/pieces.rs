@@ -365,6 +365,22 @@ fn constant_distances_have_both_ends() {
 }
 
 #[test]
+fn what_is_not_finite_is_refused_or_has_no_distance() {
+    let unit = Circle::new(Vec3::zeros(), Vec3::z_axis(), 1.0);
+    for (start, sweep) in [(0.0, f64::NAN), (f64::NAN, 1.0), (0.0, 0.0), (0.0, -1.0), (f64::INFINITY, 1.0)] {
+        assert!(Arc::new(unit, start, sweep).is_none(), "{start} {sweep}");
+    }
+    for end in [f64::NAN, f64::INFINITY] {
+        assert!(Segment::new(Vec3::zeros(), Vec3::repeat(end)).is_none());
+        assert!(Arc::from_tangent(Vec3::zeros(), Vec3::x(), Vec3::repeat(end)).is_none());
+    }
+    let nowhere = Piece::circle(Circle::new(Vec3::repeat(f64::NAN), Vec3::z_axis(), 1.0));
+    for other in [Piece::circle(unit), segment(Vec3::zeros(), Vec3::x())] {
+        assert!(piece_distance_minima(&nowhere, &other).closest().distance.is_nan());
+    }
+}
+
+#[test]
 fn arcs_from_a_tangent_end_where_they_should() {
     let mut rng = rng(10);
     for _ in 0..1_000 {

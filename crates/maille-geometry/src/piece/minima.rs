@@ -68,7 +68,7 @@ impl PieceMinima {
 
 /// Every local minimum of the distance between two pieces, the smallest first.
 ///
-/// Distances are accurate to about `1e-15` of the pair's size.
+/// Distances are accurate to about `1e-15` of the pair's size. Of pieces that are not finite the one minimum is NaN.
 ///
 /// # Examples
 ///
@@ -136,6 +136,10 @@ pub fn piece_distance_minima(a: &Piece, b: &Piece) -> PieceMinima {
                 }
             }
         }
+    }
+    if out.found.is_empty() {
+        let nothing = (Place::Inside, Vec3::repeat(f64::NAN));
+        out.add(size, nothing, nothing);
     }
     out.found.sort_by(|m, n| m.distance.total_cmp(&n.distance));
     out

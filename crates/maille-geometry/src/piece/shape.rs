@@ -48,7 +48,7 @@ impl Arc {
     /// circle if that is 2π or more. None if the sweep is not positive.
     pub fn new(circle: Circle, start_rad: f64, sweep_rad: f64) -> Option<Self> {
         let half_angle_rad = (0.5 * sweep_rad).min(PI);
-        (half_angle_rad > 0.0 && start_rad.is_finite()).then(|| {
+        (sweep_rad > 0.0 && start_rad.is_finite()).then(|| {
             let (u, v) = circle.frame();
             let (sin, cos) = (start_rad + half_angle_rad).sin_cos();
             let (half_sin, half_cos) = half_angle_rad.sin_cos();
