@@ -17,8 +17,8 @@ use super::shape::{Piece, Place};
 use crate::{circle::Vec3, circle_circle::one_pair::circle_distance_minima, tolerance::ROUNDING};
 use arrayvec::ArrayVec;
 
-/// The largest number of minima of two pieces: four of two circles, one from each end to the inside of the other, and
-/// four between ends.
+/// The largest number of minima of two pieces: four of two circles ([`MAX_MINIMA`](crate::MAX_MINIMA)), one from each
+/// of the four ends to the inside of the other piece, and four between ends.
 pub const MAX_PIECE_MINIMA: usize = 12;
 
 /// Points that are nearer to each other than this, relative to the pair's size, on both pieces, are one minimum.
@@ -60,8 +60,7 @@ impl PieceMinima {
         let near = |x: &Vec3, y: &Vec3| (x - y).norm() <= SAME * size;
         if !self.found.iter().any(|m| near(&m.point_a, &point_a) && near(&m.point_b, &point_b)) {
             let distance = (point_a - point_b).norm();
-            // Full only if a pair has more than it can have; the closest are not lost then.
-            let _ = self.found.try_push(PieceMinimum { distance, point_a, point_b, place_a, place_b });
+            self.found.push(PieceMinimum { distance, point_a, point_b, place_a, place_b });
         }
     }
 }

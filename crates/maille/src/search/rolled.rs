@@ -3,8 +3,8 @@
 //!
 //! N times the shortest lattice vector v along the direction goes once round a tube, so the turn for each unit of the written length is
 //! κ = 2π / (N |v|). The shear is 0, or the tube would not close; l1 is free, and l2 where it is not held. Elements that count for
-//! each other are at most half a turn apart, which names each pair of the tube once. What is sought is the state with the widest gaps, or the largest or least length along the axis
-//! or radius of the neutral surface.
+//! each other are at most half a turn apart, which names each pair of the tube once. What is sought is the state with the widest gaps, or
+//! the largest or least length along the axis or radius of the neutral surface.
 //!
 //! A start is first rolled until its turn is the given one, as in [`super::curl`].
 
