@@ -162,6 +162,7 @@ fn attempt(name: &str, kind: Kind, rng: &mut ChaCha8Rng) -> Option<Design> {
         unit: None,
         minor_radius: Some(style.length(style.minor)),
         reference_radius: style.reference,
+        curve_tolerance: None,
         allow_initial_overlap: false,
         lattice: lattice(groups, kind, &style, rng),
         elements: Vec::new(),
@@ -200,7 +201,7 @@ fn grow(design: &mut Design, kind: Kind, style: &Style, rng: &mut ChaCha8Rng) ->
         let normal = direction(rng);
         let mut element = |center: Vec3, rings: Vec<RingSpec>| {
             let name = format!("e{}", design.elements.len());
-            design.elements.push(ElementSpec { name, center: style.vector(center), rings });
+            design.elements.push(ElementSpec { name, center: style.vector(center), rings, curves: Vec::new() });
         };
         if kind == Kind::Doubled {
             let ring = style.ring(normal, Vec3::zeros(), rng);

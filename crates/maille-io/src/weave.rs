@@ -222,6 +222,7 @@ impl Weave {
                 offset: [0.0; 3],
                 minor_radius: None,
             }],
+            curves: Vec::new(),
         };
         let design = Design {
             schema: maille::design::DESIGN_SCHEMA,
@@ -231,6 +232,7 @@ impl Weave {
             unit: rings.unit.clone(),
             minor_radius: Some(minor),
             reference_radius: major,
+            curve_tolerance: None,
             allow_initial_overlap: false,
             lattice: LatticeSpec { a1: lattice[0].map(length), a2: lattice[1].map(length), single: false },
             elements: placed.into_iter().map(element).collect(),

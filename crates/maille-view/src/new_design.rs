@@ -51,11 +51,12 @@ fn single(name: &str, major: f64, minor: f64, unit: Option<String>) -> Design {
         unit,
         minor_radius: Some(minor),
         reference_radius: major,
+        curve_tolerance: None,
         allow_initial_overlap: false,
         lattice: LatticeSpec { a1: [SIDE * major, 0.0, 0.0], a2: [0.0, SIDE * major, 0.0], single: false },
         varied: BTreeMap::new(),
         parameters: Vec::new(),
         formulas: BTreeMap::new(),
-        elements: vec![ElementSpec { name: "ring-1".into(), center: [0.0; 3], rings: vec![ring] }],
+        elements: vec![ElementSpec { name: "ring-1".into(), center: [0.0; 3], rings: vec![ring], curves: Vec::new() }],
     }
 }

@@ -1,17 +1,24 @@
 //! The design: what the file says, editable, one to one.
 
 use crate::error::InvalidInput;
+use maille_geometry::Vec3;
+use nalgebra::{Rotation3, UnitQuaternion};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 mod formulas;
 mod parameters;
 mod repeat;
+pub(crate) mod shape;
 
 pub use parameters::{Parameter, TAKEN};
+pub use shape::Shape;
 
 /// Name in [`Design::varied`] of the factor by which distances between elements were multiplied.
 pub const SPACING: &str = "spacing";
+
+/// How far the segments and arcs that stand for a smooth curve may be from it, in reference radii, where a design does not say.
+pub const CURVE_TOLERANCE: f64 = 1e-6;
 
 /// Version of the design file that this program reads.
 pub const DESIGN_SCHEMA: u32 = 1;
@@ -54,6 +61,9 @@ pub struct Design {
     pub minor_radius: Option<f64>,
     /// The R of the ratio r/R; all tolerances scale with it.
     pub reference_radius: f64,
+    /// How far the segments and arcs that stand for a smooth curve may be from it; [`CURVE_TOLERANCE`] reference radii if not given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub curve_tolerance: Option<f64>,
     /// Accept tori that overlap in the starting state.
     #[serde(default)]
     pub allow_initial_overlap: bool,
@@ -105,7 +115,13 @@ impl LatticeSpec {
         };
         let wire = |ring: &RingSpec| ring.minor_radius.or(minor_radius).unwrap_or(0.0);
         let reach = elements.iter().flat_map(|e| {
-            e.rings.iter().map(|ring| across(e.center) + norm(ring.offset) + ring.major_radius + wire(ring))
+            let rings =
+                e.rings.iter().map(|ring| across(e.center) + norm(ring.offset) + ring.major_radius + wire(ring));
+            let curve = |curve: &CurveSpec| {
+                let wire = curve.minor_radius.or(minor_radius).unwrap_or(0.0);
+                across(e.center) + norm(curve.offset) + curve.shape.reach() + wire
+            };
+            rings.chain(e.curves.iter().map(curve)).collect::<Vec<_>>()
         });
         let far = ASIDE * reach.fold(0.0, f64::max).max(f64::MIN_POSITIVE);
         LatticeSpec { a1, a2: [far * w[0], far * w[1], 0.0], single: true }
@@ -117,7 +133,7 @@ impl LatticeSpec {
     }
 }
 
-/// A rigid body made of rings.
+/// A rigid body made of rings and other closed curves.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ElementSpec {
@@ -126,7 +142,11 @@ pub struct ElementSpec {
     /// Position of the element's reference point.
     pub center: [f64; 3],
     /// One ring, or several that are rigidly joined.
+    #[serde(default)]
     pub rings: Vec<RingSpec>,
+    /// Tubes round other closed curves, rigidly joined with the rings.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub curves: Vec<CurveSpec>,
 }
 
 /// A torus: major radius R, minor radius r, and where it sits in its element.
@@ -143,6 +163,57 @@ pub struct RingSpec {
     /// Minor radius r of this ring alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub minor_radius: Option<f64>,
+}
+
+/// A tube round a closed curve that is no circle, and where it sits in its element.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CurveSpec {
+    /// Form of the core curve, in its own frame.
+    pub shape: Shape,
+    /// Where the z axis of the form points; any non-zero length.
+    #[serde(default = "z_axis")]
+    pub normal: [f64; 3],
+    /// Where its x axis points: what of this vector is across the normal.
+    #[serde(default = "x_axis")]
+    pub along: [f64; 3],
+    /// Origin of the form relative to the element's centre.
+    #[serde(default)]
+    pub offset: [f64; 3],
+    /// Minor radius r of this tube alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub minor_radius: Option<f64>,
+}
+
+fn z_axis() -> [f64; 3] {
+    CurveSpec::Z
+}
+
+fn x_axis() -> [f64; 3] {
+    CurveSpec::X
+}
+
+impl CurveSpec {
+    /// The normal that is not written.
+    pub const Z: [f64; 3] = [0.0, 0.0, 1.0];
+    /// The direction of the form's x axis that is not written.
+    pub const X: [f64; 3] = [1.0, 0.0, 0.0];
+
+    /// A form in its element's own frame.
+    pub fn of(shape: Shape) -> Self {
+        CurveSpec { shape, normal: Self::Z, along: Self::X, offset: [0.0; 3], minor_radius: None }
+    }
+
+    /// From the form's frame to the element's. None where its normal is zero, or its x axis points along the normal.
+    pub(crate) fn rotation(&self) -> Option<UnitQuaternion<f64>> {
+        let normal = Vec3::from(self.normal);
+        let normal = (normal / normal.amax()).try_normalize(0.0)?;
+        let along = Vec3::from(self.along);
+        let along = along / along.amax();
+        let x = (along - normal * normal.dot(&along)).try_normalize(1e-9)?;
+        let frame = Rotation3::from_basis_unchecked(&[x, normal.cross(&x), normal]);
+        Some(UnitQuaternion::from_rotation_matrix(&frame))
+    }
 }
 
 impl Design {
@@ -167,6 +238,7 @@ impl Design {
         out.varied.retain(|name, _| name == SPACING);
         out.minor_radius = out.minor_radius.map(|r| r * factor);
         out.reference_radius *= factor;
+        out.curve_tolerance = out.curve_tolerance.map(|tolerance| tolerance * factor);
         scale(&mut out.lattice.a1);
         scale(&mut out.lattice.a2);
         for element in &mut out.elements {
@@ -175,6 +247,11 @@ impl Design {
                 ring.major_radius *= factor;
                 ring.minor_radius = ring.minor_radius.map(|r| r * factor);
                 scale(&mut ring.offset);
+            }
+            for curve in &mut element.curves {
+                curve.shape.scale(factor);
+                curve.minor_radius = curve.minor_radius.map(|r| r * factor);
+                scale(&mut curve.offset);
             }
         }
         out.settled()
@@ -196,6 +273,11 @@ impl Design {
             for ring in &mut element.rings {
                 round(&mut ring.normal, 14);
                 round(&mut ring.offset, decimals);
+            }
+            for curve in &mut element.curves {
+                round(&mut curve.normal, 14);
+                round(&mut curve.along, 14);
+                round(&mut curve.offset, decimals);
             }
         }
         out.settled()
@@ -221,7 +303,7 @@ impl Design {
         }
         let help = "give the major radius that ratios such as r = R/10 refer to";
         out.positive("reference_radius", self.reference_radius, help);
-        if self.lacks_minor_radii() && self.elements.iter().any(|e| !e.rings.is_empty()) {
+        if self.lacks_minor_radii() && self.elements.iter().any(|e| !e.rings.is_empty() || !e.curves.is_empty()) {
             out.add(
                 "minor_radius",
                 "is missing",
@@ -230,6 +312,9 @@ impl Design {
         }
         if let Some(r) = self.minor_radius {
             out.positive("minor_radius", r, WIRE_RADIUS);
+        }
+        if let Some(tolerance) = self.curve_tolerance {
+            out.positive("curve_tolerance", tolerance, "give the deviation that is allowed, as 1e-6");
         }
         self.lattice.add_problems(&mut out);
         if self.elements.is_empty() {
@@ -242,11 +327,14 @@ impl Design {
                 out.add(format!("{at}.name"), problem, "give every element a name of its own");
             }
             out.finite(format!("{at}.center"), &e.center);
-            if e.rings.is_empty() {
+            if e.rings.is_empty() && e.curves.is_empty() {
                 out.add(format!("{at}.rings"), "there is none", "give at least { major_radius, normal }");
             }
             for (k, ring) in e.rings.iter().enumerate() {
                 self.add_problems_of(ring, &format!("{at}.rings[{k}]"), &mut out);
+            }
+            for (k, curve) in e.curves.iter().enumerate() {
+                self.add_problems_of_curve(curve, &format!("{at}.curves[{k}]"), &mut out);
             }
         }
         out.0
@@ -254,8 +342,69 @@ impl Design {
 
     /// Whether neither the design nor any ring has a minor radius.
     fn lacks_minor_radii(&self) -> bool {
-        let mut rings = self.elements.iter().flat_map(|e| &e.rings);
-        self.minor_radius.is_none() && rings.all(|ring| ring.minor_radius.is_none())
+        let own = |e: &ElementSpec| {
+            let curves = e.curves.iter().map(|curve| curve.minor_radius);
+            e.rings.iter().map(|ring| ring.minor_radius).chain(curves).any(|own| own.is_some())
+        };
+        self.minor_radius.is_none() && !self.elements.iter().any(own)
+    }
+
+    /// How far the segments and arcs that stand for a smooth curve may be from it.
+    pub fn tolerance_of_curves(&self) -> f64 {
+        self.curve_tolerance.unwrap_or(CURVE_TOLERANCE * self.reference_radius)
+    }
+
+    fn add_problems_of_curve(&self, curve: &CurveSpec, at: &str, out: &mut Problems) {
+        if out.finite(format!("{at}.normal"), &curve.normal) && curve.normal == [0.0; 3] {
+            out.add(format!("{at}.normal"), "is zero", "give any non-zero vector, as [0.0, 0.0, 1.0]");
+        } else if out.finite(format!("{at}.along"), &curve.along) && curve.rotation().is_none() {
+            let problem =
+                format!("{:?} does not tell how the curve is turned about its normal {:?}", curve.along, curve.normal);
+            out.add(format!("{at}.along"), problem, "give a vector across the normal: where the curve's x axis points");
+        }
+        out.finite(format!("{at}.offset"), &curve.offset);
+        let form = format!("{at}.{}", curve.shape.name());
+        if let Some((name, problem, help)) = curve.shape.problem() {
+            out.add(format!("{form}.{name}"), problem, help);
+        } else if is_positive(self.reference_radius) && is_positive(self.tolerance_of_curves()) {
+            self.add_problems_of_tube(curve, at, out);
+        }
+    }
+
+    /// What is wrong with the tube round a curve whose form is right.
+    fn add_problems_of_tube(&self, curve: &CurveSpec, at: &str, out: &mut Problems) {
+        let form = format!("{at}.{}", curve.shape.name());
+        let Some(pieces) = curve.shape.pieces(self.tolerance_of_curves()) else {
+            let problem = format!(
+                "more than {} arcs would be needed for curve_tolerance = {}",
+                shape::MOST_PIECES,
+                self.tolerance_of_curves()
+            );
+            out.add(form, problem, "allow a larger curve_tolerance");
+            return;
+        };
+        let Some(r) = curve.minor_radius.or(self.minor_radius) else {
+            if !self.lacks_minor_radii() {
+                let help = "add minor_radius = … at the top of the file, or to this curve";
+                out.add(format!("{at}.minor_radius"), "is given neither here nor for the whole design", help);
+            }
+            return;
+        };
+        let own = curve.minor_radius.is_some();
+        let field = if own { format!("{at}.minor_radius") } else { form };
+        if own && !out.positive(field.clone(), r, WIRE_RADIUS) || !is_positive(r) {
+            return;
+        }
+        if let Some(tightest) = shape::tightest(&pieces).filter(|tightest| r >= *tightest) {
+            let problem = format!("minor radius {r} is not smaller than the curve's least radius {tightest:.6}");
+            out.add(field, problem, "a wire cannot bend more sharply than that: take a thinner one, or a wider curve");
+        } else if let Some(gap) = shape::self_overlap(&pieces, r) {
+            let problem = format!(
+                "the tube runs into itself: its core comes as near to itself as {gap:.6}, the wire is {} thick",
+                2.0 * r
+            );
+            out.add(field, problem, "take a smaller minor_radius, or a curve that keeps away from itself");
+        }
     }
 
     fn add_problems_of(&self, ring: &RingSpec, at: &str, out: &mut Problems) {

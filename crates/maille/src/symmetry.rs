@@ -256,7 +256,11 @@ fn rings_to(from: &Model, e: usize, to: &Model, f: usize, matrix: &Matrix3<f64>)
                 && close(there.major_radius, ring.major_radius)
                 && close(there.minor_radius, ring.minor_radius)
                 && (there.offset - other - offset).norm() <= TOLERANCE
-                && there.normal.cross(&normal).norm() <= TOLERANCE
+                && match (&ring.curve, &there.curve) {
+                    (None, None) => there.normal.cross(&normal).norm() <= TOLERANCE,
+                    (Some(from), Some(to)) => from.maps_to(to, |p| matrix * (p - own) + other, TOLERANCE),
+                    _ => false,
+                }
         };
         let found = theirs.clone().find(fits)?;
         taken[found - theirs.start] = true;

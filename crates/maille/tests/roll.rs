@@ -39,7 +39,13 @@ fn shaken(model: &Model, size: f64, seed: u64) -> State {
 }
 
 fn rows(program: &SheetProgram<'_>, x: &maille::program::Posed, band: f64) -> Vec<Row> {
-    let load = |row: Row| Multiplier { key: row.key, angle: row.angle, minimum: row.minimum, value: 1.0 };
+    let load = |row: Row| Multiplier {
+        key: row.key,
+        angle: row.angle,
+        angle_a: row.angle_a,
+        minimum: row.minimum,
+        value: 1.0,
+    };
     let all: Vec<Multiplier> = program.rows(x, band, Derivatives::None).into_iter().map(load).collect();
     program.rows(x, band, Derivatives::Second(&Loads::new(&all)))
 }

@@ -31,7 +31,13 @@ fn derivatives_are_those_of_the_gaps() {
     let gaps = program.rows(&x, 0.3, Derivatives::None);
     let all: Vec<Multiplier> = gaps
         .iter()
-        .map(|row| Multiplier { key: row.key, angle: row.angle, minimum: row.minimum, value: 1.0 })
+        .map(|row| Multiplier {
+            key: row.key,
+            angle: row.angle,
+            angle_a: row.angle_a,
+            minimum: row.minimum,
+            value: 1.0,
+        })
         .collect();
     let loads = Loads::new(&all);
     let rows = program.rows(&x, 0.3, Derivatives::Second(&loads));

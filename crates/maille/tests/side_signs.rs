@@ -23,7 +23,7 @@ fn gyroscope_and(neighbour: ElementSpec) -> Model {
 
 fn ring(center: [f64; 3], major_radius: f64, normal: [f64; 3]) -> ElementSpec {
     let rings = vec![RingSpec { major_radius, normal, offset: [0.0; 3], minor_radius: None }];
-    ElementSpec { name: "neighbour".into(), center, rings }
+    ElementSpec { name: "neighbour".into(), center, rings, curves: Vec::new() }
 }
 
 fn contacts() -> ContactOptions {

@@ -158,7 +158,7 @@ fn repeated(
         let (angle, value) = (angle(large, &x.state, &pair, &point), contact.force);
         match program.flat_pairs().contains(&key) {
             true => flat.entry(key).or_default().push((angle, value)),
-            false => out.push(Multiplier { key, angle, minimum: true, value }),
+            false => out.push(Multiplier { key, angle, angle_a: 0.0, minimum: true, value }),
         }
     }
     for (key, forces) in flat {
@@ -170,7 +170,7 @@ fn repeated(
         for k in 0..16 {
             let angle = TAU * f64::from(k) / 16.0;
             let value = (total + 2.0 * (c * angle.cos() + s * angle.sin())) / 16.0;
-            out.push(Multiplier { key, angle, minimum: false, value });
+            out.push(Multiplier { key, angle, angle_a: 0.0, minimum: false, value });
         }
     }
     Some(out)

@@ -1,7 +1,7 @@
 //! Straight segments and circular arcs.
 
 use crate::circle::{Circle, Vec3};
-use nalgebra::UnitVector3;
+use nalgebra::{UnitQuaternion, UnitVector3};
 use std::f64::consts::PI;
 
 /// A straight segment.
@@ -141,6 +141,107 @@ impl Piece {
                 arc.circle.center + (arc.middle * cos + arc.aside() * sin) * arc.circle.radius
             }
         }
+    }
+
+    /// The unit tangent at `t`, in the direction in which it runs.
+    pub fn tangent(&self, t: f64) -> Vec3 {
+        match self {
+            Piece::Segment(segment) => *segment.along,
+            Piece::Arc(arc) => {
+                let (sin, cos) = (arc.half_angle_rad * (2.0 * t - 1.0)).sin_cos();
+                arc.aside() * cos - arc.middle * sin
+            }
+        }
+    }
+
+    /// The derivative of the unit tangent by arc length at `t`: towards the centre, 1/R long, and zero on a segment.
+    pub fn curvature(&self, t: f64) -> Vec3 {
+        match self {
+            Piece::Segment(_) => Vec3::zeros(),
+            Piece::Arc(arc) => {
+                let (sin, cos) = (arc.half_angle_rad * (2.0 * t - 1.0)).sin_cos();
+                -(arc.middle * cos + arc.aside() * sin) / arc.circle.radius
+            }
+        }
+    }
+
+    /// The `t` of its point that is nearest to `p`: 0 or 1 at an end.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use maille_geometry::{Circle, Piece, Vec3};
+    ///
+    /// let ring = Piece::circle(Circle::new(Vec3::zeros(), Vec3::z_axis(), 1.0));
+    /// let p = ring.point(0.3);
+    /// assert!((ring.nearest(&(p * 2.0 + Vec3::z())) - 0.3).abs() < 1e-15);
+    /// ```
+    pub fn nearest(&self, p: &Vec3) -> f64 {
+        match self {
+            Piece::Segment(segment) => ((p - segment.start).dot(&segment.along) / segment.length).clamp(0.0, 1.0),
+            Piece::Arc(arc) => {
+                let delta = p - arc.circle.center;
+                let angle_rad = delta.dot(&arc.aside()).atan2(delta.dot(&arc.middle));
+                (0.5 + 0.5 * angle_rad / arc.half_angle_rad).clamp(0.0, 1.0)
+            }
+        }
+    }
+
+    /// The `t` of its point that is farthest from `p`.
+    pub fn farthest(&self, p: &Vec3) -> f64 {
+        let end = if (self.point(0.0) - p).norm_squared() > (self.point(1.0) - p).norm_squared() { 0.0 } else { 1.0 };
+        match self {
+            Piece::Segment(_) => end,
+            Piece::Arc(arc) => {
+                // Across the centre, if the arc reaches there.
+                let delta = arc.circle.center - p;
+                let angle_rad = delta.dot(&arc.aside()).atan2(delta.dot(&arc.middle));
+                if angle_rad.abs() < arc.half_angle_rad { 0.5 + 0.5 * angle_rad / arc.half_angle_rad } else { end }
+            }
+        }
+    }
+
+    /// The piece turned by `rotation` about the origin, and then moved by `translation`.
+    pub fn moved(&self, rotation: &UnitQuaternion<f64>, translation: &Vec3) -> Self {
+        let point = |p: &Vec3| rotation * p + translation;
+        let unit = |v: &UnitVector3<f64>| UnitVector3::new_normalize(rotation * v.into_inner());
+        match self {
+            Piece::Segment(segment) => Piece::Segment(Segment {
+                start: point(&segment.start),
+                end: point(&segment.end),
+                along: unit(&segment.along),
+                length: segment.length,
+            }),
+            Piece::Arc(arc) => {
+                let circle =
+                    Circle { center: point(&arc.circle.center), normal: unit(&arc.circle.normal), ..arc.circle };
+                // Across the normal to the last digit.
+                let middle = rotation * arc.middle;
+                let middle = (middle - *circle.normal * circle.normal.dot(&middle)).normalize();
+                Piece::Arc(Arc { circle, middle, ..*arc })
+            }
+        }
+    }
+
+    /// The same points in the other direction.
+    pub fn reversed(&self) -> Self {
+        match self {
+            Piece::Segment(segment) => Piece::Segment(Segment {
+                start: segment.end,
+                end: segment.start,
+                along: -segment.along,
+                length: segment.length,
+            }),
+            Piece::Arc(arc) => {
+                let circle = Circle { normal: -arc.circle.normal, ..arc.circle };
+                Piece::Arc(Arc { circle, ..*arc })
+            }
+        }
+    }
+
+    /// Its unit tangent at an end, into the piece.
+    pub fn inward(&self, end: Place) -> Option<Vec3> {
+        self.ends()?.into_iter().find(|(place, ..)| *place == end).map(|(.., inward)| inward)
     }
 
     /// Start and end with the unit tangents that point into the piece; none for a whole circle.

@@ -11,6 +11,7 @@ pub(super) const TOP: &[&str] = &[
     "unit",
     "minor_radius",
     "reference_radius",
+    "curve_tolerance",
     "allow_initial_overlap",
     "parameters",
     "lattice",
@@ -19,17 +20,30 @@ pub(super) const TOP: &[&str] = &[
 /// Keys of `[lattice]`.
 pub(super) const LATTICE: &[&str] = &["a1", "a2"];
 /// Keys of `[[elements]]`.
-pub(super) const ELEMENT: &[&str] = &["name", "center", "rings"];
+pub(super) const ELEMENT: &[&str] = &["name", "center", "rings", "curves"];
 /// Keys of a ring.
 pub(super) const RING: &[&str] = &["major_radius", "normal", "offset", "minor_radius"];
+/// Keys of a curve: one of its forms, and where it sits.
+pub(super) const CURVE: &[&str] =
+    &["stadium", "square", "hexagon", "polyline", "ellipse", "torus_knot", "normal", "along", "offset", "minor_radius"];
+/// Forms of curves with their keys.
+pub(super) const FORMS: [(&str, &[&str]); 6] = [
+    ("stadium", &["straight", "radius"]),
+    ("square", &["side", "fillet"]),
+    ("hexagon", &["side", "fillet"]),
+    ("polyline", &["points", "fillet"]),
+    ("ellipse", &["a", "b"]),
+    ("torus_knot", &["p", "q", "R", "a"]),
+];
 /// Keys of a parameter that has bounds.
 pub(super) const PARAMETER: &[&str] = &["value", "min", "max"];
 
-const TABLES: [(&[&str], &str); 5] = [
+const TABLES: [(&[&str], &str); 6] = [
     (TOP, "at the top of the file, above the first [table]"),
     (LATTICE, "in [lattice]"),
     (ELEMENT, "in an [[elements]] table"),
     (RING, "in a ring { … }"),
+    (CURVE, "in a curve { … }"),
     (PARAMETER, "in a parameter { value = …, min = …, max = … }"),
 ];
 

@@ -1,10 +1,10 @@
 //! From a TOML table to a [`Design`], collecting every problem on the way.
 
-use super::fields::{self, ELEMENT, LATTICE, PARAMETER, RING, TOP};
+use super::fields::{self, CURVE, ELEMENT, FORMS, LATTICE, PARAMETER, RING, TOP};
 use super::index::Index;
 use super::problem::DesignProblem;
 use crate::nearest::nearest;
-use maille::design::{DESIGN_SCHEMA, Design, ElementSpec, LatticeSpec, Parameter, RingSpec, Source};
+use maille::design::{CurveSpec, DESIGN_SCHEMA, Design, ElementSpec, LatticeSpec, Parameter, RingSpec, Shape, Source};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use toml::Spanned;
@@ -96,6 +96,7 @@ impl Reader<'_> {
         let minor_radius = self.optional(top, "minor_radius", Self::number);
         let help = "reference_radius = 1.0, the major radius that ratios such as r = R/10 refer to";
         let reference_radius = self.required(top, "reference_radius", help).and_then(|(v, p)| self.number(v, &p));
+        let curve_tolerance = self.optional(top, "curve_tolerance", Self::number);
         let allow_initial_overlap = self.optional(top, "allow_initial_overlap", Self::boolean);
         let parameters = self.optional(top, "parameters", Self::parameters);
         let help = "[lattice] with a1 = [2.5, 0.0, 0.0] and a2 = [0.0, 2.5, 0.0], the translations to the next cells; a chain has a1 alone";
@@ -117,6 +118,7 @@ impl Reader<'_> {
             unit: unit?,
             minor_radius,
             reference_radius: reference_radius?,
+            curve_tolerance: curve_tolerance?,
             allow_initial_overlap: allow_initial_overlap?.unwrap_or_default(),
             lattice,
             elements,
@@ -179,10 +181,79 @@ impl Reader<'_> {
         let name = self.required(&at, "name", "name = \"flat\"").and_then(|(v, p)| self.string(v, &p));
         let center = self.required(&at, "center", "center = [0.0, 0.0, 0.0]").and_then(|(v, p)| self.vector(v, &p));
         let help = "rings = [{ major_radius = 1.0, normal = [0.0, 0.0, 1.0] }]";
-        let rings = self.required(&at, "rings", help).and_then(|(v, p)| {
-            self.list(v, &p, "write rings = [{ major_radius = 1.0, normal = [0.0, 0.0, 1.0] }]", Self::ring)
+        let curves = self.optional(&at, "curves", |reader, v, p| {
+            reader.list(v, p, "write curves = [{ stadium = { straight = 2.0, radius = 1.0 } }]", Self::curve)
         });
-        Some(ElementSpec { name: name?, center: center?, rings: rings? })
+        let list = |reader: &mut Self, v: &Value<'_>, p: &str| {
+            reader.list(v, p, "write rings = [{ major_radius = 1.0, normal = [0.0, 0.0, 1.0] }]", Self::ring)
+        };
+        // An element has rings, curves or both.
+        let rings = match at.get("curves") {
+            Some(_) => match at.get("rings") {
+                Some((value, path)) => list(self, value, &path),
+                None => Some(Vec::new()),
+            },
+            None => self.required(&at, "rings", help).and_then(|(v, p)| list(self, v, &p)),
+        };
+        Some(ElementSpec { name: name?, center: center?, rings: rings?, curves: curves?.unwrap_or_default() })
+    }
+
+    fn curve(&mut self, value: &Value<'_>, path: &str) -> Option<CurveSpec> {
+        let at = self.table(value, path, CURVE, "write { stadium = { straight = 2.0, radius = 1.0 } }")?;
+        let forms: Vec<_> =
+            FORMS.iter().filter_map(|(name, keys)| at.get(name).map(|found| (*name, *keys, found))).collect();
+        let shape = match &forms[..] {
+            [(name, keys, (value, path))] => self.shape(name, keys, value, path),
+            [] => {
+                let known = FORMS.map(|(name, _)| name).join(", ");
+                let help = format!("give one of {known}, as stadium = {{ straight = 2.0, radius = 1.0 }}");
+                self.problems.push(DesignProblem::new(path, "the curve has no form", help, value.span()));
+                None
+            }
+            [(first, ..), (second, ..), ..] => {
+                let problem = format!("the curve has two forms, {first} and {second}");
+                self.problems.push(DesignProblem::new(path, problem, "write a curve { … } for each", value.span()));
+                None
+            }
+        };
+        let normal = self.optional(&at, "normal", Self::vector);
+        let along = self.optional(&at, "along", Self::vector);
+        let offset = self.optional(&at, "offset", Self::vector);
+        let minor_radius = self.optional(&at, "minor_radius", Self::number);
+        Some(CurveSpec {
+            shape: shape?,
+            normal: normal?.unwrap_or(CurveSpec::Z),
+            along: along?.unwrap_or(CurveSpec::X),
+            offset: offset?.unwrap_or_default(),
+            minor_radius: minor_radius?,
+        })
+    }
+
+    fn shape(&mut self, name: &str, keys: &'static [&'static str], value: &Value<'_>, path: &str) -> Option<Shape> {
+        let help = format!("write {name} = {{ {} = … }}", keys.join(" = …, "));
+        let at = self.table(value, path, keys, &help)?;
+        let fillet = match keys.contains(&"fillet") {
+            true => self.optional(&at, "fillet", Self::number)?.unwrap_or(0.0),
+            false => 0.0,
+        };
+        if name == "polyline" {
+            let help = "points = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]], the corners";
+            let (value, path) = self.required(&at, "points", help)?;
+            let points = self.list(value, &path, &format!("write {help}"), Self::vector)?;
+            return Some(Shape::Polyline { points, fillet });
+        }
+        let needed = keys.iter().filter(|key| **key != "fillet");
+        let numbers: Vec<Option<f64>> = needed
+            .map(|key| self.required(&at, key, &format!("{key} = 1.0")).and_then(|(v, p)| self.number(v, &p)))
+            .collect();
+        Some(match numbers.into_iter().collect::<Option<Vec<f64>>>()?[..] {
+            [straight, radius] if name == "stadium" => Shape::Stadium { straight, radius },
+            [a, b] if name == "ellipse" => Shape::Ellipse { a, b },
+            [side] if name == "square" => Shape::Square { side, fillet },
+            [side] if name == "hexagon" => Shape::Hexagon { side, fillet },
+            [p, q, circle_radius, a] => Shape::TorusKnot { p, q, circle_radius, a },
+            _ => unreachable!("a form that is not in FORMS"),
+        })
     }
 
     fn ring(&mut self, value: &Value<'_>, path: &str) -> Option<RingSpec> {

@@ -1,7 +1,7 @@
 //! From a [`Design`] to a file that reads back the same.
 
 use super::read::source_name;
-use maille::design::{Design, Parameter, RingSpec};
+use maille::design::{CurveSpec, Design, Parameter, RingSpec, Shape};
 use std::{collections::BTreeMap, fmt::Write};
 
 /// The design as a file: every number reads back bit for bit. Formulas are written where they give the number at their place.
@@ -24,6 +24,9 @@ pub fn write_design(design: &Design) -> String {
         line(format!("minor_radius = {}", at.number("minor_radius", r)));
     }
     line(format!("reference_radius = {}", at.number("reference_radius", design.reference_radius)));
+    if let Some(tolerance) = design.curve_tolerance {
+        line(format!("curve_tolerance = {}", at.number("curve_tolerance", tolerance)));
+    }
     if design.allow_initial_overlap {
         line("allow_initial_overlap = true".into());
     }
@@ -45,11 +48,21 @@ pub fn write_design(design: &Design) -> String {
         line(format!("\n[[elements]]\nname = {}\ncenter = {center}", string(&element.name)));
         let ring = |(k, ring): (usize, &RingSpec)| at.ring(&format!("{path}.rings[{k}]"), ring);
         match element.rings.as_slice() {
+            [] if !element.curves.is_empty() => {}
             [] => line("rings = []".into()),
             [one] => line(format!("rings = [{}]", ring((0, one)))),
             several => {
                 let rings: String = several.iter().enumerate().map(|r| format!("    {},\n", ring(r))).collect();
                 line(format!("rings = [\n{rings}]"));
+            }
+        }
+        let curve = |(k, curve): (usize, &CurveSpec)| at.curve(&format!("{path}.curves[{k}]"), curve);
+        match element.curves.as_slice() {
+            [] => {}
+            [one] => line(format!("curves = [{}]", curve((0, one)))),
+            several => {
+                let curves: String = several.iter().enumerate().map(|c| format!("    {},\n", curve(c))).collect();
+                line(format!("curves = [\n{curves}]"));
             }
         }
     }
@@ -78,6 +91,40 @@ impl Numbers<'_> {
             out += &format!(", offset = {}", self.vector(&offset, ring.offset));
         }
         if let Some(r) = ring.minor_radius {
+            out += &format!(", minor_radius = {}", self.number(&format!("{path}.minor_radius"), r));
+        }
+        out + " }"
+    }
+}
+
+impl Numbers<'_> {
+    fn curve(&self, path: &str, curve: &CurveSpec) -> String {
+        let form = format!("{path}.{}", curve.shape.name());
+        let mut numbers: Vec<String> = Vec::new();
+        if let Shape::Polyline { points, .. } = &curve.shape {
+            let point = |(k, p): (usize, &[f64; 3])| self.vector(&format!("{form}.points[{k}]"), *p);
+            let points: Vec<String> = points.iter().enumerate().map(point).collect();
+            numbers.push(format!("points = [{}]", points.join(", ")));
+        }
+        for (name, x) in curve.shape.numbers() {
+            let place = format!("{form}.{name}");
+            if name != "fillet" || x != 0.0 || self.0.contains_key(&place) {
+                numbers.push(format!("{name} = {}", self.number(&place, x)));
+            }
+        }
+        let mut out = format!("{{ {} = {{ {} }}", curve.shape.name(), numbers.join(", "));
+        let vectors = [
+            ("normal", curve.normal, CurveSpec::Z),
+            ("along", curve.along, CurveSpec::X),
+            ("offset", curve.offset, [0.0; 3]),
+        ];
+        for (name, v, unwritten) in vectors {
+            let place = format!("{path}.{name}");
+            if v != unwritten || self.0.keys().any(|known| known.starts_with(&place)) {
+                out += &format!(", {name} = {}", self.vector(&place, v));
+            }
+        }
+        if let Some(r) = curve.minor_radius {
             out += &format!(", minor_radius = {}", self.number(&format!("{path}.minor_radius"), r));
         }
         out + " }"

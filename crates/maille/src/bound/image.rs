@@ -12,13 +12,13 @@
 //! distance from 0 and cut into eight, until one is left that is as small as the wanted accuracy: its distance is m.
 //!
 //! A gyroscope (three unit circles across each other) shows what this is good for: nearer than 2/√3 any two of them
-//! are linked, however thin the wire. For a single ring m = 2r: it can lie flat on its image.
+//! are linked, however thin the wire. For a single ring m = 2r: it can lie flat on its image. For an element with other curves m = 2r of its thickest tube, too.
 //!
 //! The proof holds for the solved cell only. In a larger one the copies of an element turn independently.
 
 use crate::{
     lattice::{Shift, shifts_within},
-    model::{Element, Model},
+    model::{Element, Model, Ring},
     state::State,
 };
 use maille_geometry::{Circle, Torus, Vec3, circle_distance_minima, linking_number};
@@ -51,7 +51,15 @@ const MARGIN: f64 = 1e-9;
 impl ImageBound {
     /// Finds m for each element of `model`.
     pub fn new(model: &Model) -> Self {
-        ImageBound { least: model.elements.iter().map(|e| least_distance(&tori(model, e))).collect() }
+        let least = |e: &Element| {
+            let rings = &model.rings[e.rings.clone()];
+            match rings.iter().all(Ring::is_round) {
+                true => least_distance(&tori(model, e)),
+                // A point of a tube and its image are w apart.
+                false => 2.0 * rings.iter().map(|ring| ring.minor_radius).fold(0.0, f64::max),
+            }
+        };
+        ImageBound { least: model.elements.iter().map(least).collect() }
     }
 
     /// m of an element, in reference radii.

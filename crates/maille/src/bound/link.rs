@@ -77,6 +77,8 @@ pub struct LinkBound {
     ties: Vec<Tie>,
     /// Major radii of the rings.
     radii: Vec<f64>,
+    /// Whether all are circles: else normals say nothing.
+    round: bool,
     /// First of the nine unknowns of Q, for elements that need it.
     turn: Vec<Option<usize>>,
     /// G and K, complete but for the column of 1 + l1, which depends on the direction.
@@ -121,7 +123,7 @@ impl LinkBound {
         let turn: Vec<_> = turned.into_iter().map(|yes| take(yes, 9)).collect();
         let template = template(&ties, &center, &turn, next);
         let radii = model.rings.iter().map(|ring| ring.major_radius).collect();
-        LinkBound { ties, radii, turn, template, chain: chain.clone() }
+        LinkBound { ties, radii, round: model.is_round(), turn, template, chain: chain.clone() }
     }
 
     /// The program of the chains alone, each of them a tie between a ring and its own image.
@@ -135,7 +137,7 @@ impl LinkBound {
         };
         let ties: Vec<Tie> = chain.directions().zip(chain.chains()).map(tie).collect();
         let template = template(&ties, &[], &[], 1);
-        LinkBound { ties, radii: Vec::new(), turn: Vec::new(), template, chain: chain.clone() }
+        LinkBound { ties, radii: Vec::new(), round: true, turn: Vec::new(), template, chain: chain.clone() }
     }
 
     /// The bound of l1 along a direction with l2 held.
@@ -186,7 +188,7 @@ impl LinkBound {
     /// The bound with one normal for each ring, `docs/theory/bounds.md`, "Normals of the rings": lower where the forces at a ring
     /// pull out of a plane. It takes longer, and is not solved to the last digit.
     pub fn limit_by_normals(&self, direction: Direction, l2: f64, free: Across) -> LinkSolution {
-        let linked = self.ties.iter().any(Tie::is_link) && self.turn.len() <= MOST_BALANCED;
+        let linked = self.ties.iter().any(Tie::is_link) && self.round && self.turn.len() <= MOST_BALANCED;
         let query = self.query(direction, l2, free).filter(|_| linked);
         let found = query.and_then(|query| query.descend().map(|(l1, forces)| (query.pull(&forces), l1, forces)));
         let Some((pull, l1, forces)) = found else { return LinkSolution::nothing() };

@@ -15,6 +15,10 @@
 //! crosses b's disc at some point p; p lies in b's plane, so its distance to b's core is R_b − |p − c_b|, hence
 //! |p − c_b| ≤ R_b − r_a − r_b, and |c_a − c_b| ≤ |c_a − p| + |p − c_b| ≤ R_a + R_b − r_a − r_b.
 //!
+//! For closed curves of any form the same holds with R the radius of a ball about c that holds the curve: if the cores were further apart
+//! than R_a + R_b − r_a − r_b along n = (c_b − c_a)/|c_b − c_a|, b could be moved along n by less than r_a + r_b, without meeting a, until a plane
+//! separates the balls; but linked curves cannot be separated so.
+//!
 //! Every inequality used is convex in the centres, in matrices of rotation relaxed to their convex hull, and in F, and
 //! holds in each cell alike. So for a state of any supercell the average over its primitive cells, with the same F,
 //! satisfies the inequalities of the primitive cell: what is proved for the primitive cell holds for every cell.

@@ -1,6 +1,7 @@
 //! Ties: inequalities |Σ_m w_m (c_m + Q_m o_m + F s_m)| ≤ L, Σ_m w_m = 0, that every state of the sheet obeys.
 //!
-//! - A **link** of rings a, b: w = (1, −1), L = R_a + R_b − r_a − r_b (lemma of [`crate::bound`]).
+//! - A **link** of rings a, b: w = (1, −1), L = R_a + R_b − r_a − r_b (lemma of [`crate::bound`]). Of curves that are no circles R is the
+//!   radius of a ball that holds the core; they are in no other tie.
 //! - A **strand pair**: rings a, a' of different elements, both linked with b. They cross b's disc at points p, p' with
 //!   |p − c_b| ≤ ρ = R_b − r_b − r_a, |p' − c_b| ≤ ρ' alike, and |p − p'| ≥ r_a + r_a', since tori do not overlap. For
 //!   m = (p + p')/2: |m − c_b|² = |p − c_b|²/2 + |p' − c_b|²/2 − |p − p'|²/4. As |c_a − p| ≤ R_a, this gives
@@ -128,9 +129,14 @@ impl<'a> Sheet<'a> {
             && (x1.center - x2.center).norm() <= 0.5 * (r1.major_radius + r2.major_radius)
     }
 
-    /// Pairs of rings beside each other that are linked with ring b of cell (0, 0).
+    /// Pairs of rings beside each other that are linked with ring b of cell (0, 0). All are circles: the proofs speak of discs.
     fn strands(&self, b: usize) -> Vec<[Place; 2]> {
-        let strands = &self.through[b];
+        let round = |place: &Place| self.model.rings[place.0].is_round();
+        let strands: Vec<Place> = match self.model.rings[b].is_round() {
+            true => self.through[b].iter().copied().filter(round).collect(),
+            false => Vec::new(),
+        };
+        let strands = &strands;
         let pairs = (0..strands.len()).flat_map(|k| strands[..k].iter().map(move |&second| [strands[k], second]));
         pairs.filter(|&[first, second]| self.beside(first, second)).collect()
     }
@@ -157,7 +163,8 @@ impl<'a> Sheet<'a> {
             for [first, second] in self.strands(b.0) {
                 for &(ring, [p, q]) in &self.through[first.0] {
                     let other = (ring, [p + first.1[0], q + first.1[1]]);
-                    let crossed = self.linked(second, other) && self.beside(b, other);
+                    let crossed =
+                        self.model.rings[ring].is_round() && self.linked(second, other) && self.beside(b, other);
                     if crossed && !self.linked(b, other) && !self.linked(first, second) {
                         found.insert(canonical([[first, second], [b, other]]));
                     }

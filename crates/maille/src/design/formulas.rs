@@ -203,6 +203,7 @@ impl Design {
         match place {
             "minor_radius" => return self.minor_radius.as_mut(),
             "reference_radius" => return Some(&mut self.reference_radius),
+            "curve_tolerance" => return self.curve_tolerance.as_mut(),
             _ => {}
         }
         let (element, rest) = place.strip_prefix("elements")?.split_once('.')?;
@@ -215,6 +216,21 @@ impl Design {
                 _ => match indexed(of_ring)? {
                     ("normal", axis) => ring.normal.get_mut(axis),
                     ("offset", axis) => ring.offset.get_mut(axis),
+                    _ => None,
+                },
+            };
+        }
+        if let Some((curve, of_curve)) = rest.strip_prefix("curves").and_then(|rest| rest.split_once('.')) {
+            let curve = element.curves.get_mut(indexed(curve)?.1)?;
+            if let Some((form, number)) = of_curve.split_once('.') {
+                return (curve.shape.name() == form).then(|| curve.shape.number_mut(number))?;
+            }
+            return match of_curve {
+                "minor_radius" => curve.minor_radius.as_mut(),
+                _ => match indexed(of_curve)? {
+                    ("normal", axis) => curve.normal.get_mut(axis),
+                    ("along", axis) => curve.along.get_mut(axis),
+                    ("offset", axis) => curve.offset.get_mut(axis),
                     _ => None,
                 },
             };

@@ -21,7 +21,7 @@ impl Design {
         }
         let copy = |[i, j]: [usize; 2], element: &ElementSpec| {
             let center = std::array::from_fn(|k| element.center[k] + i as f64 * a1[k] + j as f64 * a2[k]);
-            ElementSpec { name: format!("{}-{i}-{j}", element.name), center, rings: element.rings.clone() }
+            ElementSpec { name: format!("{}-{i}-{j}", element.name), center, ..element.clone() }
         };
         out.elements = cells.iter().flat_map(|cell| self.elements.iter().map(|element| copy(*cell, element))).collect();
         out.formulas = self.repeated_formulas([n, m], &cells);
@@ -45,7 +45,10 @@ impl Design {
             for (e, element) in self.elements.iter().enumerate() {
                 let (from, to) = (format!("elements[{e}]."), format!("elements[{}].", c * self.elements.len() + e));
                 for (place, text) in self.formulas.iter() {
-                    if let Some(number) = place.strip_prefix(&from).filter(|number| number.starts_with("rings")) {
+                    if let Some(number) = place
+                        .strip_prefix(&from)
+                        .filter(|number| number.starts_with("rings") || number.starts_with("curves"))
+                    {
                         out.insert(to.clone() + number, text.clone());
                     }
                 }

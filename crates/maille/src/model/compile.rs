@@ -1,16 +1,16 @@
 //! From a design to its models.
 
-use super::{Element, FAR, MANY, Model, Ring};
+use super::{Curve, Element, FAR, MANY, Model, Ring};
 use crate::{
-    design::Design,
+    design::{CurveSpec, Design},
     error::InvalidInput,
     lattice::{self, Cell},
     state::{Pose, State},
     topology,
 };
-use maille_geometry::Vec3;
+use maille_geometry::{Circle, Piece, Vec3};
 use nalgebra::{Matrix2, Unit, UnitQuaternion};
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// Elements further than this from the first one, and rings from their element's centre, are refused, in units of R: rounding
 /// hides their gaps.
@@ -19,6 +19,47 @@ const FARTHEST: f64 = 1e4;
 const MOST_IMAGES: f64 = 1e5;
 /// Rings that overlap by less touch, in R: a limit that is written out does so by rounding.
 const ROUNDING: f64 = 1e-12;
+
+/// Arcs whose circles differ by less, in reference radii, are of one.
+const ONE_CIRCLE: f64 = 1e-12;
+
+/// The circle of which all pieces are arcs.
+fn one_circle(pieces: &[Piece]) -> Option<Circle> {
+    let circles: Option<Vec<Circle>> = pieces
+        .iter()
+        .map(|piece| match piece {
+            Piece::Arc(arc) => Some(*arc.circle()),
+            Piece::Segment(_) => None,
+        })
+        .collect();
+    let circles = circles?;
+    let first = *circles.first()?;
+    let same = |c: &Circle| {
+        (c.center - first.center).norm() < ONE_CIRCLE
+            && (c.radius - first.radius).abs() < ONE_CIRCLE
+            && (*c.normal - *first.normal).norm() < ONE_CIRCLE
+    };
+    circles.iter().all(same).then_some(first)
+}
+
+/// The tube of a curve, in units of the reference radius. Where that is a torus it is a ring like any other.
+fn ring_of(design: &Design, element: usize, spec: &CurveSpec) -> Ring {
+    let unit = design.reference_radius;
+    let offset = Vec3::from(spec.offset) / unit;
+    let rotation = spec.rotation().unwrap_or_default();
+    let minor_radius = spec.minor_radius.or(design.minor_radius).unwrap_or(f64::NAN) / unit;
+    // The design has been checked.
+    let pieces = spec.shape.scaled(1.0 / unit).pieces(design.tolerance_of_curves() / unit).unwrap_or_default();
+    let pieces: Vec<Piece> = pieces.iter().map(|piece| piece.moved(&rotation, &offset)).collect();
+    if let Some(Circle { center, normal, radius }) = one_circle(&pieces) {
+        return Ring { element, offset: center, normal, major_radius: radius, minor_radius, curve: None };
+    }
+    let curve = Curve::new(pieces);
+    let normal = Unit::new_normalize(rotation * Vec3::z());
+    let center = curve.center();
+    let major_radius = curve.reach(&center);
+    Ring { element, offset: center, normal, major_radius, minor_radius, curve: Some(Arc::new(curve)) }
+}
 
 impl Model {
     /// Compiles `design` for `cell`, or returns everything that is wrong with it.
@@ -66,8 +107,10 @@ impl Model {
                     normal: Unit::new_normalize(Vec3::from(ring.normal) / Vec3::from(ring.normal).amax()),
                     major_radius: ring.major_radius / unit,
                     minor_radius: ring.minor_radius.or(design.minor_radius).unwrap_or(f64::NAN) / unit,
+                    curve: None,
                 });
             }
+            rings.extend(spec.curves.iter().map(|curve| ring_of(design, elements.len(), curve)));
             let reach = rings[first..].iter().map(|r| r.offset.norm() + r.major_radius).fold(0.0, f64::max);
             let position = (Vec3::from(spec.center) - origin) / unit;
             elements.push(Element { name: spec.name.clone(), rings: first..rings.len(), reach, anchor: [0.0; 2] });

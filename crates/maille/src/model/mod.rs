@@ -1,6 +1,7 @@
 //! The model: a design compiled for one cell. Validated, indexed, in units of the reference radius, immutable.
 
 mod compile;
+pub mod curve;
 
 use crate::{
     design::Design,
@@ -9,9 +10,16 @@ use crate::{
 };
 use maille_geometry::{Circle, Vec3};
 use nalgebra::{Matrix2, Unit, UnitVector3};
-use std::{borrow::Cow, collections::BTreeSet, ops::Range, sync::OnceLock};
+use std::{
+    borrow::Cow,
+    collections::BTreeSet,
+    ops::Range,
+    sync::{Arc, OnceLock},
+};
 
-/// A torus of an element, in the element's frame at the starting state.
+pub use curve::{Core, Curve};
+
+/// A tube of an element round a circle or another closed curve, in the element's frame at the starting state.
 #[derive(Clone, Debug)]
 pub struct Ring {
     /// Index of the element that it belongs to.
@@ -20,10 +28,19 @@ pub struct Ring {
     pub offset: Vec3,
     /// Normal of the core circle.
     pub normal: UnitVector3<f64>,
-    /// Major radius R.
+    /// Major radius R; of another curve the radius of a ball about the centre that holds the core.
     pub major_radius: f64,
     /// Minor radius r.
     pub minor_radius: f64,
+    /// The core curve where it is no circle, in the element's frame.
+    pub curve: Option<Arc<Curve>>,
+}
+
+impl Ring {
+    /// Whether its core is a circle.
+    pub fn is_round(&self) -> bool {
+        self.curve.is_none()
+    }
 }
 
 /// A rigid element of the cell.
@@ -145,6 +162,11 @@ impl Model {
         })
     }
 
+    /// Whether all rings are circles.
+    pub fn is_round(&self) -> bool {
+        self.rings.iter().all(Ring::is_round)
+    }
+
     /// The elements that are linked to element `e` of the main cell, each with its shift.
     pub(crate) fn linked(&self, e: usize) -> &[(usize, Shift)] {
         &self.neighbours().linked[e]
@@ -178,7 +200,20 @@ impl State {
         self.poses[r.element].rotation * r.offset
     }
 
-    /// Core circle of ring `ring` in the image `shift`.
+    /// Core of ring `ring` in the image `shift`.
+    pub fn core(&self, model: &Model, ring: usize, shift: Shift) -> Core {
+        match &model.rings[ring].curve {
+            None => Core::Circle(self.circle(model, ring, shift)),
+            Some(curve) => {
+                let pose = &self.poses[model.rings[ring].element];
+                let pose = if shift == [0, 0] { *pose } else { self.image(shift).pose(pose) };
+                Core::Curve(Arc::clone(curve), pose)
+            }
+        }
+    }
+
+    /// Core circle of ring `ring` in the image `shift`; of another curve the circle about its centre with its normal, and with the radius of
+    /// its ball.
     pub fn circle(&self, model: &Model, ring: usize, shift: Shift) -> Circle {
         let r = &model.rings[ring];
         let pose = &self.poses[r.element];
@@ -225,6 +260,11 @@ impl State {
             for ring in &mut element.rings {
                 ring.normal = (pose.rotation * Vec3::from(ring.normal)).into();
                 ring.offset = (pose.rotation * Vec3::from(ring.offset)).into();
+            }
+            for curve in &mut element.curves {
+                for vector in [&mut curve.normal, &mut curve.along, &mut curve.offset] {
+                    *vector = (pose.rotation * Vec3::from(*vector)).into();
+                }
             }
         }
         out.settled()

@@ -13,14 +13,15 @@ const ALONG: usize = 3;
 
 impl SheetProgram<'_> {
     /// Rows at the points of `contacts`, in their order, then at all other closed points of the pairs at `x`, with first
-    /// derivatives. `None` where a contact belongs to no near pair.
+    /// derivatives. `None` where a contact belongs to no near pair of circles.
     pub(crate) fn closed_points(&self, x: &Posed, contacts: &[Contact]) -> Option<Vec<Row>> {
         let (turns, factored) = (self.all_turns(&x.state), self.pull.factored(&x.p));
         let rows = |near: &NearPair, angles: &[f64]| self.gaps_at(x, near, (&turns, factored.as_ref()), angles);
         let mut out = Vec::new();
         for contact in contacts {
             let near = self.near(x).iter().find(|near| near.pair == contact.pair)?;
-            out.extend(rows(near, &[near.b.angle_rad(&contact.point_b)]));
+            let (_, b) = near.circles()?;
+            out.extend(rows(near, &[b.angle_rad(&contact.point_b)]));
         }
         for near in
             self.near(x).iter().filter(|near| near.within(CLOSED + self.required(x, near.touching) - near.touching))

@@ -14,7 +14,7 @@ use super::{
 };
 use crate::{
     solver::constraints::{Multiplier, Row},
-    topology::{self, near_pairs::NearPair},
+    topology::{self, RingPair, near_pairs::NearPair},
 };
 use maille_geometry::Vec3;
 use std::collections::BTreeSet;
@@ -41,7 +41,8 @@ impl SheetProgram<'_> {
     pub fn take_flat_pairs(&mut self, x: &Posed) -> bool {
         let (model, state) = (self.model, &x.state);
         let mut flat = BTreeSet::new();
-        for pair in topology::close_pairs(model, state, 0.0) {
+        let round = |pair: &RingPair| [pair.ring_a, pair.ring_b].iter().all(|ring| model.rings[*ring].is_round());
+        for pair in topology::close_pairs(model, state, 0.0).into_iter().filter(round) {
             let a = state.circle(model, pair.ring_a, [0, 0]);
             let b = state.circle(model, pair.ring_b, pair.shift);
             let touching = self.required(x, model.contact_distance(pair.ring_a, pair.ring_b));
@@ -77,7 +78,13 @@ impl SheetProgram<'_> {
             let closed: Vec<f64> =
                 minima.filter(|(m, required)| m.distance - required < CLOSED).map(|(m, _)| m.angle_b_rad()).collect();
             let value = force / closed.len() as f64;
-            multipliers.extend(closed.iter().map(|&angle| Multiplier { key, angle, minimum: true, value }));
+            multipliers.extend(closed.iter().map(|&angle| Multiplier {
+                key,
+                angle,
+                angle_a: 0.0,
+                minimum: true,
+                value,
+            }));
         }
         !shifted.is_empty()
     }

@@ -101,11 +101,18 @@ fn cross_matrix(a: &Vec3) -> Matrix3<f64> {
 }
 
 /// Hessian of ω ↦ v·(ω × (ω × p)): v pᵀ + p vᵀ − 2 (v·p) I.
-fn turn_hessian(v: &Vec3, p: &Vec3) -> Matrix3<f64> {
+pub(super) fn turn_hessian(v: &Vec3, p: &Vec3) -> Matrix3<f64> {
     v * p.transpose() + p * v.transpose() - Matrix3::identity() * (2.0 * v.dot(p))
 }
 
-fn blocks(xx: f64, xa: Matrix3<f64>, xb: Matrix3<f64>, aa: Matrix3<f64>, ab: Matrix3<f64>, bb: Matrix3<f64>) -> Hess {
+pub(super) fn blocks(
+    xx: f64,
+    xa: Matrix3<f64>,
+    xb: Matrix3<f64>,
+    aa: Matrix3<f64>,
+    ab: Matrix3<f64>,
+    bb: Matrix3<f64>,
+) -> Hess {
     let mut h = Hess::zeros();
     h.fixed_view_mut::<3, 3>(0, 0).copy_from(&(Matrix3::identity() * xx));
     h.fixed_view_mut::<3, 3>(0, 3).copy_from(&xa);
@@ -119,7 +126,7 @@ fn blocks(xx: f64, xa: Matrix3<f64>, xb: Matrix3<f64>, aa: Matrix3<f64>, ab: Mat
     h
 }
 
-fn stack(x: Vec3, a: Vec3, b: Vec3) -> Grad {
+pub(super) fn stack(x: Vec3, a: Vec3, b: Vec3) -> Grad {
     Grad::from_iterator(x.iter().chain(a.iter()).chain(b.iter()).copied())
 }
 

@@ -9,6 +9,8 @@
 
 mod area;
 mod closed;
+mod curve_kernel;
+mod curve_pair;
 pub mod flat;
 pub mod gap_kernel;
 pub mod key;
@@ -23,7 +25,7 @@ use self::{
     metric::Factored,
 };
 use crate::{
-    model::Model,
+    model::{Core, Model},
     solver::{
         certificate::CARRIED,
         constraints::{Derivatives, Loads, Multiplier, Row},
@@ -191,7 +193,10 @@ impl<'a> SheetProgram<'a> {
         let spins_freely: Vec<bool> = model
             .elements
             .iter()
-            .map(|e| e.rings.len() == 1 && model.rings[e.rings.start].offset.norm() < 1e-12)
+            .map(|e| {
+                let first = &model.rings[e.rings.start];
+                e.rings.len() == 1 && first.is_round() && first.offset.norm() < 1e-12
+            })
             .collect();
         let columns = spins_freely
             .iter()
@@ -221,9 +226,16 @@ impl<'a> SheetProgram<'a> {
         loaded
             .map(|m| {
                 let pair = pair_of_key(m.key);
-                let a = x.state.circle(self.model, pair.ring_a, [0, 0]);
-                let point_b = x.state.circle(self.model, pair.ring_b, pair.shift).point(m.angle);
-                Contact { pair, point_a: point_circle_distance(&point_b, &a).point, point_b, force: m.value }
+                let a = x.state.core(self.model, pair.ring_a, [0, 0]);
+                let b = x.state.core(self.model, pair.ring_b, pair.shift);
+                let [point_a, point_b] = match (&a, &b) {
+                    (Core::Circle(a), Core::Circle(b)) => {
+                        let point_b = b.point(m.angle);
+                        [point_circle_distance(&point_b, a).point, point_b]
+                    }
+                    _ => [a.at_angle(m.angle_a).point, b.at_angle(m.angle).point],
+                };
+                Contact { pair, point_a, point_b, force: m.value }
             })
             .collect()
     }
@@ -311,6 +323,10 @@ impl Program for SheetProgram<'_> {
         if matches!(derivatives, Derivatives::None) {
             for near in within {
                 let key = pair_key(&near.pair);
+                rows.extend(near.curve_minima(band + required(near)).iter().map(|m| Row {
+                    angle_a: m.a.angle_rad,
+                    ..Row::value(key, m.b.angle_rad, m.distance - required(near))
+                }));
                 rows.extend(
                     near.minima().iter().map(|m| Row::value(key, m.angle_b_rad(), m.distance - required(near))),
                 );

@@ -13,9 +13,9 @@ use crate::{
 use maille_geometry::Vec3;
 
 /// Contacts whose 2×2 Hessian in the contact angles is below this (and whose gap is below [`NEAR`]) get extra rows.
-const FLAT: f64 = 0.3;
+pub(super) const FLAT: f64 = 0.3;
 /// See [`FLAT`]; in units of the reference radius.
-const NEAR: f64 = 0.1;
+pub(super) const NEAR: f64 = 0.1;
 /// Angles of the extra rows beside a flat contact.
 const BESIDE_RAD: [f64; 6] = [-0.18, -0.12, -0.06, 0.06, 0.12, 0.18];
 /// Heights that stand for a flat pair's gap.
@@ -63,7 +63,7 @@ impl PairMap {
         self.motions.iter().map(|motion| motion.dot(grad)).collect()
     }
 
-    fn hessian(&self, grad: &Grad, hess: &Hess) -> Vec<f64> {
+    pub(super) fn hessian(&self, grad: &Grad, hess: &Hess) -> Vec<f64> {
         let k = self.columns.len();
         let mut out = vec![0.0; k * k];
         for (c, motion) in self.motions.iter().enumerate() {
@@ -146,11 +146,11 @@ impl SheetProgram<'_> {
         let (pair, state) = (&near.pair, &x.state);
         let reference_a = state.poses[self.model.rings[pair.ring_a].element].position;
         let reference_b = state.position(self.model.rings[pair.ring_b].element, pair.shift);
-        PairFrame::new(&near.a, &reference_a, &near.b, &reference_b)
+        PairFrame::new(near.a.circle(), &reference_a, near.b.circle(), &reference_b)
     }
 
     /// Gradient of a gap in the unknowns of `map`, from that of the distance.
-    fn gap_gradient(&self, map: &PairMap, near: &NearPair, distance: &Grad) -> Vec<f64> {
+    pub(super) fn gap_gradient(&self, map: &PairMap, near: &NearPair, distance: &Grad) -> Vec<f64> {
         let mut out = map.gradient(distance);
         for &(m, at) in &map.parameters {
             out[at] -= self.pull.parameters[m].keeps(near.touching);
@@ -191,11 +191,14 @@ impl SheetProgram<'_> {
         derivatives: Derivatives<'_>,
         rows: &mut Vec<Row>,
     ) {
+        if near.circles().is_none() {
+            return self.curve_rows(x, near, band, map, derivatives, rows);
+        }
         let key = pair_key(&near.pair);
         let frame = self.frame(x, near);
         let required = self.required(x, near.touching);
         let loaded = |angle: f64, minimum: bool| match derivatives {
-            Derivatives::Second(loads) => loads.may_load(key, angle, minimum),
+            Derivatives::Second(loads) => loads.may_load(&Row { minimum, ..Row::value(key, angle, 0.0) }),
             _ => false,
         };
         let mut add = |angle: f64, minimum: bool, distance: f64, grad: &Grad, hess: Option<&Hess>| {
@@ -208,7 +211,8 @@ impl SheetProgram<'_> {
             });
         };
         if self.flat.contains(&key) {
-            let side = (near.b.center - near.a.center).dot(&near.a.normal).signum();
+            let (a, b) = (near.a.circle(), near.b.circle());
+            let side = (b.center - a.center).dot(&a.normal).signum();
             for angle in height_angles_rad() {
                 let (z, grad, hess) = frame.height(angle);
                 let hess = loaded(angle, false).then(|| hess * side);

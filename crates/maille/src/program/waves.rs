@@ -91,7 +91,7 @@ fn spread(multipliers: &[Multiplier], key: u64) -> Vec<Multiplier> {
     let (total, cos, sin) = (sum(|_| 1.0), sum(f64::cos), sum(f64::sin));
     let angles: Vec<f64> = height_angles_rad().collect();
     let share = |angle: f64| (total + 2.0 * (cos * angle.cos() + sin * angle.sin())) / angles.len() as f64;
-    angles.iter().map(|&angle| Multiplier { key, angle, minimum: false, value: share(angle) }).collect()
+    angles.iter().map(|&angle| Multiplier { key, angle, angle_a: 0.0, minimum: false, value: share(angle) }).collect()
 }
 
 impl SheetProgram<'_> {

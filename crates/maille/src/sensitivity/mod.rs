@@ -72,9 +72,13 @@ impl Sensitivity {
     ///
     /// # Errors
     /// Where the answer is not certified or carries no forces, or its forces do not balance in this question and model;
-    /// for the area of a closest cell.
+    /// for the area of a closest cell; for a design with curves that are no circles.
     pub fn of(model: &Model, question: &Question, answer: &Answer) -> Result<Self, InvalidInput> {
         let certified = answer.is_limit() && answer.certificate.as_ref().is_some_and(|c| c.holds());
+        if !model.is_round() {
+            let help = "its limits, certificates and forces are there; vary a number by a study instead";
+            return Err(InvalidInput::new("design", "has curves, for which no derivatives are known yet", help));
+        }
         let value = answer.value.filter(|_| certified && !answer.contacts.is_empty()).ok_or_else(|| {
             let problem = format!("an answer that is {} has no certified forces", answer.status.name());
             InvalidInput::new(

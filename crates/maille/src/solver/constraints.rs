@@ -9,6 +9,8 @@ pub struct Row {
     pub key: u64,
     /// Tells apart the rows of one key; changes little from point to point.
     pub angle: f64,
+    /// The same, where one number does not tell them apart; else 0.
+    pub angle_a: f64,
     /// Value.
     pub gap: f64,
     /// A true gap; otherwise a sample beside one, valid but never the smallest.
@@ -24,12 +26,21 @@ pub struct Row {
 impl Row {
     /// Its multiplier, of size `value`.
     pub(crate) fn multiplier(&self, value: f64) -> Multiplier {
-        Multiplier { key: self.key, angle: self.angle, minimum: self.minimum, value }
+        Multiplier { key: self.key, angle: self.angle, angle_a: self.angle_a, minimum: self.minimum, value }
     }
 
     /// A row without derivatives.
     pub(crate) fn value(key: u64, angle: f64, gap: f64) -> Row {
-        Row { key, angle, gap, minimum: true, columns: Vec::new(), gradient: Vec::new(), hessian: Vec::new() }
+        Row {
+            key,
+            angle,
+            angle_a: 0.0,
+            gap,
+            minimum: true,
+            columns: Vec::new(),
+            gradient: Vec::new(),
+            hessian: Vec::new(),
+        }
     }
 }
 
@@ -51,6 +62,8 @@ pub struct Multiplier {
     pub key: u64,
     /// Angle of the row.
     pub angle: f64,
+    /// Second angle of the row.
+    pub angle_a: f64,
     /// Whether the row is a true gap.
     pub minimum: bool,
     /// μ ≥ 0.
@@ -86,7 +99,7 @@ impl Loads {
     /// The multiplier of each of `rows`: that of the nearest angle under the same key, or 0. Of two rows that are near to one multiplier, as two minima
     /// of a pair are before they merge, the nearer one has it.
     pub fn of(&self, rows: &[Row]) -> Vec<f64> {
-        let nearest: Vec<_> = rows.iter().map(|row| self.nearest(row.key, row.angle, row.minimum)).collect();
+        let nearest: Vec<_> = rows.iter().map(|row| self.nearest(row)).collect();
         let mut out = vec![0.0; rows.len()];
         let mut order: Vec<(usize, f64, usize)> =
             nearest.iter().enumerate().filter_map(|(row, found)| found.map(|(k, apart)| (k, apart, row))).collect();
@@ -98,17 +111,19 @@ impl Loads {
         out
     }
 
-    /// Whether a row with this key, angle and kind may have a multiplier that is not 0.
-    pub(crate) fn may_load(&self, key: u64, angle: f64, minimum: bool) -> bool {
-        self.nearest(key, angle, minimum).is_some_and(|(k, _)| self.sorted[k].value != 0.0)
+    /// Whether a row with this key, angles and kind may have a multiplier that is not 0.
+    pub(crate) fn may_load(&self, row: &Row) -> bool {
+        self.nearest(row).is_some_and(|(k, _)| self.sorted[k].value != 0.0)
     }
 
-    /// The place of the nearest multiplier, and how far its angle is.
-    fn nearest(&self, key: u64, angle: f64, minimum: bool) -> Option<(usize, f64)> {
-        let apart = |m: &Multiplier| {
-            let turn = (m.angle - angle).rem_euclid(std::f64::consts::TAU);
+    /// The place of the nearest multiplier, and how far its angles are.
+    fn nearest(&self, row: &Row) -> Option<(usize, f64)> {
+        let Row { key, minimum, .. } = *row;
+        let between = |x: f64, y: f64| {
+            let turn = (x - y).rem_euclid(std::f64::consts::TAU);
             turn.min(std::f64::consts::TAU - turn)
         };
+        let apart = |m: &Multiplier| between(m.angle, row.angle).max(between(m.angle_a, row.angle_a));
         let first = self.sorted.partition_point(|m| m.key < key);
         let of_key = self.sorted[first..].iter().enumerate().take_while(|(_, m)| m.key == key);
         of_key
@@ -145,7 +160,7 @@ mod tests {
     #[test]
     fn of_two_rows_near_one_multiplier_the_nearer_has_it() {
         let row = |key, angle| Row { minimum: true, ..Row::value(key, angle, 0.0) };
-        let known = |key, angle, value| Multiplier { key, angle, minimum: true, value };
+        let known = |key, angle, value| Multiplier { key, angle, angle_a: 0.0, minimum: true, value };
         let rows = [row(7, -1.37), row(7, -1.67), row(8, 3.1), row(9, 0.0)];
         let of = |known: &[Multiplier]| Loads::new(known).of(&rows);
         assert_eq!(of(&[known(7, -1.36, 0.5), known(8, -3.1, 2.0)]), [0.5, 0.0, 2.0, 0.0]);

@@ -4,7 +4,7 @@ use crate::{
     answer::{Answer, CellTrend, FreeRanges, WaveCurvature},
     bound::{BindingChain, DualForce, TieKind},
     lattice::{Cell, Direction},
-    model::{Model, of_cell},
+    model::{Core, Model, of_cell},
     program::Contact,
     state::State,
     symmetry::{Image, Operation, between},
@@ -66,9 +66,12 @@ pub(crate) fn image<'a>(
 }
 
 fn mapped_contact(image: &Image<'_>, contact: &Contact, state: &State) -> Contact {
-    let (pair, [_, point_b]) = image.contact(&contact.pair, [contact.point_a, contact.point_b], state);
+    let (pair, [point_a, point_b]) = image.contact(&contact.pair, [contact.point_a, contact.point_b], state);
     // The point of b and the nearest one of a: where the two rings change their order, that is another one by a hair.
-    let point_a = point_circle_distance(&point_b, &state.circle(image.model(), pair.ring_a, [0, 0])).point;
+    let point_a = match state.core(image.model(), pair.ring_a, [0, 0]) {
+        Core::Circle(circle) => point_circle_distance(&point_b, &circle).point,
+        Core::Curve(..) => point_a,
+    };
     Contact { pair, point_a, point_b, force: contact.force }
 }
 

@@ -12,8 +12,15 @@ pub(crate) mod winding;
 mod window;
 
 pub use crate::model::{Link, RingPair};
-use crate::{lattice::Shift, model::Model, state::State};
-use maille_geometry::{circle_distance_minima, linking_number};
+use crate::{
+    lattice::Shift,
+    model::{
+        Model,
+        curve::{Core, curve_distance_minima},
+    },
+    state::State,
+};
+use maille_geometry::{circle_distance_minima, curve_linking_number, linking_number};
 use std::collections::{BTreeMap, BTreeSet};
 pub use warnings::warnings;
 
@@ -48,11 +55,18 @@ pub fn close_pairs(model: &Model, state: &State, margin: f64) -> Vec<RingPair> {
     })
 }
 
-/// Least distance of the pair's core circles.
+/// The cores of a pair.
+fn cores(model: &Model, state: &State, pair: &RingPair) -> (Core, Core) {
+    (state.core(model, pair.ring_a, [0, 0]), state.core(model, pair.ring_b, pair.shift))
+}
+
+/// Least distance of the pair's cores.
 pub fn core_distance(model: &Model, state: &State, pair: &RingPair) -> f64 {
-    let a = state.circle(model, pair.ring_a, [0, 0]);
-    let b = state.circle(model, pair.ring_b, pair.shift);
-    circle_distance_minima(&a, &b).closest().distance
+    let (a, b) = cores(model, state, pair);
+    match (&a, &b) {
+        (Core::Circle(a), Core::Circle(b)) => circle_distance_minima(a, b).closest().distance,
+        _ => curve_distance_minima(&a, &b, 0.0)[0].distance,
+    }
 }
 
 /// Smallest gap of all pairs (negative where tori overlap), with its pair; `None` where no two rings are near.
@@ -82,9 +96,16 @@ pub fn links(model: &Model, state: &State, pairs: &[RingPair]) -> Vec<Link> {
     let mut out: Vec<Link> = pairs
         .iter()
         .map(|&pair| {
-            let a = state.circle(model, pair.ring_a, [0, 0]);
-            let b = state.circle(model, pair.ring_b, pair.shift);
-            Link { pair, number: linking_number(&a, &b) }
+            let (a, b) = cores(model, state, &pair);
+            let number = match (&a, &b) {
+                (Core::Circle(a), Core::Circle(b)) => linking_number(a, b),
+                // Where it cannot be told the two are too near to be kept apart.
+                _ => {
+                    let apart = curve_distance_minima(&a, &b, 0.0)[0].distance;
+                    curve_linking_number(&a.pieces(), &b.pieces(), apart).unwrap_or(0)
+                }
+            };
+            Link { pair, number }
         })
         .filter(|link| link.number != 0)
         .collect();

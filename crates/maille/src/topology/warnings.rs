@@ -84,6 +84,7 @@ fn alike(model: &Model, a: usize, b: usize) -> bool {
             close(p.major_radius, q.major_radius)
                 && close(p.minor_radius, q.minor_radius)
                 && (p.normal.abs() - q.normal.abs()).norm() < 1e-6
+                && p.is_round() == q.is_round()
                 && (p.offset.abs() - q.offset.abs()).norm() < 1e-6
         })
 }

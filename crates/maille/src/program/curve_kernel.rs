@@ -1,0 +1,89 @@
+//! The distance of two curves at a contact, with derivatives in the pose of the pair: for cores that are not both circles.
+//!
+//! As in [`super::gap_kernel`] the pose variables are y = (x, α, β). A point of A stands at the arm a from its element's reference point, one
+//! of B at b; W = x + e^β b − e^α a is the way from the first to the second, and h = ½|W|². A contact moves along the curves as the
+//! pose changes: with s and t the arc lengths of its points, t_a, t_b the tangents and k_a, k_b their derivatives,
+//!
+//! h_ss = 1 − W·k_a,  h_tt = 1 + W·k_b,  h_st = −t_a·t_b,
+//!
+//! and where s and t are at a minimum, the distance d = √2h has h_yy − (h_ys h_yt) H⁻¹ (h_ys h_yt)ᵀ in place of h_yy, H being the
+//! matrix above. A point at a corner, or one that is held, does not move: its row and column are left out.
+
+use super::gap_kernel::{Grad, Hess, blocks, stack, turn_hessian};
+use crate::model::curve::CurvePoint;
+use maille_geometry::Vec3;
+use nalgebra::{Matrix2, SymmetricEigen};
+
+/// Second derivatives along the curves are not taken for smaller than this: a minimum that is about to vanish moves ever faster.
+const LEAST: f64 = 1e-6;
+
+/// A contact of two curves: a point of each, and whether it moves along its curve to where the distance is least.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CurveContact {
+    /// From element A's reference point to element B's.
+    pub x: Vec3,
+    /// From element A's reference point to the point of A.
+    pub arm_a: Vec3,
+    /// From element B's reference point to the point of B.
+    pub arm_b: Vec3,
+    /// The points.
+    pub points: [CurvePoint; 2],
+    /// Whether each moves.
+    pub moves: [bool; 2],
+}
+
+impl CurveContact {
+    fn way(&self) -> Vec3 {
+        self.x + self.arm_b - self.arm_a
+    }
+
+    /// The distance and its gradient in y.
+    pub fn gradient(&self) -> (f64, Grad) {
+        let way = self.way();
+        let distance = way.norm();
+        let e = way / distance.max(1e-12);
+        (distance, stack(e, e.cross(&self.arm_a), self.arm_b.cross(&e)))
+    }
+
+    /// Second derivatives of h along the two curves.
+    pub fn along(&self) -> Matrix2<f64> {
+        let (way, [a, b]) = (self.way(), self.points);
+        let across = -a.tangent.dot(&b.tangent);
+        Matrix2::new(1.0 - way.dot(&a.curvature), across, across, 1.0 + way.dot(&b.curvature))
+    }
+
+    /// The Hessian of the distance in y.
+    pub fn hessian(&self) -> Hess {
+        let (way, a, b) = (self.way(), self.arm_a, self.arm_b);
+        let distance = way.norm().max(1e-12);
+        let [along_a, along_b] = self.points.map(|point| point.tangent);
+        let (cross_a, cross_b) = (a.cross_matrix(), b.cross_matrix());
+        let mut out = blocks(
+            1.0,
+            cross_a,
+            -cross_b,
+            cross_a.transpose() * cross_a - turn_hessian(&way, &a) * 0.5,
+            -cross_a.transpose() * cross_b,
+            cross_b.transpose() * cross_b + turn_hessian(&way, &b) * 0.5,
+        );
+        // ∂h_y/∂s and ∂h_y/∂t.
+        let of_s = stack(-along_a, a.cross(&along_a) - along_a.cross(&way), along_a.cross(&b));
+        let of_t = stack(along_b, -a.cross(&along_b), along_b.cross(&way) + b.cross(&along_b));
+        let along = self.along();
+        match self.moves {
+            [true, true] => {
+                let eigen = SymmetricEigen::new(along);
+                for k in 0..2 {
+                    let v = eigen.eigenvectors.column(k);
+                    let moved = of_s * v[0] + of_t * v[1];
+                    out -= moved * moved.transpose() / eigen.eigenvalues[k].max(LEAST);
+                }
+            }
+            [true, false] => out -= of_s * of_s.transpose() / along[(0, 0)].max(LEAST),
+            [false, true] => out -= of_t * of_t.transpose() / along[(1, 1)].max(LEAST),
+            [false, false] => {}
+        }
+        let grad = self.gradient().1;
+        (out - grad * grad.transpose()) / distance
+    }
+}
