@@ -1,6 +1,10 @@
 //! Cells along the two lattice vectors.
 
-use maille::{lattice::Shift, model::Model, state::State};
+use maille::{
+    lattice::Shift,
+    model::{Core, Model},
+    state::State,
+};
 use maille_geometry::Vec3;
 use std::{fmt, str::FromStr};
 
@@ -58,11 +62,19 @@ fn extents(model: &Model, state: &State) -> ([f64; 2], [f64; 2]) {
     let across = Vec3::z().cross(&along);
     let extent = |axis: Vec3| {
         let ends = (0..model.rings.len()).map(|ring| {
-            let circle = state.circle(model, ring, [0, 0]);
-            let tilt = circle.normal.dot(&axis);
-            let half = circle.radius * (1.0 - tilt * tilt).max(0.0).sqrt() + model.rings[ring].minor_radius;
-            let middle = circle.center.dot(&axis);
-            [middle - half, middle + half]
+            let wire = model.rings[ring].minor_radius;
+            match state.core(model, ring, [0, 0]) {
+                Core::Circle(circle) => {
+                    let tilt = circle.normal.dot(&axis);
+                    let half = circle.radius * (1.0 - tilt * tilt).max(0.0).sqrt() + wire;
+                    let middle = circle.center.dot(&axis);
+                    [middle - half, middle + half]
+                }
+                curve => {
+                    let [low, high] = curve.extent(&axis);
+                    [low - wire, high + wire]
+                }
+            }
         });
         let ends = ends.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]).unwrap_or_default();
         ends[1] - ends[0]

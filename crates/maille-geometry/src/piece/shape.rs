@@ -201,6 +201,22 @@ impl Piece {
         }
     }
 
+    /// The largest coordinate of its points along the unit vector `axis`.
+    pub fn support(&self, axis: &Vec3) -> f64 {
+        let ends = self.point(0.0).dot(axis).max(self.point(1.0).dot(axis));
+        match self {
+            Piece::Segment(_) => ends,
+            Piece::Arc(arc) => {
+                let (ahead, aside) = (axis.dot(&arc.middle), axis.dot(&arc.aside()));
+                if aside.atan2(ahead).abs() < arc.half_angle_rad {
+                    arc.circle.center.dot(axis) + arc.circle.radius * ahead.hypot(aside)
+                } else {
+                    ends
+                }
+            }
+        }
+    }
+
     /// The piece turned by `rotation` about the origin, and then moved by `translation`.
     pub fn moved(&self, rotation: &UnitQuaternion<f64>, translation: &Vec3) -> Self {
         let point = |p: &Vec3| rotation * p + translation;

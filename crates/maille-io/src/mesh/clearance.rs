@@ -18,7 +18,7 @@ use maille::{
     state::State,
     topology::{self, RingPair},
 };
-use maille_geometry::{Vec3, circle_distance_minima};
+use maille_geometry::Vec3;
 
 /// Rings whose meshes are closer to each other than a printer can keep apart. Lengths in millimetres.
 #[derive(Clone, Debug, PartialEq)]
@@ -85,7 +85,10 @@ pub fn too_close(
             continue;
         }
         // Thinner wire can have other chords; this bounds them all.
-        let outside = |ring: usize| fineness.protrusion(model.rings[ring].major_radius * model.unit) * scene.mm;
+        let outside = |ring: usize| match model.rings[ring].is_round() {
+            true => fineness.protrusion(model.rings[ring].major_radius * model.unit) * scene.mm,
+            false => meshes.protrusions[ring],
+        };
         let outside = outside(pair.rings.ring_a) + outside(pair.rings.ring_b);
         factor = factor.min((pair.gap + pair.radii - clearance - outside) / pair.radii);
         close.push((if pair.gap < 0.0 { pair.gap } else { distance }, pair));
@@ -97,16 +100,14 @@ pub fn too_close(
     // The first cells of the tile that hold both.
     let cell_a = rings.shift.map(|k| (-k).max(0));
     let cell_b = [0, 1].map(|k| cell_a[k] + rings.shift[k]);
-    let a = state.circle(model, rings.ring_a, cell_a);
-    let b = state.circle(model, rings.ring_b, cell_b);
-    let minimum = *circle_distance_minima(&a, &b).closest();
+    let [point_a, point_b] = topology::closest_points(model, state, [(rings.ring_a, cell_a), (rings.ring_b, cell_b)]);
     Some(TooClose {
         gap,
         torus_gap: pair.gap,
         pair: rings,
         cells: [cell_a, cell_b],
         rings: [model.ring_label(rings.ring_a, cell_a), model.ring_label(rings.ring_b, cell_b)],
-        place: (minimum.point_a + minimum.point_b) * (0.5 * to_mm),
+        place: (point_a + point_b) * (0.5 * to_mm),
         pairs,
         minor_radius_factor: (factor > 1e-6).then_some(factor),
         scale_factor: (gap > 1e-9 * to_mm).then_some(clearance / gap),

@@ -17,6 +17,7 @@
 
 mod clearance;
 mod colour;
+mod curve;
 mod distance;
 mod error;
 mod format;

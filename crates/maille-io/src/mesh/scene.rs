@@ -1,12 +1,13 @@
 //! What is exported: the tori of a finite piece of the sheet, in millimetres.
 
 use super::{
+    curve::curve_mesh,
     error::MeshError,
     torus::{Fineness, TorusMesh},
 };
 use crate::tile::Tile;
 use maille::{
-    model::Model,
+    model::{Model, Ring},
     record::{ContactRecord, StateRecord},
     state::{Pose, Roll, State},
 };
@@ -88,7 +89,7 @@ pub struct Scene {
     pub description: String,
     /// Millimetres of one unit of the design file.
     pub mm: f64,
-    /// One mesh for each pair of radii.
+    /// One mesh for each pair of radii, and each other curve.
     pub shapes: Vec<TorusMesh>,
     /// The kinds of elements, in the design's order.
     pub kinds: Vec<Kind>,
@@ -117,24 +118,37 @@ impl Scene {
         }
         let to_mm = model.unit * mm;
         let kind_count = model.elements.len() / model.cell.copies();
-        let (mut shapes, mut radii) = (Vec::new(), Vec::<[u64; 2]>::new());
+        let mut shapes = Vec::new();
+        let mut known: Vec<&Ring> = Vec::new();
         let mut kinds = Vec::new();
         for element in &model.elements[..kind_count] {
             let mut rings = Vec::new();
             for ring in &model.rings[element.rings.clone()] {
                 let pair = [ring.major_radius, ring.minor_radius];
-                let shape = match radii.iter().position(|known| *known == pair.map(f64::to_bits)) {
-                    Some(known) => known,
+                let same = |other: &&Ring| {
+                    let radii = [other.major_radius, other.minor_radius];
+                    radii.map(f64::to_bits) == pair.map(f64::to_bits) && other.curve == ring.curve
+                };
+                let shape = match known.iter().position(same) {
+                    Some(shape) => shape,
                     None => {
                         let [big, small] = pair.map(|x| x * model.unit);
-                        let segments = fineness.segments(big, small)?;
-                        shapes.push(TorusMesh::new(big * mm, small * mm, segments));
-                        radii.push(pair.map(f64::to_bits));
+                        shapes.push(match &ring.curve {
+                            None => TorusMesh::new(big * mm, small * mm, fineness.segments(big, small)?),
+                            Some(curve) => curve_mesh(curve, pair, fineness, model.unit, mm)?,
+                        });
+                        known.push(ring);
                         shapes.len() - 1
                     }
                 };
-                let offset = Translation3::from(ring.offset * to_mm);
-                rings.push(KindRing { shape, local: Isometry3::from_parts(offset, turn_of_axis(&ring.normal)) });
+                let local = match ring.is_round() {
+                    true => {
+                        let offset = Translation3::from(ring.offset * to_mm);
+                        Isometry3::from_parts(offset, turn_of_axis(&ring.normal))
+                    }
+                    false => Isometry3::identity(),
+                };
+                rings.push(KindRing { shape, local });
             }
             // In a supercell the model adds the copy to the name.
             let name = match element.name.rsplit_once('@') {

@@ -63,7 +63,7 @@ impl Fineness {
 }
 
 /// Height of a circle's arc over its chord, the circle cut into `n`: ϱ (1 − cos π/n).
-fn sagitta(radius: f64, n: usize) -> f64 {
+pub(super) fn sagitta(radius: f64, n: usize) -> f64 {
     radius * 2.0 * (PI / (2.0 * n as f64)).sin().powi(2)
 }
 
@@ -74,7 +74,8 @@ pub(super) fn polygon(radius: f64, tolerance: f64) -> usize {
     ((PI / half_angle_rad * (1.0 - 1e-12)).ceil() as usize).max(3)
 }
 
-/// A torus around the z axis, centre at the origin.
+/// The mesh of a torus around the z axis, centre at the origin; or that of the tube round another curve (`curve.rs`), in the frame of its
+/// element.
 ///
 /// Vertices lie on the torus at u = 2πi/n around the axis and v = 2πj/m around the wire,
 /// ((R + r cos v) cos u, (R + r cos v) sin u, r sin v), numbered i m + j. The faces between are plane trapezoids, because
@@ -90,6 +91,8 @@ pub struct TorusMesh {
     pub minor_radius: f64,
     /// Segments n and m.
     pub segments: Segments,
+    /// Of another curve, how far its chords may stray; of a torus it follows from the radii.
+    pub chords: Option<f64>,
     /// Vertices.
     pub vertices: Vec<Vec3>,
     /// Outward unit normals of the torus at the vertices.
@@ -110,7 +113,7 @@ impl TorusMesh {
                 normals.push(Vec3::new(cos_v * cos_u, cos_v * sin_u, sin_v));
             }
         }
-        TorusMesh { major_radius, minor_radius, segments, vertices, normals }
+        TorusMesh { major_radius, minor_radius, segments, chords: None, vertices, normals }
     }
 
     /// Number of quadrilaterals: as many as vertices.
@@ -143,7 +146,8 @@ impl TorusMesh {
     /// Bound of the distance between mesh and torus.
     pub fn chordal_error(&self) -> f64 {
         let outer = self.major_radius + self.minor_radius;
-        sagitta(outer, self.segments.around) + sagitta(self.minor_radius, self.segments.across)
+        self.chords.unwrap_or_else(|| sagitta(outer, self.segments.around))
+            + sagitta(self.minor_radius, self.segments.across)
     }
 
     /// The mesh lies no farther than this outside the torus: R (1 − cos π/n).
@@ -152,10 +156,10 @@ impl TorusMesh {
     /// (ϱ − R)² + z² ≤ r². There its distance from the axis is ϱ′, with ϱ cos π/n ≤ ϱ′ ≤ ϱ. If ϱ ≤ R, or ϱ′ ≤ R, the distance
     /// from the core circle is at most r + R (1 − cos π/n); else it is at most r.
     pub fn protrusion(&self) -> f64 {
-        sagitta(self.major_radius, self.segments.around)
+        self.chords.unwrap_or_else(|| sagitta(self.major_radius, self.segments.around))
     }
 
-    /// Volume of the mesh, by the formula.
+    /// Volume of the mesh of a torus, by the formula.
     pub fn volume(&self) -> f64 {
         let (n, m) = (self.segments.around as f64, self.segments.across as f64);
         n * (TAU / n).sin() * self.major_radius * 0.5 * m * self.minor_radius.powi(2) * (TAU / m).sin()

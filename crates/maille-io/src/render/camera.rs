@@ -1,7 +1,7 @@
 //! Where the picture is taken from.
 
-use super::{error::RenderError, torus::Ray};
-use maille_geometry::{Circle, Torus, Vec3};
+use super::{error::RenderError, torus::Ray, tube::Tube};
+use maille_geometry::Vec3;
 use std::str::FromStr;
 
 /// A direction of view: azimuth and elevation in degrees.
@@ -74,7 +74,7 @@ const SPREAD: f64 = 0.27;
 
 impl Camera {
     /// The camera that shows all `tori` as large as possible in a frame of pixels (`left, top, right, bottom`).
-    pub(super) fn fit(view: View, perspective: bool, tori: &[Torus], frame: [f64; 4]) -> Result<Self, RenderError> {
+    pub(super) fn fit(view: View, perspective: bool, tori: &[Tube], frame: [f64; 4]) -> Result<Self, RenderError> {
         let [left, top, right_edge, bottom] = frame;
         let (width, height) = (right_edge - left, bottom - top);
         let (sin_a, cos_a) = sin_cos(view.azimuth_deg);
@@ -83,10 +83,7 @@ impl Camera {
         let back = Vec3::new(sin_a * cos_e, -cos_a * cos_e, sin_e);
         let up = back.cross(&right);
         let extent = |axis: &Vec3| {
-            let ends = tori.iter().map(|torus| {
-                let (at, half) = (torus.circle.center.dot(axis), half_extent(torus, axis));
-                (at - half, at + half)
-            });
+            let ends = tori.iter().map(|tube| tube.extent(axis));
             ends.fold((f64::INFINITY, f64::NEG_INFINITY), |a, b| (a.0.min(b.0), a.1.max(b.1)))
         };
         let (x, y, z) = (extent(&right), extent(&up), extent(&back));
@@ -105,10 +102,10 @@ impl Camera {
     }
 
     /// Sets the eye's distance: as near as shows everything, with what is shown in the middle.
-    fn step_back(&mut self, tori: &[Torus], width: f64, height: f64) {
+    fn step_back(&mut self, tori: &[Tube], width: f64, height: f64) {
         let spread = |side: f64| SPREAD * side / width.min(height);
         let points: Vec<(Vec3, f64)> =
-            tori.iter().flat_map(|t| (0..24).map(move |k| outline(&t.circle, k, t.minor_radius))).collect();
+            tori.iter().flat_map(|tube| (0..24).map(move |k| (tube.outline(k), tube.minor_radius()))).collect();
         for _ in 0..4 {
             // A point at (x, y, z) from the target is shown at x/(D − z): its ball of radius r needs (|x| + r)/(D − z) ≤ spread.
             let distance = points.iter().map(|(p, r)| {
@@ -152,16 +149,6 @@ impl Camera {
         let scale = 1.0 / (self.pixel * depth);
         [self.middle[0] + d.dot(&self.right) * scale, self.middle[1] - d.dot(&self.up) * scale]
     }
-}
-
-/// Half of a torus's extent along a unit vector: `R sin∠(axis, N) + r`.
-pub(super) fn half_extent(torus: &Torus, axis: &Vec3) -> f64 {
-    let along = torus.circle.normal.dot(axis);
-    torus.circle.radius * (1.0 - along * along).max(0.0).sqrt() + torus.minor_radius
-}
-
-fn outline(circle: &Circle, k: u32, r: f64) -> (Vec3, f64) {
-    (circle.point(f64::from(k) * std::f64::consts::TAU / 24.0), r)
 }
 
 /// Sine and cosine, exact at multiples of 90°.

@@ -1,7 +1,7 @@
 //! The distance from the nearest torus, at any point.
 
-use super::{bvh::Bounds, torus::distance};
-use maille_geometry::{Torus, Vec3};
+use super::{bvh::Bounds, tube::Tube};
+use maille_geometry::Vec3;
 use rayon::prelude::*;
 
 /// A grid of boxes, each with the tori that can be nearest to a point in it.
@@ -10,7 +10,7 @@ use rayon::prelude::*;
 /// box's centre exceeds the smallest by more than `2 h` is nearest nowhere in the box: most boxes keep two or three.
 #[derive(Debug)]
 pub(super) struct Field<'a> {
-    tori: &'a [Torus],
+    tori: &'a [Tube],
     low: Vec3,
     inverse_step: f64,
     counts: [usize; 3],
@@ -26,7 +26,7 @@ const LEAST_BOX: f64 = 0.18;
 
 impl<'a> Field<'a> {
     /// The field of `tori` within `bounds`, exact where it is less than `reach`.
-    pub(super) fn new(tori: &'a [Torus], bounds: Bounds, reach: f64) -> Self {
+    pub(super) fn new(tori: &'a [Tube], bounds: Bounds, reach: f64) -> Self {
         let volume: f64 = (bounds.high - bounds.low).add_scalar(2.0 * reach).product();
         let step = (volume / MOST_BOXES).cbrt().max(LEAST_BOX);
         let low = bounds.low.add_scalar(-reach);
@@ -40,8 +40,9 @@ impl<'a> Field<'a> {
         let columns: Vec<Vec<u32>> = {
             let mut columns = vec![Vec::new(); layer];
             for (n, torus) in tori.iter().enumerate() {
-                let far = torus.circle.radius + torus.minor_radius + reach + half;
-                let at = (torus.circle.center - low) / step;
+                let (middle, radius) = torus.ball();
+                let far = radius + reach + half;
+                let at = (middle - low) / step;
                 let range = |x: f64, count: usize| {
                     let first = (x - far / step).floor().max(0.0) as usize;
                     first..((x + far / step).ceil().max(0.0) as usize).min(count)
@@ -60,7 +61,7 @@ impl<'a> Field<'a> {
                 let (column, k) = (cell % layer, cell / layer);
                 let p = center(column % counts[0], column / counts[0], k);
                 let near: Vec<(u32, f64)> =
-                    columns[column].iter().map(|&n| (n, distance(&tori[n as usize], &p))).collect();
+                    columns[column].iter().map(|&n| (n, tori[n as usize].distance(&p))).collect();
                 let least = near.iter().map(|x| x.1).fold(f64::INFINITY, f64::min);
                 let most = (least + 2.0 * half).min(reach + half);
                 near.into_iter().filter(|x| x.1 <= most).map(|x| x.0).collect()
@@ -87,6 +88,6 @@ impl<'a> Field<'a> {
         }
         let cell = (k * ny + j) * nx + i;
         let list = &self.nearest[self.starts[cell] as usize..self.starts[cell + 1] as usize];
-        list.iter().map(|&n| distance(&self.tori[n as usize], p)).fold(self.reach, f64::min)
+        list.iter().map(|&n| self.tori[n as usize].distance(p)).fold(self.reach, f64::min)
     }
 }

@@ -4,7 +4,7 @@
 //! it as RGBA pixels. `docs/decisions/0006-renderer.md` says why the renderer is our own.
 //!
 //! The way of a picture: `scene` places rings and arrows, `camera` frames them, `stage` takes samples of every pixel through
-//! `bvh` (which rings may a ray meet?) and `torus` (where?), `shade` lights them by the distance `field`, and `overlay`
+//! `bvh` (which rings may a ray meet?) and `torus` and `tube` (where?), `shade` lights them by the distance `field`, and `overlay`
 //! writes the scale bar and the keys. Work is shared by the threads of the current pool; the pixels do not depend on them.
 
 mod arrow;
@@ -22,6 +22,7 @@ mod scene;
 mod shade;
 mod stage;
 mod torus;
+mod tube;
 
 pub use camera::View;
 pub use color::{FORCE, KINDS, LOADS, UNLOADED};

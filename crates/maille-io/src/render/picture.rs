@@ -8,9 +8,9 @@ use super::{
     overlay::{self, Overlay},
     scene::{Scene, Subject},
     stage::{Pixel, Stage},
+    tube::Tube,
 };
 use crate::plot::svg_to_png;
-use maille_geometry::Torus;
 use resvg::tiny_skia::{Pixmap, PixmapPaint, PremultipliedColorU8, Transform};
 
 /// The dark background.
@@ -78,7 +78,7 @@ fn camera(scenes: &[Scene], options: &RenderOptions) -> Result<Camera, RenderErr
     let strip = if written { overlay::strip(options.size) } else { 0.0 };
     let top = margin + if options.caption.is_some() { overlay::heading(options.size) } else { 0.0 };
     let frame = [margin, top, f64::from(width) - margin, f64::from(height) - margin - strip];
-    let tori: Vec<Torus> = scenes.iter().flat_map(|scene| &scene.tori).copied().collect();
+    let tori: Vec<Tube> = scenes.iter().flat_map(|scene| &scene.tori).copied().collect();
     Camera::fit(options.view, options.perspective, &tori, frame)
 }
 
@@ -116,7 +116,7 @@ fn draw(
         let words = Pixmap::decode_png(&png).map_err(|e| fail(&e))?;
         pixmap.draw_pixmap(0, 0, words.as_ref(), &PixmapPaint::default(), Transform::identity(), None);
     }
-    Ok(Picture { rings: scene.tori.len(), pixel: camera.pixel * subject.model.unit, pixmap })
+    Ok(Picture { rings: scene.rings, pixel: camera.pixel * subject.model.unit, pixmap })
 }
 
 /// The pixel on its background, as the pixmap holds it: sRGB values times alpha.

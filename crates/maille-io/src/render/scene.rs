@@ -5,10 +5,11 @@ use super::{
     color::{self, Light},
     error::RenderError,
     options::{ColorBy, Extent, Forces, RenderOptions},
+    tube::Tube,
 };
 use maille::{
     lattice::{Shift, shifts_within},
-    model::Model,
+    model::{Core, Model},
     record::ContactRecord,
     state::State,
     topology,
@@ -35,7 +36,10 @@ const MOST_RINGS: usize = 1_000_000;
 /// The patch, ready to be drawn. Lengths in reference radii.
 #[derive(Clone, Debug)]
 pub(super) struct Scene {
-    pub(super) tori: Vec<Torus>,
+    /// Number of rings.
+    pub(super) rings: usize,
+    /// Their tori, or the tubes round their pieces.
+    pub(super) tori: Vec<Tube>,
     /// Colour of each torus.
     pub(super) colors: Vec<Light>,
     pub(super) arrows: Vec<Arrow>,
@@ -67,6 +71,7 @@ impl Scene {
         let (members, middle) = members(model, state, options.extent)?;
         let (colors, most_load) = colors_of_elements(model, contacts, options.color);
         let mut scene = Scene {
+            rings: 0,
             tori: Vec::new(),
             colors: Vec::new(),
             arrows: Vec::new(),
@@ -77,9 +82,16 @@ impl Scene {
         };
         for &(element, shift) in &members {
             for ring in model.elements[element].rings.clone() {
-                let circle = state.circle(model, ring, shift);
-                scene.tori.push(Torus { circle, minor_radius: model.rings[ring].minor_radius });
-                scene.colors.push(colors[element]);
+                let minor_radius = model.rings[ring].minor_radius;
+                match state.core(model, ring, shift) {
+                    Core::Circle(circle) => scene.tori.push(Tube::Torus(Torus { circle, minor_radius })),
+                    curve => {
+                        let pieces = curve.pieces().into_iter().map(|piece| Tube::Piece(piece, minor_radius));
+                        scene.tori.extend(pieces);
+                    }
+                }
+                scene.colors.resize(scene.tori.len(), colors[element]);
+                scene.rings += 1;
             }
         }
         if scene.tori.is_empty() {

@@ -2,13 +2,14 @@
 
 use super::{
     bvh::{Bounds, Tree},
-    camera::{Camera, half_extent},
+    camera::Camera,
     color::{self, Light},
     field::Field,
     ground::Ground,
     scene::Scene,
     shade::{Lights, Open},
-    torus::{Ray, first_hit, frame_at},
+    torus::Ray,
+    tube::Tube,
 };
 use maille_geometry::Vec3;
 use rayon::prelude::*;
@@ -81,13 +82,15 @@ impl<'a> Stage<'a> {
         let bounds: Vec<Bounds> = scene
             .tori
             .iter()
-            .map(|t| {
-                Bounds::around(t.circle.center, [Vec3::x(), Vec3::y(), Vec3::z()].map(|a| half_extent(t, &a)).into())
+            .map(|tube| {
+                let ends = [Vec3::x(), Vec3::y(), Vec3::z()].map(|axis| tube.extent(&axis));
+                let (low, high) = (Vec3::from(ends.map(|end| end.0)), Vec3::from(ends.map(|end| end.1)));
+                Bounds::around((low + high) * 0.5, (high - low) * 0.5)
             })
             .collect();
         let all = bounds.iter().copied().fold(Bounds::EMPTY, Bounds::join);
         let arrow_bounds: Vec<Bounds> = scene.arrows.iter().map(|a| a.bounds()).collect();
-        let least_wire = scene.tori.iter().map(|t| t.minor_radius).fold(f64::INFINITY, f64::min);
+        let least_wire = scene.tori.iter().map(Tube::minor_radius).fold(f64::INFINITY, f64::min);
         let lights = Lights::new(camera.right, camera.up, camera.back);
         let field = Field::new(&scene.tori, all, REACH);
         let seen = ground && camera.back.z > 0.05;
@@ -205,7 +208,7 @@ impl<'a> Stage<'a> {
 
     fn sample(&self, x: f64, y: f64) -> Sample {
         let ray = self.camera.ray(x, y, self.far);
-        let hit = self.rings.nearest(&ray, |k, most| first_hit(&self.scene.tori[k], &ray, most.min(1e9)));
+        let hit = self.rings.nearest(&ray, |k, most| self.scene.tori[k].first_hit(&ray, most.min(1e9)));
         let mut sample = Sample {
             place: [x, y],
             ray,
@@ -219,7 +222,7 @@ impl<'a> Stage<'a> {
         if let Some((k, t)) = hit {
             depth = t;
             (sample.thing, sample.point) = (Thing::Ring(k), ray.at(t));
-            (sample.normal, sample.tangent) = frame_at(&self.scene.tori[k], &sample.point);
+            (sample.normal, sample.tangent) = self.scene.tori[k].frame_at(&sample.point);
         } else if let Some(ground) = &self.ground
             && ray.direction.z < 0.0
         {
@@ -237,7 +240,7 @@ impl<'a> Stage<'a> {
     fn open(&self, sample: &Sample) -> Open {
         match sample.thing {
             Thing::Ring(k) => {
-                let wire = self.scene.tori[k].minor_radius;
+                let wire = self.scene.tori[k].minor_radius();
                 self.lights.open(&self.field, &sample.point, &sample.normal, &sample.tangent, wire)
             }
             Thing::Ground | Thing::Nothing => Open { around: 1.0, key: 1.0 },

@@ -142,7 +142,7 @@ impl Curve {
         }
     }
 
-    fn at_angle(&self, angle_rad: f64) -> CurvePoint {
+    pub(crate) fn at_angle(&self, angle_rad: f64) -> CurvePoint {
         let length = angle_rad.rem_euclid(TAU) / TAU * self.length();
         let piece = self.lengths.partition_point(|l| *l <= length).clamp(1, self.pieces.len()) - 1;
         let [from, to] = [self.lengths[piece], self.lengths[piece + 1]];
@@ -231,6 +231,15 @@ impl Core {
     pub(crate) fn at_angle(&self, angle_rad: f64) -> CurvePoint {
         let (curve, pose) = self.curve();
         curve.at_angle(angle_rad).moved(&pose)
+    }
+
+    /// Its least and largest coordinate along a unit vector.
+    pub fn extent(&self, axis: &Vec3) -> [f64; 2] {
+        let (curve, pose) = self.curve();
+        let (axis, at) = (pose.rotation.inverse() * axis, pose.position.dot(axis));
+        let support =
+            |axis: Vec3| curve.pieces.iter().map(|piece| piece.support(&axis)).fold(f64::NEG_INFINITY, f64::max);
+        [at - support(-axis), at + support(axis)]
     }
 
     /// The nearest point to `p`.

@@ -33,6 +33,17 @@ pub(crate) struct CurveContact {
 }
 
 impl CurveContact {
+    /// A contact at a minimum of the distance; the elements' reference points are given.
+    pub fn of(points: [CurvePoint; 2], reference_a: &Vec3, reference_b: &Vec3) -> Self {
+        CurveContact {
+            x: reference_b - reference_a,
+            arm_a: points[0].point - reference_a,
+            arm_b: points[1].point - reference_b,
+            points,
+            moves: points.map(|point| point.smooth),
+        }
+    }
+
     fn way(&self) -> Vec3 {
         self.x + self.arm_b - self.arm_a
     }

@@ -17,7 +17,7 @@ use crate::{
     solver::constraints::{Derivatives, Row},
     topology::near_pairs::NearPair,
 };
-use maille_geometry::{Piece, Vec3};
+use maille_geometry::Piece;
 use std::f64::consts::TAU;
 
 /// Sine of the angle of segments beside each other below which both ends of their common stretch are rows.
@@ -67,13 +67,7 @@ fn beside(near: &NearPair, m: &CurveMinimum) -> Vec<Candidate> {
         }
         return out.into_iter().map(|(points, moves)| Candidate { points, moves, minimum: true }).collect();
     }
-    let contact = CurveContact {
-        x: m.b.point - m.a.point,
-        arm_a: Vec3::zeros(),
-        arm_b: Vec3::zeros(),
-        points: [m.a, m.b],
-        moves: [true; 2],
-    };
+    let contact = CurveContact::of([m.a, m.b], &m.a.point, &m.b.point);
     let least = (contact.along() / m.distance.max(1e-12)).symmetric_eigenvalues().min();
     if !(m.a.smooth && m.b.smooth && least < FLAT) {
         return Vec::new();
@@ -92,14 +86,7 @@ impl SheetProgram<'_> {
         let (pair, state) = (&near.pair, &x.state);
         let reference_a = state.poses[self.model.rings[pair.ring_a].element].position;
         let reference_b = state.position(self.model.rings[pair.ring_b].element, pair.shift);
-        let [a, b] = candidate.points.map(|p| p.point);
-        CurveContact {
-            x: reference_b - reference_a,
-            arm_a: a - reference_a,
-            arm_b: b - reference_b,
-            points: candidate.points,
-            moves: candidate.moves,
-        }
+        CurveContact { moves: candidate.moves, ..CurveContact::of(candidate.points, &reference_a, &reference_b) }
     }
 
     /// As `pair_rows`, of cores that are not both circles.

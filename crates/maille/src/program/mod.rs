@@ -9,7 +9,7 @@
 
 mod area;
 mod closed;
-mod curve_kernel;
+pub(crate) mod curve_kernel;
 mod curve_pair;
 pub mod flat;
 pub mod gap_kernel;

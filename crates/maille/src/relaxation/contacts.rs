@@ -1,5 +1,5 @@
 //! Contact energy E_c of a cell: every overlapping local minimum (eq. 4.1.3), and the sampled points beside it (§4.1.2);
-//! points around the circles where a pair is flat.
+//! points around the circles where a pair is flat. Of cores that are not both circles the minima alone count.
 
 use super::{
     barrier::ContactLaw,
@@ -7,6 +7,8 @@ use super::{
 };
 use crate::{
     model::Model,
+    model::curve::curve_distance_minima,
+    program::curve_kernel::CurveContact,
     program::gap_kernel::{Grad, Hess, Jet, PairFrame, RootMotion, symmetric},
     solver::curvature::Curvature,
     state::State,
@@ -43,8 +45,16 @@ pub struct ContactOptions {
     pub flat_points: usize,
 }
 
-/// An overlapping pair with its frame and the angles on B of its overlapping minima.
-struct Overlap {
+/// An overlapping pair.
+enum Overlap {
+    /// Two rings.
+    Rings(RingOverlap),
+    /// Cores of which one is no circle: their overlapping minima.
+    Curves { pair: RingPair, contact_distance: f64, minima: Vec<CurveContact> },
+}
+
+/// Two overlapping rings with their frame and the angles on B of their overlapping minima.
+struct RingOverlap {
     pair: RingPair,
     frame: PairFrame,
     contact_distance: f64,
@@ -53,7 +63,7 @@ struct Overlap {
     flat: Option<FlatPair>,
 }
 
-impl Overlap {
+impl RingOverlap {
     fn minima(&self) -> &[(f64, f64)] {
         &self.minima[..self.count]
     }
@@ -61,6 +71,34 @@ impl Overlap {
 
 /// The overlaps of some pairs, in their order.
 fn overlaps(
+    model: &Model,
+    state: &State,
+    circles: &[Circle],
+    options: &ContactOptions,
+    pairs: &[RingPair],
+) -> Vec<Overlap> {
+    let round = |pair: &RingPair| [pair.ring_a, pair.ring_b].iter().all(|ring| model.rings[*ring].is_round());
+    let (rings, curves): (Vec<RingPair>, Vec<RingPair>) = pairs.iter().partition(|pair| round(pair));
+    let mut out = ring_overlaps(model, state, circles, options, &rings);
+    out.extend(curves.iter().filter_map(|pair| curve_overlap(model, state, pair)));
+    out
+}
+
+/// The overlap of cores that are not both circles.
+fn curve_overlap(model: &Model, state: &State, pair: &RingPair) -> Option<Overlap> {
+    let contact_distance = model.contact_distance(pair.ring_a, pair.ring_b);
+    let (a, b) = (state.core(model, pair.ring_a, [0, 0]), state.core(model, pair.ring_b, pair.shift));
+    let reference_a = state.poses[model.rings[pair.ring_a].element].position;
+    let reference_b = state.poses[model.rings[pair.ring_b].element].position + state.translation(pair.shift);
+    let found = curve_distance_minima(&a, &b, contact_distance);
+    let overlapping = found.iter().filter(|m| m.distance < contact_distance);
+    let minima: Vec<CurveContact> =
+        overlapping.map(|m| CurveContact::of([m.a, m.b], &reference_a, &reference_b)).collect();
+    (!minima.is_empty()).then_some(Overlap::Curves { pair: *pair, contact_distance, minima })
+}
+
+/// The overlaps of pairs of rings.
+fn ring_overlaps(
     model: &Model,
     state: &State,
     circles: &[Circle],
@@ -103,7 +141,7 @@ fn overlaps(
             let reference_a = state.poses[model.rings[pair.ring_a].element].position;
             let reference_b = state.poses[model.rings[pair.ring_b].element].position + state.translation(pair.shift);
             let frame = PairFrame::new(a, &reference_a, b, &reference_b);
-            out.push(Overlap { pair: *pair, frame, contact_distance, minima, count, flat });
+            out.push(Overlap::Rings(RingOverlap { pair: *pair, frame, contact_distance, minima, count, flat }));
         }
     }
     out
@@ -141,7 +179,7 @@ fn for_overlaps<R: Send>(
 /// E_c of one cell.
 pub(super) fn energy(model: &Model, options: &ContactOptions, state: &State) -> f64 {
     let parts = for_overlaps(model, state, options, |overlaps| {
-        let of_minima = |overlap: &Overlap| {
+        let of_minima = |overlap: &RingOverlap| {
             let mut sum = 0.0;
             for &(angle, distance) in overlap.minima() {
                 sum += options.law.at(distance, overlap.contact_distance, options.alpha)[0];
@@ -152,7 +190,7 @@ pub(super) fn energy(model: &Model, options: &ContactOptions, state: &State) -> 
             }
             sum
         };
-        let of = |overlap: &Overlap| match &overlap.flat {
+        let of_rings = |overlap: &RingOverlap| match &overlap.flat {
             None => of_minima(overlap),
             Some(flat) => {
                 let weight = flat.weight().value;
@@ -161,13 +199,21 @@ pub(super) fn energy(model: &Model, options: &ContactOptions, state: &State) -> 
                 minima + weight * flat.energy(options.law, options.alpha)
             }
         };
+        let of = |overlap: &Overlap| match overlap {
+            Overlap::Rings(overlap) => of_rings(overlap),
+            Overlap::Curves { contact_distance, minima, .. } => {
+                let law =
+                    |contact: &CurveContact| options.law.at(contact.gradient().0, *contact_distance, options.alpha)[0];
+                minima.iter().map(law).sum()
+            }
+        };
         vec![overlaps.iter().map(of).sum::<f64>()]
     });
     parts.into_iter().sum()
 }
 
 /// The minima of an overlap with the points beside them.
-fn minima_jet(options: &ContactOptions, overlap: &Overlap) -> Jet {
+fn minima_jet(options: &ContactOptions, overlap: &RingOverlap) -> Jet {
     let mut sum = Jet::ZERO;
     for &(angle, _) in overlap.minima() {
         let root = overlap.frame.jet(angle);
@@ -188,6 +234,18 @@ fn minima_jet(options: &ContactOptions, overlap: &Overlap) -> Jet {
 
 /// The energy of an overlap: of its minima, of its circles where it is flat, or of both.
 fn overlap_jet(options: &ContactOptions, overlap: &Overlap) -> Jet {
+    let overlap = match overlap {
+        Overlap::Rings(overlap) => overlap,
+        Overlap::Curves { contact_distance, minima, .. } => {
+            let mut sum = Jet::ZERO;
+            for contact in minima {
+                let (distance, grad) = contact.gradient();
+                let law = options.law.at(distance, *contact_distance, options.alpha);
+                sum.add_of(law, &grad, &contact.hessian());
+            }
+            return sum;
+        }
+    };
     let Some(flat) = &overlap.flat else { return minima_jet(options, overlap) };
     let (weight, circle) = (flat.weight(), flat.jet(options.law, options.alpha));
     if weight.value == 1.0 {
@@ -214,7 +272,10 @@ pub(super) fn add_derivatives(
     hessian: &mut Curvature,
 ) -> f64 {
     let parts = for_overlaps(model, state, options, |overlaps| {
-        let of = |overlap: &Overlap| (overlap.pair, overlap_jet(options, overlap));
+        let of = |overlap: &Overlap| {
+            let (Overlap::Rings(RingOverlap { pair, .. }) | Overlap::Curves { pair, .. }) = overlap;
+            (*pair, overlap_jet(options, overlap))
+        };
         overlaps.iter().map(of).collect()
     });
     let mut sum = 0.0;

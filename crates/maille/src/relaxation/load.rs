@@ -4,7 +4,7 @@
 use super::barrier::barrier;
 use crate::{
     error::InvalidInput,
-    model::Model,
+    model::{Core, Model},
     solver::curvature::Curvature,
     state::{Pose, State},
     topology::{broad_phase::in_chunks, linked_parts},
@@ -36,7 +36,7 @@ pub struct Floor {
     pub alpha: f64,
 }
 
-/// Points of a core circle that feel the floor.
+/// Points of a core that feel the floor.
 pub(crate) const FLOOR_POINTS: usize = 32;
 
 /// A surface to which reference points are drawn: z = ζ_e − (κ_x X² + κ_y Y²)/2 with X, Y from `middle` and ζ_e the element's height at the
@@ -126,8 +126,12 @@ impl Loads {
     pub(crate) fn check(&self, model: &Model) -> Result<(), InvalidInput> {
         if let Some(floor) = self.floor {
             for (ring, r) in model.rings.iter().enumerate() {
-                let circle = model.start.circle(model, ring, [0, 0]);
-                let lowest = circle.center.z - circle.radius * (1.0 - circle.normal.z.powi(2)).max(0.0).sqrt();
+                let lowest = match model.start.core(model, ring, [0, 0]) {
+                    Core::Circle(circle) => {
+                        circle.center.z - circle.radius * (1.0 - circle.normal.z.powi(2)).max(0.0).sqrt()
+                    }
+                    core => floor_angles_rad().map(|angle| core.at_angle(angle).point.z).fold(f64::INFINITY, f64::min),
+                };
                 if lowest < floor.height + r.minor_radius {
                     return Err(InvalidInput::new(
                         "floor",
@@ -263,11 +267,26 @@ fn floor_part(model: &Model, state: &State, floor: Floor, ring: usize) -> Option
     presses.then_some((model.rings[ring].element, gradient, hessian))
 }
 
+/// Angles of the points of a core that feel the floor.
+fn floor_angles_rad() -> impl Iterator<Item = f64> {
+    (0..FLOOR_POINTS).map(|k| std::f64::consts::TAU * k as f64 / FLOOR_POINTS as f64)
+}
+
 /// Calls `each` with (arm from the element's reference point, height above the floor, height at which it touches) for the
 /// points of a ring that press on the floor.
 fn for_points_of(model: &Model, state: &State, floor: Floor, index: usize, mut each: impl FnMut(Vec3, f64, f64)) {
     let ring = &model.rings[index];
     let pose = &state.poses[ring.element];
+    if let Some(curve) = &ring.curve {
+        for angle in floor_angles_rad() {
+            let arm = pose.rotation * curve.at_angle(angle).point;
+            let height = (pose.position + arm).z - floor.height;
+            if height < ring.minor_radius {
+                each(arm, height, ring.minor_radius);
+            }
+        }
+        return;
+    }
     let arm = state.arm(model, index);
     let normal = pose.rotation * ring.normal.into_inner();
     let lowest = (pose.position + arm).z - ring.major_radius * (1.0 - normal.z * normal.z).max(0.0).sqrt();
@@ -279,8 +298,7 @@ fn for_points_of(model: &Model, state: &State, floor: Floor, index: usize, mut e
     let u = ring.normal.cross(&Vec3::ith(least, 1.0)).normalize();
     let v = ring.normal.cross(&u);
     let (u, v) = (pose.rotation * u, pose.rotation * v);
-    for k in 0..FLOOR_POINTS {
-        let angle = std::f64::consts::TAU * k as f64 / FLOOR_POINTS as f64;
+    for angle in floor_angles_rad() {
         let arm = arm + (u * angle.cos() + v * angle.sin()) * ring.major_radius;
         let height = (pose.position + arm).z - floor.height;
         if height < ring.minor_radius {

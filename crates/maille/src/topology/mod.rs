@@ -20,7 +20,7 @@ use crate::{
     },
     state::State,
 };
-use maille_geometry::{circle_distance_minima, curve_linking_number, linking_number};
+use maille_geometry::{Vec3, circle_distance_minima, curve_linking_number, linking_number};
 use std::collections::{BTreeMap, BTreeSet};
 pub use warnings::warnings;
 
@@ -66,6 +66,21 @@ pub fn core_distance(model: &Model, state: &State, pair: &RingPair) -> f64 {
     match (&a, &b) {
         (Core::Circle(a), Core::Circle(b)) => circle_distance_minima(a, b).closest().distance,
         _ => curve_distance_minima(&a, &b, 0.0)[0].distance,
+    }
+}
+
+/// The closest points of the cores of two rings in their cells.
+pub fn closest_points(model: &Model, state: &State, [(a, cell_a), (b, cell_b)]: [(usize, Shift); 2]) -> [Vec3; 2] {
+    let (a, b) = (state.core(model, a, cell_a), state.core(model, b, cell_b));
+    match (&a, &b) {
+        (Core::Circle(a), Core::Circle(b)) => {
+            let minimum = *circle_distance_minima(a, b).closest();
+            [minimum.point_a, minimum.point_b]
+        }
+        _ => {
+            let minimum = curve_distance_minima(&a, &b, 0.0)[0];
+            [minimum.a.point, minimum.b.point]
+        }
     }
 }
 

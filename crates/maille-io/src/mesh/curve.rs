@@ -1,0 +1,156 @@
+//! The mesh of the tube round a closed curve of segments and arcs: closed, oriented outward, within a chordal tolerance.
+//!
+//! Sections of the wire stand across the curve, so near to each other that their chords stay within the tolerance; straight pieces
+//! need none between their ends. From section to section the frame turns only with the tangent; what it is turned by after one
+//! round is spread over the whole length. Round a corner the section turns about it, so that the outside is a part of a ball; inside
+//! the bend its two straight tubes run into each other.
+
+use super::{
+    error::MeshError,
+    torus::{Fineness, MOST, Segments, TorusMesh, polygon, sagitta},
+};
+use maille::model::Curve;
+use maille_geometry::{Piece, Vec3};
+use nalgebra::{Rotation3, Unit};
+use std::f64::consts::TAU;
+
+/// A place of a section: the point, the tangent, and how far along the curve.
+struct Section {
+    point: Vec3,
+    tangent: Vec3,
+    along: f64,
+}
+
+/// Most sections of one curve.
+const MOST_SECTIONS: usize = 64 * MOST;
+
+/// The mesh of the tube of radius `minor_radius` round `curve`, both in units of `unit`; lengths of the mesh are in those of the tolerance
+/// times `mm`.
+pub(super) fn curve_mesh(
+    curve: &Curve,
+    [major_radius, minor_radius]: [f64; 2],
+    fineness: Fineness,
+    unit: f64,
+    mm: f64,
+) -> Result<TorusMesh, MeshError> {
+    let small = minor_radius * unit;
+    let radii = curve.pieces.iter().filter_map(radius);
+    let widest = radii.fold(0.0, f64::max) * unit + small;
+    // The wire may take half of the tolerance, and the curve the other half.
+    let (share, across) = match fineness {
+        Fineness::Tolerance(tolerance) => (0.5 * tolerance, polygon(small, 0.5 * tolerance)),
+        Fineness::Segments(around, across) => {
+            let share = sagitta(widest, around);
+            (share, across.unwrap_or_else(|| polygon(small, share).max(6)))
+        }
+    };
+    if across > MOST {
+        return Err(MeshError::TooFine { segments: across, most: MOST });
+    }
+    if across < 3 {
+        return Err(MeshError::TooCoarse);
+    }
+    let sections = sections(curve, small / unit, share / unit);
+    if sections.len() > MOST_SECTIONS {
+        return Err(MeshError::TooFine { segments: sections.len(), most: MOST_SECTIONS });
+    }
+    let (mut vertices, mut normals) = (Vec::new(), Vec::new());
+    for (section, [u, v]) in sections.iter().zip(frames(&sections, curve.length())) {
+        for j in 0..across {
+            let (sin, cos) = (TAU * j as f64 / across as f64).sin_cos();
+            let normal = u * cos + v * sin;
+            vertices.push((section.point + normal * minor_radius) * (unit * mm));
+            normals.push(normal);
+        }
+    }
+    let segments = Segments { around: sections.len(), across };
+    let [major_radius, minor_radius] = [major_radius, minor_radius].map(|r| r * unit * mm);
+    Ok(TorusMesh { major_radius, minor_radius, segments, chords: Some(share * mm), vertices, normals })
+}
+
+fn radius(piece: &Piece) -> Option<f64> {
+    if let Piece::Arc(arc) = piece { Some(arc.circle().radius) } else { None }
+}
+
+/// Places of sections whose chords are within `share` of the tube of radius `small`, counted at its outside.
+fn sections(curve: &Curve, small: f64, share: f64) -> Vec<Section> {
+    let mut all: Vec<Section> = Vec::new();
+    let mut before: f64 = 0.0;
+    for (k, piece) in curve.pieces.iter().enumerate() {
+        let steps = match piece {
+            Piece::Segment(_) => 1,
+            Piece::Arc(arc) => {
+                let whole = polygon(arc.circle().radius + small, share) as f64;
+                (arc.sweep_rad() / TAU * whole * (1.0 - 1e-12)).ceil().max(1.0) as usize
+            }
+        };
+        let length = piece.length();
+        all.extend((0..=steps).map(|step| {
+            let t = step as f64 / steps as f64;
+            Section { point: piece.point(t), tangent: piece.tangent(t), along: before + length * t }
+        }));
+        before += length;
+        let next = &curve.pieces[(k + 1) % curve.pieces.len()];
+        all.extend(corner(next.point(0.0), piece.tangent(1.0), next.tangent(0.0), before, small, share));
+    }
+    // A run of length L that turns by τ strays from its chord by at most Lτ/4.
+    let mut out: Vec<Section> = Vec::with_capacity(all.len());
+    let first = (all[0].point, all[0].tangent);
+    let (mut waiting, mut turn_rad): (Option<Section>, f64) = (None, 0.0);
+    for section in all {
+        let Some(held) = waiting.replace(section) else { continue };
+        let Some(section) = &waiting else { continue };
+        let turn = held.tangent.angle(&section.tangent);
+        let from = out.last().map_or(f64::NEG_INFINITY, |last| last.along);
+        let length = section.along - from + small * (turn_rad + turn);
+        if out.is_empty() || 0.25 * length * (turn_rad + turn) > share {
+            out.push(held);
+            turn_rad = 0.0;
+        }
+        turn_rad += turn;
+    }
+    // The last section is the first one.
+    out.extend(waiting.filter(|last| (last.point - first.0).norm() > SAME || (last.tangent - first.1).norm() > CORNER));
+    out
+}
+
+/// Tangents that differ by more make a corner.
+const CORNER: f64 = 1e-7;
+/// Sections that are nearer are one, in reference radii.
+const SAME: f64 = 1e-12;
+
+/// Sections between the tangents at a corner, both left out.
+fn corner(point: Vec3, before: Vec3, after: Vec3, along: f64, small: f64, share: f64) -> Vec<Section> {
+    let turn_rad = before.angle(&after);
+    if before.cross(&after).norm() < CORNER {
+        return Vec::new();
+    }
+    let axis = Unit::new_normalize(before.cross(&after));
+    let steps = (turn_rad / (TAU / polygon(small, share) as f64)).ceil().max(1.0) as usize;
+    let tangent = |k: usize| Rotation3::from_axis_angle(&axis, turn_rad * k as f64 / steps as f64) * before;
+    (1..steps).map(|k| Section { point, tangent: tangent(k), along }).collect()
+}
+
+/// For each section two unit vectors across the tangent, right-handed with it.
+fn frames(sections: &[Section], length: f64) -> Vec<[Vec3; 2]> {
+    let carried = |u: Vec3, from: &Vec3, to: &Vec3| {
+        let turned = Rotation3::rotation_between(from, to).map_or(u, |rotation| rotation * u);
+        (turned - to * to.dot(&turned)).normalize()
+    };
+    let first = &sections[0];
+    let least = first.tangent.iamin();
+    let mut u = vec![first.tangent.cross(&Vec3::ith(least, 1.0)).normalize()];
+    for pair in sections.windows(2) {
+        u.push(carried(u[u.len() - 1], &pair[0].tangent, &pair[1].tangent));
+    }
+    let last = &sections[sections.len() - 1];
+    let round = carried(u[u.len() - 1], &last.tangent, &first.tangent);
+    let missed_rad = round.dot(&first.tangent.cross(&u[0])).atan2(round.dot(&u[0]));
+    let turned = |(section, u): (&Section, &Vec3)| {
+        let back =
+            Rotation3::from_axis_angle(&Unit::new_normalize(section.tangent), -missed_rad * section.along / length);
+        let u = back * u;
+        [u, section.tangent.cross(&u)]
+    };
+    sections.iter().zip(&u).map(turned).collect()
+}
