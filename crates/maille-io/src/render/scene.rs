@@ -5,7 +5,7 @@ use super::{
     color::{self, Light},
     error::RenderError,
     options::{ColorBy, Extent, Forces, RenderOptions},
-    tube::Tube,
+    tube::{Tube, drawn},
 };
 use maille::{
     lattice::{Shift, shifts_within},
@@ -86,7 +86,7 @@ impl Scene {
                 match state.core(model, ring, shift) {
                     Core::Circle(circle) => scene.tori.push(Tube::Torus(Torus { circle, minor_radius })),
                     curve => {
-                        let pieces = curve.pieces().into_iter().map(|piece| Tube::Piece(piece, minor_radius));
+                        let pieces = drawn(&curve.pieces()).into_iter().map(|piece| Tube::Piece(piece, minor_radius));
                         scene.tori.extend(pieces);
                     }
                 }

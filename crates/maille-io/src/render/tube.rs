@@ -1,7 +1,7 @@
 //! What is drawn: a torus, or the tube round a piece of another curve.
 
 use super::torus::{self, Ray};
-use maille_geometry::{Circle, Piece, Torus, Vec3};
+use maille_geometry::{Circle, Piece, Torus, Vec3, biarc};
 
 /// A torus, or the points within the minor radius of a piece.
 #[derive(Clone, Copy, Debug)]
@@ -16,6 +16,38 @@ const POINTS: usize = 24;
 const NEAR: f64 = 1e-5;
 /// Steps of a ray, at most.
 const STEPS: usize = 400;
+
+/// How far a drawn piece may be from those that it stands for, in reference radii.
+const COARSE: f64 = 3e-4;
+
+/// The pieces of a closed curve that are drawn: where many follow each other smoothly, two arcs for as many as they fit.
+pub(super) fn drawn(pieces: &[Piece]) -> Vec<Piece> {
+    let mut out = Vec::new();
+    let mut first = 0;
+    while first < pieces.len() {
+        let (mut end, mut found) = (first + 1, vec![pieces[first]]);
+        // Twice as many at each try.
+        while let Some(next) =
+            pieces.get(first..(2 * end - first).min(pieces.len())).filter(|run| run.len() > end - first)
+        {
+            let Some(pair) = replaced(next) else { break };
+            (end, found) = (first + next.len(), pair.to_vec());
+        }
+        out.extend(found);
+        first = end;
+    }
+    out
+}
+
+/// Two arcs in place of a smooth run of pieces, if they are near enough.
+fn replaced(run: &[Piece]) -> Option<[Piece; 2]> {
+    let (first, last) = (run.first()?, run.last()?);
+    let smooth = run.windows(2).all(|pair| pair[0].tangent(1.0).angle(&pair[1].tangent(0.0)) < 1e-6);
+    let pair = biarc(first.point(0.0), first.tangent(0.0), last.point(1.0), last.tangent(1.0)).filter(|_| smooth)?;
+    let away =
+        |p: Vec3| pair.iter().map(|piece| (piece.point(piece.nearest(&p)) - p).norm()).fold(f64::INFINITY, f64::min);
+    run.iter().all(|piece| away(piece.point(0.5)).max(away(piece.point(1.0))) < COARSE).then_some(pair)
+}
 
 impl Tube {
     pub(super) fn minor_radius(&self) -> f64 {
