@@ -21,7 +21,8 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<()> {
     let designs: Vec<_> =
         builtin_designs().iter().map(|entry| read_design(entry.name, entry.toml)).collect::<Result<_, _>>()?;
-    let rings = |design: &maille::design::Design| design.elements.iter().map(|e| e.rings.len()).sum::<usize>();
+    let rings =
+        |design: &maille::design::Design| design.elements.iter().map(|e| e.rings.len() + e.curves.len()).sum::<usize>();
     if args.json {
         let list: Vec<_> = designs
             .iter()

@@ -105,6 +105,33 @@ struct Ring {
     minor_radius: f64,
     normal: [f64; 3],
     offset: [f64; 3],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    curve: Option<CoreCurve>,
+}
+
+/// A core that is no circle.
+#[derive(Serialize)]
+struct CoreCurve {
+    length: f64,
+    segments: usize,
+    arcs: usize,
+    /// Least radius of an arc.
+    least_radius: Option<f64>,
+    /// How far the form is from its segments and arcs.
+    deviation: f64,
+}
+
+impl CoreCurve {
+    fn new(curve: &maille::model::Curve, unit: f64) -> Self {
+        let radii = curve.arc_radii();
+        CoreCurve {
+            length: curve.length() * unit,
+            segments: curve.pieces.len() - radii.len(),
+            arcs: radii.len(),
+            least_radius: radii.into_iter().map(|r| r * unit).min_by(f64::total_cmp),
+            deviation: curve.deviation * unit,
+        }
+    }
 }
 
 #[derive(Serialize)]
@@ -184,6 +211,7 @@ fn inspection(input: &Input, model: &Model, args: &Args) -> Result<Inspection> {
                 minor_radius: r.minor_radius * model.unit,
                 normal: r.normal.into_inner().into(),
                 offset: (r.offset * model.unit).into(),
+                curve: r.curve.as_ref().map(|curve| CoreCurve::new(curve, model.unit)),
             })
             .collect(),
         neighbours: topology::neighbours(model, e)
@@ -250,10 +278,11 @@ fn metres(unit: Option<&str>, args: &Args) -> Result<Option<f64>> {
     .map(|mm| mm.map(|mm| mm / 1000.0))
 }
 
-/// A ring of major radius R and minor radius r is 2 π R of wire and 2 π² R r² of metal.
+/// A core of length L is as much wire, and π L r² of metal: of a ring L = 2 π R.
 fn wire(model: &Model, metres: Option<f64>, area: f64, density: Option<f64>) -> Wire {
-    let length: f64 = model.rings.iter().map(|r| TAU * r.major_radius * model.unit).sum();
-    let of_ring = |r: &maille::model::Ring| TAU * r.major_radius * (TAU / 2.0) * r.minor_radius * r.minor_radius;
+    let core = |r: &maille::model::Ring| r.curve.as_ref().map_or(TAU * r.major_radius, |curve| curve.length());
+    let length: f64 = model.rings.iter().map(|r| core(r) * model.unit).sum();
+    let of_ring = |r: &maille::model::Ring| core(r) * (TAU / 2.0) * r.minor_radius * r.minor_radius;
     let volume = model.rings.iter().map(of_ring).sum::<f64>() * model.unit.powi(3);
     Wire {
         length,
@@ -294,6 +323,19 @@ impl Element {
                 false => format!(", offset ({:.4}, {:.4}, {:.4})", offset[0], offset[1], offset[2]),
             };
             let (big, small) = (ring.major_radius, ring.minor_radius);
+            if let Some(CoreCurve { length, segments, arcs, least_radius, deviation }) = &ring.curve {
+                let made = [(*segments, "segment"), (*arcs, "arc")].map(|(count, what)| output::counted(count, what));
+                let bends = least_radius.map_or(String::new(), |r| format!(" of radius {r:.4} and more"));
+                let strays = match *deviation > 0.0 {
+                    true => format!(" that are within {deviation:.1e}{unit} of it"),
+                    false => String::new(),
+                };
+                lines.push(format!(
+                    "  curve of length {length:.4}{unit}, {} and {}{bends}{strays}, r = {small:.4}{unit}, within {big:.4}{unit} of its centre{offset}",
+                    made[0], made[1]
+                ));
+                continue;
+            }
             lines.push(format!("  ring R = {big:.4}, r = {small:.4}{unit}, normal ({x:.4}, {y:.4}, {z:.4}){offset}"));
         }
         lines.push(format!("  {} interlocking neighbours, with linking numbers", self.neighbours.len()));

@@ -209,10 +209,13 @@ pub struct Ring {
     pub offset: [f64; 3],
     /// Unit normal.
     pub normal: [f64; 3],
-    /// Radius of the core circle.
+    /// Radius of the core circle; of another curve that of a ball that holds it.
     pub major_radius: f64,
     /// Radius of the wire.
     pub minor_radius: f64,
+    /// Of another curve, points around it, from the centre.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub curve: Option<Vec<[f64; 3]>>,
 }
 
 /// Two rings that are linked or near each other.

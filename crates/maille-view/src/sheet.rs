@@ -95,10 +95,18 @@ fn small_enough(design: &Design, cell: Cell) -> Result<(), Refusal> {
         return Ok(()); // compiling says which
     }
     let norm = |v: [f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
-    let rings = || design.elements.iter().flat_map(|e| &e.rings);
-    let r = |ring: &maille::design::RingSpec| ring.minor_radius.or(design.minor_radius).unwrap_or(0.0);
-    let reach = rings().map(|ring| norm(ring.offset) + ring.major_radius + r(ring)).fold(0.0, f64::max);
-    let count = rings().count() * cell.copies();
+    let wire = |own: Option<f64>| own.or(design.minor_radius).unwrap_or(0.0);
+    let reaches: Vec<f64> = design
+        .elements
+        .iter()
+        .flat_map(|e| {
+            let rings = e.rings.iter().map(|ring| norm(ring.offset) + ring.major_radius + wire(ring.minor_radius));
+            let curves = e.curves.iter().map(|c| norm(c.offset) + c.shape.reach() + wire(c.minor_radius));
+            rings.chain(curves).collect::<Vec<_>>()
+        })
+        .collect();
+    let reach = reaches.iter().copied().fold(0.0, f64::max);
+    let count = reaches.len() * cell.copies();
     let (a, b) = (design.lattice.a1, design.lattice.a2);
     let area = (a[0] * b[1] - a[1] * b[0]).abs();
     let along = |other: [f64; 3]| 4.0 * reach * norm(other) / area + 1.0;
@@ -112,6 +120,19 @@ fn small_enough(design: &Design, cell: Cell) -> Result<(), Refusal> {
     Ok(())
 }
 
+/// Points around a curve: so many on each arc that its chords turn by a quarter of a radian or less.
+fn shown(curve: &maille::model::Curve) -> impl Iterator<Item = maille_geometry::Vec3> {
+    let points = |piece: &maille_geometry::Piece| {
+        let n = match piece {
+            // Near its ends, too, so that a smooth line through the points keeps corners.
+            maille_geometry::Piece::Segment(_) => return [0.0, 0.02, 0.98].map(|t| piece.point(t)).to_vec(),
+            maille_geometry::Piece::Arc(arc) => (4.0 * arc.sweep_rad()).ceil().max(1.0),
+        };
+        (0..n as usize).map(|k| piece.point(k as f64 / n)).collect()
+    };
+    curve.pieces.iter().flat_map(points).collect::<Vec<_>>().into_iter()
+}
+
 /// The model as the page shows it.
 pub fn sheet(model: &Model, design: &Design) -> Sheet {
     let length = |v: maille_geometry::Vec3| -> [f64; 3] { (v * model.unit).into() };
@@ -121,6 +142,7 @@ pub fn sheet(model: &Model, design: &Design) -> Sheet {
         normal: ring.normal.into_inner().into(),
         major_radius: ring.major_radius * model.unit,
         minor_radius: ring.minor_radius * model.unit,
+        curve: ring.curve.as_ref().map(|curve| shown(curve).map(|p| length(p - ring.offset)).collect()),
     };
     Sheet {
         name: design.name.clone(),

@@ -33,7 +33,7 @@ pub fn fuse(close: &mesh::TooClose, clearance: f64, mm: f64, source: &Source) ->
     };
     let thinner = match (close.minor_radius_factor, design.minor_radius) {
         (None, _) => "no minor radius gives that in this state".to_owned(),
-        (Some(f), Some(r)) if design.elements.iter().flat_map(|e| &e.rings).all(|ring| ring.minor_radius.is_none()) => {
+        (Some(f), Some(r)) if common_wire(design) => {
             format!("minor_radius = {} would give that (now {r})", down(f * r))
         }
         (Some(f), _) => format!("{} times every minor_radius would give that", down(f)),
@@ -154,4 +154,12 @@ mod tests {
         }
         assert_eq!(down(0.1), 0.1);
     }
+}
+
+/// Whether no ring or curve has a minor radius of its own.
+fn common_wire(design: &maille::design::Design) -> bool {
+    let own = |e: &maille::design::ElementSpec| {
+        e.rings.iter().any(|ring| ring.minor_radius.is_some()) || e.curves.iter().any(|c| c.minor_radius.is_some())
+    };
+    !design.elements.iter().any(own)
 }

@@ -227,6 +227,10 @@ fn torus_gap(args: &Args, design: &Design, gap: Length) -> Result<f64> {
         let segments = fineness(args, design).segments(major, minor)?;
         outside = outside.max(TorusMesh::new(major, minor, segments).protrusion());
     }
+    for curve in design.elements.iter().flat_map(|element| &element.curves) {
+        let wire = curve.minor_radius.or(design.minor_radius).unwrap_or(0.0);
+        outside = outside.max(fineness(args, design).protrusion(curve.shape.reach() + wire));
+    }
     Ok(gap.mm / mm + 2.0 * outside)
 }
 

@@ -1,6 +1,7 @@
 // One sheet in 3D: instanced tori, what is drawn through them, picking.
 
 import {
+  CatmullRomCurve3,
   AmbientLight,
   DirectionalLight,
   DynamicDrawUsage,
@@ -13,6 +14,7 @@ import {
   Raycaster,
   Scene,
   TorusGeometry,
+  TubeGeometry,
   Vector2,
   Vector3,
   WebGLRenderer,
@@ -27,6 +29,16 @@ import { Viewpoint } from "./viewpoint";
 const Z = new Vector3(0, 0, 1);
 /** Pixels that the pointer may move in a click. */
 const CLICK = 4;
+
+/** The tube round a closed curve through points. */
+function tube(points: readonly (readonly number[])[], radius: number, across: number): TubeGeometry {
+  const line = new CatmullRomCurve3(
+    points.map((p) => new Vector3(...(p as [number, number, number]))),
+    true,
+    "centripetal",
+  );
+  return new TubeGeometry(line, 2 * points.length, radius, across, true);
+}
 
 export class Stage {
   readonly canvas: HTMLCanvasElement;
@@ -92,7 +104,7 @@ export class Stage {
     if (old && alike(shown, old)) return;
     const [columns, rows] = copies(shown.sheet.cell);
     this.cells = [Math.ceil(shown.tile[0] / columns), Math.ceil(shown.tile[1] / rows)];
-    const radii = shown.sheet.rings.map((r) => `${r.major_radius},${r.minor_radius}`);
+    const radii = shown.sheet.rings.map((r) => `${r.major_radius},${r.minor_radius},${r.curve?.join() ?? ""}`);
     const key = `${radii.join(";")}|${this.cells}`;
     if (key !== this.key) this.build(shown, radii);
     this.key = key;
@@ -108,7 +120,7 @@ export class Stage {
     this.draw();
   }
 
-  /** One mesh for each pair of radii; rings have fewer segments where there are many. */
+  /** One mesh for each pair of radii and each other curve; rings have fewer segments where there are many. */
   private build(shown: Drawing, radii: string[]): void {
     for (const { mesh } of this.shapes) {
       this.world.remove(mesh);
@@ -121,8 +133,10 @@ export class Stage {
     const [around, across] = count > 2500 ? [20, 5] : count > 800 ? [30, 7] : count > 100 ? [44, 9] : [72, 14];
     this.shapes = [...new Set(radii)].map((pair) => {
       const rings = radii.flatMap((other, ring) => (other === pair ? [ring] : []));
-      const { major_radius, minor_radius } = shown.sheet.rings[rings[0]!]!;
-      const geometry = new TorusGeometry(major_radius, minor_radius, across, around);
+      const { major_radius, minor_radius, curve } = shown.sheet.rings[rings[0]!]!;
+      const geometry = curve
+        ? tube(curve, minor_radius, across)
+        : new TorusGeometry(major_radius, minor_radius, across, around);
       const material = new MeshPhongMaterial({ shininess: 55, specular: "#4a4a4a" });
       const mesh = new InstancedMesh(geometry, material, rings.length * cells);
       mesh.instanceMatrix.setUsage(DynamicDrawUsage);
@@ -141,9 +155,10 @@ export class Stage {
     for (const { mesh, rings } of this.shapes) {
       let k = 0;
       for (const ring of rings) {
-        const { element, normal } = sheet.rings[ring]!;
+        const { element, normal, curve } = sheet.rings[ring]!;
         const turned = new Vector3(...normal).applyQuaternion(poses.rotation[element]!).normalize();
-        matrix.makeRotationFromQuaternion(new Quaternion().setFromUnitVectors(Z, turned));
+        const turn = curve ? poses.rotation[element]! : new Quaternion().setFromUnitVectors(Z, turned);
+        matrix.makeRotationFromQuaternion(turn);
         const middle = centre(sheet, poses, ring, [0, 0]);
         for (let i = 0; i < m; i++) {
           for (let j = 0; j < n; j++) {

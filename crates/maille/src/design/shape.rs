@@ -215,13 +215,19 @@ impl Shape {
         }
     }
 
-    /// Its segments and arcs, in order. Smooth forms become biarcs, spans halved until no point is farther than
-    /// `tolerance` from the form. None where the numbers make no curve.
+    /// Its segments and arcs, in order. Smooth forms become biarcs, spans halved until no sampled point is farther than
+    /// `tolerance` from them. None where the numbers make no curve.
     pub fn pieces(&self, tolerance: f64) -> Option<Vec<Piece>> {
+        self.approximation(tolerance).map(|(pieces, _)| pieces)
+    }
+
+    /// The same, and how far the form is from its pieces at most, at sampled points.
+    pub fn approximation(&self, tolerance: f64) -> Option<(Vec<Piece>, f64)> {
+        let exact = |pieces: Vec<Piece>| Some((pieces, 0.0));
         match self {
-            Shape::Stadium { straight, radius } => Some(stadium(*straight, *radius)),
+            Shape::Stadium { straight, radius } => exact(stadium(*straight, *radius)),
             Shape::Ellipse { a, b } if a == b => {
-                Some(vec![Piece::circle(Circle::new(Vec3::zeros(), Vec3::z_axis(), *a))])
+                exact(vec![Piece::circle(Circle::new(Vec3::zeros(), Vec3::z_axis(), *a))])
             }
             Shape::Ellipse { a, b } => smooth(4, tolerance, |t| {
                 let (sin, cos) = t.sin_cos();
@@ -241,7 +247,7 @@ impl Shape {
             }
             _ => {
                 let (corners, fillet) = self.polygon()?;
-                rounded(&corners, fillet)
+                rounded(&corners, fillet).and_then(exact)
             }
         }
     }
@@ -249,7 +255,7 @@ impl Shape {
 
 impl Shape {
     /// No point of it is farther than this from the origin.
-    pub(super) fn reach(&self) -> f64 {
+    pub fn reach(&self) -> f64 {
         match self {
             Shape::Stadium { straight, radius } => 0.5 * straight + radius,
             Shape::Ellipse { a, b } => a.max(*b),
@@ -352,7 +358,7 @@ const SAMPLES: usize = 8;
 
 /// A smooth closed curve, given by point and derivative at 0 ≤ t ≤ 2π, as biarcs of equal spans of t, so many that sampled points are
 /// within `tolerance`. From `spans` on, always twice as many.
-fn smooth(spans: usize, tolerance: f64, at: impl Fn(f64) -> [Vec3; 2]) -> Option<Vec<Piece>> {
+fn smooth(spans: usize, tolerance: f64, at: impl Fn(f64) -> [Vec3; 2]) -> Option<(Vec<Piece>, f64)> {
     let mut spans = spans.max(1);
     while 2 * spans <= MOST_PIECES {
         let t = |k: f64| TAU * k / spans as f64;
@@ -370,7 +376,7 @@ fn smooth(spans: usize, tolerance: f64, at: impl Fn(f64) -> [Vec3; 2]) -> Option
             pieces.extend(pair);
         }
         if worst <= tolerance {
-            return Some(pieces);
+            return Some((pieces, worst));
         }
         spans *= 2;
     }

@@ -20,6 +20,8 @@ const MOST_IMAGES: f64 = 1e5;
 /// Rings that overlap by less touch, in R: a limit that is written out does so by rounding.
 const ROUNDING: f64 = 1e-12;
 
+/// The origin of a form is its centre if the curve reaches farther from it than from the best centre by no more than this share.
+const CENTERED: f64 = 1e-6;
 /// Arcs whose circles differ by less, in reference radii, are of one.
 const ONE_CIRCLE: f64 = 1e-12;
 
@@ -49,14 +51,17 @@ fn ring_of(design: &Design, element: usize, spec: &CurveSpec) -> Ring {
     let rotation = spec.rotation().unwrap_or_default();
     let minor_radius = spec.minor_radius.or(design.minor_radius).unwrap_or(f64::NAN) / unit;
     // The design has been checked.
-    let pieces = spec.shape.scaled(1.0 / unit).pieces(design.tolerance_of_curves() / unit).unwrap_or_default();
+    let found = spec.shape.scaled(1.0 / unit).approximation(design.tolerance_of_curves() / unit);
+    let (pieces, deviation) = found.unwrap_or_default();
     let pieces: Vec<Piece> = pieces.iter().map(|piece| piece.moved(&rotation, &offset)).collect();
     if let Some(Circle { center, normal, radius }) = one_circle(&pieces) {
         return Ring { element, offset: center, normal, major_radius: radius, minor_radius, curve: None };
     }
-    let curve = Curve::new(pieces);
+    let curve = Curve::new(pieces, deviation);
     let normal = Unit::new_normalize(rotation * Vec3::z());
-    let center = curve.center();
+    // Most forms lie about their origin.
+    let found = curve.center();
+    let center = if curve.reach(&offset) <= curve.reach(&found) * (1.0 + CENTERED) { offset } else { found };
     let major_radius = curve.reach(&center);
     Ring { element, offset: center, normal, major_radius, minor_radius, curve: Some(Arc::new(curve)) }
 }

@@ -21,6 +21,8 @@ use std::{borrow::Cow, f64::consts::TAU, sync::Arc};
 pub struct Curve {
     /// The pieces, each from where the one before ends.
     pub pieces: Vec<Piece>,
+    /// How far the form that they stand for is from them, at sampled points.
+    pub deviation: f64,
     /// Length of the curve up to the start of each piece, and all of it.
     lengths: Vec<f64>,
     /// Whether the tangent goes on from the piece before into each.
@@ -31,7 +33,7 @@ pub struct Curve {
 
 impl Curve {
     /// The curve of these pieces.
-    pub(crate) fn new(pieces: Vec<Piece>) -> Self {
+    pub(crate) fn new(pieces: Vec<Piece>, deviation: f64) -> Self {
         let mut lengths = vec![0.0];
         for piece in &pieces {
             lengths.push(lengths[lengths.len() - 1] + piece.length());
@@ -46,12 +48,21 @@ impl Curve {
             })
             .collect();
         let nodes = tree::nodes(&pieces);
-        Curve { pieces, lengths, smooth, nodes }
+        Curve { pieces, deviation, lengths, smooth, nodes }
     }
 
     /// Length of the curve.
     pub fn length(&self) -> f64 {
         self.lengths[self.pieces.len()]
+    }
+
+    /// Radii of its arcs.
+    pub fn arc_radii(&self) -> Vec<f64> {
+        let radius = |piece: &Piece| match piece {
+            Piece::Segment(_) => None,
+            Piece::Arc(arc) => Some(arc.circle().radius),
+        };
+        self.pieces.iter().filter_map(radius).collect()
     }
 
     /// Largest distance of its points from `p`.
@@ -198,7 +209,7 @@ impl Core {
             Core::Circle(circle) => {
                 let pose = Pose { position: circle.center, rotation: UnitQuaternion::identity() };
                 let circle = Circle { center: Vec3::zeros(), ..*circle };
-                (Cow::Owned(Curve::new(vec![Piece::circle(circle)])), pose)
+                (Cow::Owned(Curve::new(vec![Piece::circle(circle)], 0.0)), pose)
             }
             Core::Curve(curve, pose) => (Cow::Borrowed(&**curve), *pose),
         }
@@ -228,7 +239,7 @@ impl Core {
     }
 
     /// The point at an angle: see [`CurvePoint::angle_rad`].
-    pub(crate) fn at_angle(&self, angle_rad: f64) -> CurvePoint {
+    pub fn at_angle(&self, angle_rad: f64) -> CurvePoint {
         let (curve, pose) = self.curve();
         curve.at_angle(angle_rad).moved(&pose)
     }
