@@ -38,8 +38,35 @@ fn every_builtin_design_fits_the_schema() {
     }
 }
 
+#[test]
+fn examples_with_curves_fit_the_schema() {
+    let (validator, mut count) = (validator(), 0);
+    for entry in fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/curves")).unwrap() {
+        let path = entry.unwrap().path();
+        let text = fs::read_to_string(&path).unwrap();
+        assert!(validator.is_valid(&parsed(&text).unwrap()), "{path:?}");
+        // What is written reads back the same.
+        let design = maille_io::read_design("example", &text).unwrap();
+        let written = maille_io::write_design(&design);
+        assert!(validator.is_valid(&parsed(&written).unwrap()), "{written}");
+        assert_eq!(maille_io::read_design("written", &written).unwrap(), design);
+        count += 1;
+    }
+    assert_eq!(count, 4);
+}
+
 /// What a schema cannot say: relations between two fields, and what formulas mean.
-const BEYOND: [&str; 13] = [
+const BEYOND: [&str; 23] = [
+    "curve-along-normal.toml",
+    "curve-fillet-below-wire.toml",
+    "curve-fillet-too-large.toml",
+    "curve-hairpin.toml",
+    "curve-knot-common-divisor.toml",
+    "curve-knot-half-turn.toml",
+    "curve-point-twice.toml",
+    "curve-spike.toml",
+    "curve-through-itself.toml",
+    "curve-too-fine.toml",
     "minor-radius-too-large.toml",
     "parallel-lattice.toml",
     "parameter-arguments.toml",

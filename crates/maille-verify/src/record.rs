@@ -80,6 +80,16 @@ pub(crate) struct Element {
     pub name: String,
     pub center: [f64; 3],
     pub rings: Vec<Ring>,
+    /// Tubes round other curves. Only that there are some is known of them.
+    #[serde(default)]
+    pub curves: Vec<Value>,
+}
+
+impl Design {
+    /// Whether all is made of rings: nothing is verified of other curves yet.
+    pub fn is_round(&self) -> bool {
+        self.elements.iter().all(|element| element.curves.is_empty())
+    }
 }
 
 #[derive(Clone, Debug, Deserialize)]

@@ -4,7 +4,7 @@ use crate::{
     files::{checksum, say, sha256},
     gaps::gaps_and_links,
     record::{Contact, Design, Pose, Row, State, Unreadable, json},
-    report::{Check, Finding, Verdict},
+    report::{Check, Finding, Verdict, not_of_curves},
     roll_forces::{Objective, Rate, Written, roll_forces},
     rolled::{Motions, Rolled, joined},
     sheet::{self, Pair, Sheet, Vec3},
@@ -248,7 +248,9 @@ impl RollVerifier {
         let roll = &self.rolls[k];
         let certified = roll.status == "local";
         let mut findings = vec![status(roll, certified, self.design.reference_radius)];
-        if roll.curvature.is_some() {
+        if !self.design.is_round() {
+            findings.extend(not_of_curves());
+        } else if roll.curvature.is_some() {
             findings.extend(self.of_state(roll, certified).unwrap_or_else(|words| vec![say(Verdict::False, words)]));
         }
         let (direction_deg, axis, status) = (roll.direction_deg, roll.axis.clone(), roll.status.clone());

@@ -12,7 +12,7 @@ use crate::{
     files::{checksum, say},
     gaps::gaps_and_links,
     record::{Design, Pose, Row, State, Unreadable, json},
-    report::{Check, Finding, Verdict},
+    report::{Check, Finding, Verdict, not_of_curves},
     sheet::{self, Sheet, Vec3},
     start::{Start, start},
     strain,
@@ -87,6 +87,8 @@ pub struct VertexReport {
 /// A surface that was read, with what all its vertices need.
 pub struct SurfaceVerifier {
     name: String,
+    /// Whether the design has rings alone.
+    round: bool,
     vertices: Vec<Vertex>,
     files: Vec<Finding>,
     starts: BTreeMap<String, Result<Start, String>>,
@@ -108,7 +110,8 @@ impl SurfaceVerifier {
             (cell.clone(), parsed.and_then(|cell| start(&head.design, &cell, &names)))
         };
         let starts = head.cells.iter().map(start_of).collect();
-        Ok(SurfaceVerifier { name: head.design.name.clone(), vertices, files, starts })
+        let round = head.design.is_round();
+        Ok(SurfaceVerifier { name: head.design.name.clone(), round, vertices, files, starts })
     }
 
     /// What is known of the files.
@@ -136,7 +139,9 @@ impl SurfaceVerifier {
         let vertex = &self.vertices[k];
         let certified = matches!(vertex.status.as_str(), "global" | "local");
         let mut findings = vec![status(vertex, certified)];
-        if let Some(distance) = vertex.distance {
+        if !self.round {
+            findings.extend(not_of_curves());
+        } else if let Some(distance) = vertex.distance {
             match self.starts.get(&vertex.cell) {
                 Some(Ok(start)) => findings.extend(of_state(vertex, distance, start, certified)),
                 Some(Err(words)) => findings.push(say(Verdict::False, words.clone())),

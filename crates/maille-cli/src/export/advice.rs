@@ -142,6 +142,14 @@ pub fn summary(scene: &Scene) {
     );
 }
 
+/// Whether no ring or curve has a minor radius of its own.
+fn common_wire(design: &maille::design::Design) -> bool {
+    let own = |e: &maille::design::ElementSpec| {
+        e.rings.iter().any(|ring| ring.minor_radius.is_some()) || e.curves.iter().any(|c| c.minor_radius.is_some())
+    };
+    !design.elements.iter().any(own)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -154,12 +162,4 @@ mod tests {
         }
         assert_eq!(down(0.1), 0.1);
     }
-}
-
-/// Whether no ring or curve has a minor radius of its own.
-fn common_wire(design: &maille::design::Design) -> bool {
-    let own = |e: &maille::design::ElementSpec| {
-        e.rings.iter().any(|ring| ring.minor_radius.is_some()) || e.curves.iter().any(|c| c.minor_radius.is_some())
-    };
-    !design.elements.iter().any(own)
 }

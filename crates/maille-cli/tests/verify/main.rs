@@ -24,6 +24,30 @@ fn a_sample_of_every_design_is_proved() {
     }
 }
 
+/// Nothing is verified of curves yet, and nothing is said to be.
+#[test]
+fn records_of_curves_are_left_open() {
+    let dir = tempfile::tempdir().unwrap();
+    let design = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/curves/stadium-sheet.toml");
+    let line = format!("characterize {design} --directions 0,30 --l2 0 --out record --quiet");
+    assert_eq!(code(&maille(dir.path(), &line)), 0);
+    let (_, found) = verified(dir.path(), "record");
+    assert_eq!(found["certified"].as_u64(), Some(2), "{found:#}");
+    for check in ["deformation", "overlap", "links", "balance", "curvature", "bound"] {
+        assert_eq!(said(&found, check, "open").len(), 2, "{check}: {found:#}");
+    }
+    // What is known of rings alone says so.
+    for line in [
+        format!("prove {design} --direction 0 --l2 0"),
+        format!("sensitivity {design} --direction 0"),
+        format!("fit {design} --target record/limits.csv --free minor_radius=0.05:0.2"),
+    ] {
+        let refused = maille(dir.path(), &line);
+        let words = String::from_utf8_lossy(&refused.stderr);
+        assert!(code(&refused) != 0 && words.contains("curves"), "{line}: {words}");
+    }
+}
+
 #[test]
 fn what_is_free_larger_cells_and_the_least_l1_are_proved() {
     let dir = tempfile::tempdir().unwrap();

@@ -267,6 +267,16 @@ impl Shape {
     }
 }
 
+/// A ball around a piece.
+pub(crate) fn ball(piece: &Piece) -> (Vec3, f64) {
+    let middle = (piece.point(0.0) + piece.point(1.0)) * 0.5;
+    let at = match piece {
+        Piece::Arc(arc) if arc.sweep_rad() > std::f64::consts::PI => arc.circle().center,
+        _ => middle,
+    };
+    (at, (piece.point(piece.farthest(&at)) - at).norm())
+}
+
 /// Least radius of the arcs among `pieces`; none where all are straight.
 pub(super) fn tightest(pieces: &[Piece]) -> Option<f64> {
     let radii = pieces.iter().filter_map(|piece| match piece {
@@ -285,7 +295,7 @@ pub(super) fn self_overlap(pieces: &[Piece], r: f64) -> Option<f64> {
     let mut at = vec![0.0];
     pieces.iter().for_each(|piece| at.push(at[at.len() - 1] + piece.length()));
     let total = at[n];
-    let balls: Vec<(Vec3, f64)> = pieces.iter().map(crate::model::curve::tree::ball).collect();
+    let balls: Vec<(Vec3, f64)> = pieces.iter().map(ball).collect();
     let mut least: Option<f64> = None;
     for i in 0..n {
         for j in i + 1..n {

@@ -1,7 +1,7 @@
 //! Core curves: circles, and closed curves of segments and arcs.
 
 mod minima;
-pub(crate) mod tree;
+mod tree;
 
 pub use minima::CurveMinimum;
 pub use minima::curve_distance_minima;

@@ -46,6 +46,7 @@ pub struct ContactOptions {
 }
 
 /// An overlapping pair.
+#[expect(clippy::large_enum_variant, reason = "nearly all are rings")]
 enum Overlap {
     /// Two rings.
     Rings(RingOverlap),

@@ -1,5 +1,6 @@
 //! Runs of a curve's pieces, halved again and again: what can be ruled out of two runs at once.
 
+use crate::design::shape::ball;
 use maille_geometry::{Piece, Vec3};
 use std::f64::consts::PI;
 
@@ -23,16 +24,6 @@ pub(super) struct Node {
 
 /// Rounding of tangents, and what is taken for a smooth joint.
 const SLACK_RAD: f64 = 1e-6;
-
-/// A ball around a piece.
-pub(crate) fn ball(piece: &Piece) -> (Vec3, f64) {
-    let middle = (piece.point(0.0) + piece.point(1.0)) * 0.5;
-    let at = match piece {
-        Piece::Arc(arc) if arc.sweep_rad() > std::f64::consts::PI => arc.circle().center,
-        _ => middle,
-    };
-    (at, (piece.point(piece.farthest(&at)) - at).norm())
-}
 
 /// A node before its children's, for pieces `first` to `end`.
 pub(super) fn nodes(pieces: &[Piece]) -> Vec<Node> {
