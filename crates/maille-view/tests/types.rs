@@ -1,9 +1,13 @@
 //! `web/src/types.ts` is written from the Rust types, as serde reads them. `MAILLE_BLESS=1` writes it anew.
 
-use maille::{design::Parameter, record::StateRecord};
+use maille::{
+    design::{CurveSpec, Parameter, Shape},
+    record::StateRecord,
+};
 use maille_io::{builtin, read_design};
 use maille_view::api::{
-    Activity, Edit, Export, Judged, Measure, New, OpenRecord, Refused, Save, Solve, SolveEvent, Start, Subject, Text,
+    Activity, Edit, Export, Judged, Measure, New, OpenRecord, Refused, Ring, Save, Solve, SolveEvent, Start, Subject,
+    Text,
 };
 use serde_reflection::{ContainerFormat, Format, Named, Registry, Tracer, TracerConfig, VariantFormat};
 use std::{collections::BTreeMap, fmt::Write, fs, path::Path};
@@ -16,7 +20,7 @@ fn registry() -> Registry {
             $(tracer.trace_simple_type::<$type>().unwrap();)*
         };
     }
-    trace!(maille::record::Status, maille::design::Source, maille::relaxation::simulate::End);
+    trace!(maille::record::Status, maille::design::Source, maille::relaxation::simulate::End, Shape);
     trace!(
         Start,
         OpenRecord, Measure, Subject, Judged, Solve, SolveEvent, Export, Edit, New, Save, Text, Activity, Refused
@@ -65,9 +69,14 @@ fn absent(registry: &Registry) -> BTreeMap<String, Vec<String>> {
     let mut design = read_design("1.1", builtin("1.1").unwrap()).unwrap();
     (design.minor_radius, design.unit) = (None, None);
     let parameter = Parameter { name: "wire".into(), value: 1.0, formula: None, min: None, max: None };
+    let (offset, normal) = ([0.0; 3], [0.0, 0.0, 1.0]);
+    let ring = Ring { element: 0, offset, normal, major_radius: 1.0, minor_radius: 0.1, curve: None };
     let bare = [
         ("StateRecord", serde_json::to_value(StateRecord::default()).unwrap()),
         ("RingSpec", serde_json::to_value(&design.elements[0].rings[0]).unwrap()),
+        ("ElementSpec", serde_json::to_value(&design.elements[0]).unwrap()),
+        ("CurveSpec", serde_json::to_value(CurveSpec::of(Shape::Square { side: 1.0, fillet: 0.0 })).unwrap()),
+        ("Ring", serde_json::to_value(&ring).unwrap()),
         ("Design", serde_json::to_value(&design).unwrap()),
         ("LatticeSpec", serde_json::to_value(&design.lattice).unwrap()),
         ("Parameter", serde_json::to_value(&parameter).unwrap()),

@@ -25,6 +25,14 @@ export interface ContactRecord {
   force: number;
 }
 
+export interface CurveSpec {
+  shape: Shape;
+  normal: [number, number, number];
+  along: [number, number, number];
+  offset: [number, number, number];
+  minor_radius?: number | null;
+}
+
 export interface Design {
   schema: number;
   name: string;
@@ -33,6 +41,7 @@ export interface Design {
   unit?: string | null;
   minor_radius?: number | null;
   reference_radius: number;
+  curve_tolerance?: number | null;
   allow_initial_overlap: boolean;
   lattice: LatticeSpec;
   elements: ElementSpec[];
@@ -56,6 +65,7 @@ export interface ElementSpec {
   name: string;
   center: [number, number, number];
   rings: RingSpec[];
+  curves?: CurveSpec[];
 }
 
 export type End =
@@ -228,6 +238,7 @@ export interface Ring {
   normal: [number, number, number];
   major_radius: number;
   minor_radius: number;
+  curve?: [number, number, number][] | null;
 }
 
 export interface RingSpec {
@@ -247,6 +258,14 @@ export interface Save {
   text: string;
   overwrite: boolean;
 }
+
+export type Shape =
+  | { "stadium": { straight: number; radius: number } }
+  | { "square": { side: number; fillet: number } }
+  | { "hexagon": { side: number; fillet: number } }
+  | { "polyline": { points: [number, number, number][]; fillet: number } }
+  | { "ellipse": { a: number; b: number } }
+  | { "torus_knot": { p: number; q: number; R: number; a: number } };
 
 export interface Sheet {
   name: string;
