@@ -17,6 +17,7 @@
 
 use crate::{
     apart::Arc,
+    curve_pair::CurveContact,
     record::Contact,
     sheet::{Pair, Sheet, Vec3, distance, frame},
 };
@@ -86,9 +87,17 @@ pub(crate) struct Closed<'a> {
     pub gap: f64,
     /// Derivative of the distance along the ring.
     slope: f64,
+    /// The contact, where one of the two is no circle.
+    pub curve: Option<CurveContact>,
 }
 
 impl<'a> Closed<'a> {
+    /// A contact of which one is no circle.
+    fn of_curves(sheet: &'a Sheet, pair: Pair, contact: CurveContact) -> Self {
+        let (gap, slope) = (contact.gap(), contact.slope());
+        Closed { sheet, pair, angle: 0.0, out: Vec3::zeros(), gap, slope, curve: Some(contact) }
+    }
+
     /// The least distance next to `angle`.
     pub fn next_to(sheet: &'a Sheet, pair: Pair, angle: f64) -> Self {
         let (one, other) = (sheet.circle(pair.0, [0, 0]), sheet.circle(pair.1, pair.2));
@@ -102,7 +111,7 @@ impl<'a> Closed<'a> {
         let (u, v) = frame(&other.normal);
         let out = (u * angle.cos() + v * angle.sin()) * other.radius;
         let gap = at.distance - sheet.touching(pair.0, pair.1);
-        Closed { sheet, pair, angle, out, gap, slope: at.slope / (2.0 * at.distance) }
+        Closed { sheet, pair, angle, out, gap, slope: at.slope / (2.0 * at.distance), curve: None }
     }
 
     /// Distance of the point from circle a, when the elements and the image's translation have moved.
@@ -125,6 +134,18 @@ impl<'a> Closed<'a> {
         let (a, b, shift) = self.pair;
         let n = 6 * self.sheet.bodies.len();
         let mut out = DVector::zeros(n + free.0.len());
+        if let Some(contact) = &self.curve {
+            let local = contact.gradient();
+            for (ring, first) in [(a, 0), (b, 6)] {
+                let element = self.sheet.rings[ring].element;
+                (0..6).for_each(|k| out[6 * element + k] += local[first + k]);
+            }
+            for (m, rate) in free.0.iter().enumerate() {
+                let image = rate[0] * f64::from(shift[0]) + rate[1] * f64::from(shift[1]);
+                out[n + m] = (0..3).map(|k| local[6 + k] * image[k]).sum();
+            }
+            return out;
+        }
         let (i, j) = (self.sheet.rings[a].element, self.sheet.rings[b].element);
         let size = |ring: usize| self.sheet.rings[ring].arm.norm() + self.sheet.rings[ring].radius;
         let h = STEP * self.sheet.touching(a, b);
@@ -177,6 +198,10 @@ pub(crate) fn least(arc: &Arc<'_>, angle: f64) -> f64 {
 pub(crate) fn points<'a>(sheet: &'a Sheet, contacts: &[Contact], unit: f64) -> Result<Vec<(Closed<'a>, f64)>, String> {
     let point = |(k, contact): (usize, &Contact)| {
         let pair = (contact.ring_a, contact.ring_b, contact.shift);
+        if pair.0.max(pair.1) < sheet.rings.len() && !sheet.is_round(pair) {
+            let found = placed_on_curves(sheet, contact, unit).map_err(|words| format!("contact {k} {words}"))?;
+            return Ok((Closed::of_curves(sheet, pair, found), contact.force));
+        }
         let angle = placed(sheet, contact, unit).map_err(|words| format!("contact {k} {words}"))?;
         Ok((Closed::next_to(sheet, pair, angle), contact.force))
     };
@@ -200,6 +225,25 @@ pub(crate) fn balance(sheet: &Sheet, points: &[(Closed<'_>, f64)], free: &Free) 
     }
     out.residual = residual.amax();
     out
+}
+
+/// A recorded contact of which one is no circle, if the record's points and normal are where they should be.
+fn placed_on_curves(sheet: &Sheet, contact: &Contact, unit: f64) -> Result<CurveContact, String> {
+    let (a, b, shift) = (contact.ring_a, contact.ring_b, contact.shift);
+    if sheet.rings[a].element == sheet.rings[b].element && shift == [0, 0] {
+        return Err("is of an element with itself".into());
+    }
+    let written = [contact.point_a, contact.point_b].map(|p| Vec3::from(p) / unit);
+    let found = CurveContact::new(sheet, (a, b, shift), written);
+    let points = found.points();
+    let normal = (points[1] - points[0]).normalize();
+    let away = (0..2).map(|k| (points[k] - written[k]).norm()).fold(0.0, f64::max);
+    let away = away.max((Vec3::from(contact.normal) - normal).norm());
+    if away <= PLACED + sheet.slack((a, b, shift)) / sheet.touching(a, b) {
+        Ok(found)
+    } else {
+        Err(format!("of rings {a} and {b} at {shift:?} is off its curves by {away:.1e} R"))
+    }
 }
 
 /// The angle of a recorded contact on its ring b, if the record's points and normal are where they should be.

@@ -150,7 +150,7 @@ fn hessian(point: &Closed<'_>) -> SMatrix<f64, 13, 13> {
 pub(crate) fn turns(sheet: &Sheet, element: usize) -> Vec<Vec3> {
     let rings: Vec<usize> = (0..sheet.rings.len()).filter(|&r| sheet.rings[r].element == element).collect();
     match &rings[..] {
-        [ring] if sheet.rings[*ring].arm.norm() < 1e-12 => {
+        [ring] if sheet.rings[*ring].arm.norm() < 1e-12 && sheet.rings[*ring].curve.is_none() => {
             let (u, v) = frame(&sheet.circle(*ring, [0, 0]).normal);
             vec![u, v]
         }
@@ -233,12 +233,21 @@ pub(crate) struct Term {
 pub(crate) fn terms(sheet: &Sheet, points: &[(Closed<'_>, f64)]) -> Result<(Vec<Term>, bool), String> {
     let mut out = Vec::new();
     let mut flat: BTreeMap<Pair, FlatPair> = BTreeMap::new();
-    for (point, force) in points.iter().filter(|(point, _)| lies_flat(sheet, point.pair)) {
+    let round = |point: &Closed<'_>| point.curve.is_none();
+    for (point, force) in points.iter().filter(|(point, _)| round(point) && lies_flat(sheet, point.pair)) {
         flat.entry(point.pair).or_default().add(sheet, point, *force);
     }
     // One that is held on one side alone has a least distance as any other pair.
     flat.retain(|_, found| found.moment.norm() <= ROCKING * found.force);
     for (point, force) in points {
+        if let Some(contact) = &point.curve {
+            let (a, b, shift) = point.pair;
+            let found = contact.hessian(STEP * sheet.touching(a, b));
+            let h = found.map_err(|words| format!("rings {a} and {b} at {shift:?}: {words}"))?;
+            let rows = if *force > LOADED { vec![contact.gradient()] } else { Vec::new() };
+            out.push(Term { pair: point.pair, hessian: h * -*force, rows });
+            continue;
+        }
         let mut h = hessian(point);
         let bend = h[(12, 12)];
         let aside = h.column(12).into_owned();

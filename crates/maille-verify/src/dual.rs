@@ -131,7 +131,10 @@ pub(crate) fn bound(starts: Starts<'_>, forces: &[Dual], direction_deg: f64, hel
         // For a negative sum the largest P gives the largest quotient.
         if most > 0.0 { most / least_pull } else { most / (pull.value + pull.error()) }
     };
-    let proven = Proven { by_lengths: proven(lengths(&ties)), by_normals: proven(normals(own, &ties)) };
+    let by_lengths = proven(lengths(&ties));
+    let round = own.rings.iter().all(|ring| ring.curve.is_none());
+    let by_normals = if round { proven(normals(own, &ties)) } else { by_lengths };
+    let proven = Proven { by_lengths, by_normals };
     if least_pull.is_nan() || least_pull <= 0.0 || !proven.by_lengths.is_finite() {
         return Err("the forces of the bound do not pull".into());
     }

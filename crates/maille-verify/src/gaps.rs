@@ -2,6 +2,7 @@
 
 use crate::{
     apart::{Apart, apart},
+    curve_pair,
     record::Row,
     report::{Check, Finding, Verdict},
     sheet::{Pair, Sheet},
@@ -28,9 +29,9 @@ pub(crate) fn gaps_and_links(row: &Row, here: &Sheet, start: &Start, keeps: f64,
     for pair in pairs {
         let (a, b, shift) = pair;
         let (one, other) = (here.circle(a, [0, 0]), here.circle(b, shift));
-        let (touching, slack) = (here.touching(a, b), here.slack(pair));
+        let touching = here.touching(a, b);
         let least = touching - claimed - OVERLAP;
-        let proved = match apart(&one, &other, least, slack) {
+        let proved = match apart_in(here, pair, least) {
             Apart::Proved => Some(least),
             Apart::Nearer(found) => {
                 let overlap = touching - found;
@@ -45,7 +46,7 @@ pub(crate) fn gaps_and_links(row: &Row, here: &Sheet, start: &Start, keeps: f64,
             }
         };
         if (other.center - one.center).norm() <= one.radius + other.radius {
-            add_link(&mut links, pair, (&one, &other), proved.filter(|d| *d > 0.0), slack);
+            add_link(&mut links, pair, here, proved.filter(|d| *d > 0.0));
         }
     }
     let name = |(a, b, shift): Pair| format!("rings {a} and {b} at {shift:?}");
@@ -70,6 +71,15 @@ pub(crate) fn gaps_and_links(row: &Row, here: &Sheet, start: &Start, keeps: f64,
     [overlap, links_finding(row, links, &start.links)]
 }
 
+/// Whether the cores of a pair are at least `least` apart.
+fn apart_in(here: &Sheet, pair: Pair, least: f64) -> Apart {
+    let (a, b, shift) = pair;
+    match here.is_round(pair) {
+        true => apart(&here.circle(a, [0, 0]), &here.circle(b, shift), least, here.slack(pair)),
+        false => curve_pair::apart(&here.curve(a, [0, 0]), &here.curve(b, shift), least, here.slack(pair)),
+    }
+}
+
 /// What is wrong with `gap` as the smallest gap, in reference radii: that rings are nearer, or that none are as near.
 fn smallest_gap_differs(here: &Sheet, gap: f64) -> Option<Finding> {
     let say = |verdict, words: String| Some(Finding::new(Check::Overlap, verdict, Some(gap), words));
@@ -80,9 +90,8 @@ fn smallest_gap_differs(here: &Sheet, gap: f64) -> Option<Finding> {
     let (mut attained, mut unknown) = (false, false);
     for pair in pairs {
         let (a, b, shift) = pair;
-        let (one, other) = (here.circle(a, [0, 0]), here.circle(b, shift));
-        let (touching, slack) = (here.touching(a, b), here.slack(pair));
-        match apart(&one, &other, touching + gap - GAP, slack) {
+        let touching = here.touching(a, b);
+        match apart_in(here, pair, touching + gap - GAP) {
             Apart::Nearer(found) => {
                 let words = format!(
                     "rings {a} and {b} at {shift:?} have the gap {:.3e} R, {gap:.3e} R in the record",
@@ -94,7 +103,7 @@ fn smallest_gap_differs(here: &Sheet, gap: f64) -> Option<Finding> {
             Apart::Proved => {}
         }
         if !attained {
-            match apart(&one, &other, touching + gap + GAP, slack) {
+            match apart_in(here, pair, touching + gap + GAP) {
                 Apart::Nearer(_) => attained = true,
                 Apart::Unknown(_) => unknown = true,
                 Apart::Proved => {}

@@ -38,6 +38,10 @@ pub(crate) fn too_near(
     let sheet = start.sheet;
     for element in 0..sheet.bodies.len() {
         let rings: Vec<&Ring> = sheet.rings.iter().filter(|ring| ring.element == element).collect();
+        // Balls of translations are derived of circles alone.
+        if rings.iter().any(|ring| ring.curve.is_some()) {
+            continue;
+        }
         let reach = rings.iter().map(|r| r.arm.norm() + r.radius + r.wire).fold(0.0, f64::max);
         for shift in near_shifts() {
             let of = |ring: usize| sheet.rings[ring].element;
@@ -137,7 +141,7 @@ mod tests {
     use super::*;
 
     fn ring(normal: Vec3, wire: f64) -> Ring {
-        Ring { element: 0, arm: Vec3::zeros(), normal, radius: 1.0, wire }
+        Ring { element: 0, arm: Vec3::zeros(), normal, radius: 1.0, wire, curve: None }
     }
 
     /// A ring can lie flat on its image, 2r away; three circles across each other are linked nearer than 2/√3, however thin the wire.

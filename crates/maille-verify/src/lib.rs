@@ -9,6 +9,8 @@ mod bounds;
 mod chain;
 mod claims;
 mod curvature;
+mod curve;
+mod curve_pair;
 mod dual;
 mod endless;
 mod files;

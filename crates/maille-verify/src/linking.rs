@@ -27,7 +27,11 @@ pub(crate) fn linking_number(a: &Circle, b: &Circle, apart: f64) -> Result<i32, 
     if corners > CORNERS as f64 {
         return Err(format!("circles {apart:.1e} R apart need polygons of {corners} corners"));
     }
-    let (one, other) = (polygon(a, corners as usize), polygon(b, corners as usize));
+    gauss(&polygon(a, corners as usize), &polygon(b, corners as usize))
+}
+
+/// The linking number of two closed polygons that do not meet.
+pub(crate) fn gauss(one: &[Vec3], other: &[Vec3]) -> Result<i32, String> {
     let mut angle = 0.0;
     for (k, x) in one.iter().enumerate() {
         let x2 = &one[(k + 1) % one.len()];

@@ -2,6 +2,7 @@
 //!
 //! Only the fields that are verified are read; others may be there.
 
+use crate::curve::Form;
 use serde::{Deserialize, de::DeserializeOwned};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
@@ -63,6 +64,9 @@ pub(crate) struct Design {
     pub minor_radius: Option<f64>,
     pub reference_radius: f64,
     pub lattice: Lattice,
+    /// How far biarcs may be from the smooth curves for which they stand.
+    #[serde(default)]
+    pub curve_tolerance: Option<f64>,
     pub elements: Vec<Element>,
 }
 
@@ -80,16 +84,25 @@ pub(crate) struct Element {
     pub name: String,
     pub center: [f64; 3],
     pub rings: Vec<Ring>,
-    /// Tubes round other curves. Only that there are some is known of them.
+    /// Tubes round other curves.
     #[serde(default)]
-    pub curves: Vec<Value>,
+    pub curves: Vec<CurveSpec>,
 }
 
 impl Design {
-    /// Whether all is made of rings: nothing is verified of other curves yet.
+    /// Whether all is made of rings.
     pub fn is_round(&self) -> bool {
         self.elements.iter().all(|element| element.curves.is_empty())
     }
+}
+
+#[derive(Clone, Debug, Deserialize)]
+pub(crate) struct CurveSpec {
+    pub shape: Form,
+    pub normal: [f64; 3],
+    pub along: [f64; 3],
+    pub offset: [f64; 3],
+    pub minor_radius: Option<f64>,
 }
 
 #[derive(Clone, Debug, Deserialize)]

@@ -1,11 +1,13 @@
 //! Rings in space: a design's start or a recorded state in one cell, in units of the reference radius R.
 
 use crate::{
-    record::{Design, Pose, State},
+    curve::Curve,
+    record::{CurveSpec, Design, Pose, State},
     rolled::Rolled,
 };
 use maille_geometry::Circle;
 use nalgebra::{Matrix2, Quaternion, Unit, UnitQuaternion, Vector3};
+use std::sync::Arc;
 
 pub(crate) type Vec3 = Vector3<f64>;
 
@@ -22,8 +24,11 @@ pub(crate) struct Ring {
     pub element: usize,
     pub arm: Vec3,
     pub normal: Vec3,
+    /// Major radius; of another curve that of the ball about its centre that holds the core.
     pub radius: f64,
     pub wire: f64,
+    /// The core in the element's frame, where it is no circle.
+    pub curve: Option<Arc<Curve>>,
 }
 
 /// Where an element is.
@@ -117,7 +122,43 @@ fn same_copy(cell: &Cell, a: [i32; 2], b: [i32; 2]) -> bool {
     (p * m[1][1] - q * m[1][0]) % det == 0 && (q * m[0][0] - p * m[0][1]) % det == 0
 }
 
+/// Share of R within which biarcs stand for a smooth curve, where a design does not say.
+const CURVE_TOLERANCE: f64 = 1e-6;
+
+/// The tube of a curve of element `element`.
+fn tube(design: &Design, spec: &CurveSpec, element: usize) -> Result<Ring, String> {
+    let unit = design.reference_radius;
+    let wire = spec.minor_radius.or(design.minor_radius).ok_or("a curve without a minor radius")? / unit;
+    let tolerance = design.curve_tolerance.map_or(CURVE_TOLERANCE, |tolerance| tolerance / unit);
+    let (normal, along) = (Vec3::from(spec.normal).normalize(), Vec3::from(spec.along).normalize());
+    let x = (along - normal * normal.dot(&along)).normalize();
+    let turn = UnitQuaternion::from_basis_unchecked(&[x, normal.cross(&x), normal]);
+    let arm = Vec3::from(spec.offset) / unit;
+    let curve = Curve::of(&spec.shape, unit, tolerance)?.moved(&turn, &arm);
+    Ok(match curve.circle() {
+        Some((arm, normal, radius)) => Ring { element, arm, normal, radius, wire, curve: None },
+        None => Ring { element, arm, normal, radius: curve.reach(&arm), wire, curve: Some(Arc::new(curve)) },
+    })
+}
+
 impl Sheet {
+    /// Whether both rings of a pair are circles.
+    pub fn is_round(&self, (a, b, _): Pair) -> bool {
+        self.rings[a].curve.is_none() && self.rings[b].curve.is_none()
+    }
+
+    /// The core of a ring in its element's frame, as a curve.
+    pub fn own_curve(&self, ring: usize) -> Curve {
+        let ring = &self.rings[ring];
+        ring.curve.as_ref().map_or_else(|| Curve::ring(ring.arm, ring.normal, ring.radius), |curve| (**curve).clone())
+    }
+
+    /// The core of a ring in the cell `shift` of a flat sheet, as a curve.
+    pub fn curve(&self, ring: usize, shift: [i32; 2]) -> Curve {
+        let body = &self.bodies[self.rings[ring].element];
+        self.own_curve(ring).moved(&body.turn, &(body.position + self.translation(shift)))
+    }
+
     /// The start of `design` in `cell`, with the elements in the order of `names`.
     pub fn start(design: &Design, cell: &Cell, names: &[&str]) -> Result<Sheet, String> {
         let unit = design.reference_radius;
@@ -146,7 +187,11 @@ impl Sheet {
                     normal: (normal / normal.amax()).normalize(),
                     radius: ring.major_radius / unit,
                     wire: wire / unit,
+                    curve: None,
                 });
+            }
+            for curve in &spec.curves {
+                out.rings.push(tube(design, curve, out.bodies.len())?);
             }
             let way = p1 * f64::from(copy[0]) + p2 * f64::from(copy[1]);
             let position = Vec3::from(spec.center) / unit + way;

@@ -2,13 +2,13 @@
 
 use crate::{
     apart::some_distance,
+    curve_pair,
     linking::linking_number,
     record::{Design, State},
     report::Verdict,
     sheet::{Cell, Pair, Ring, Sheet},
     tie::Linked,
 };
-use maille_geometry::Circle;
 
 /// A start with its links.
 pub(crate) struct Start {
@@ -26,8 +26,7 @@ pub(crate) fn start(design: &Design, cell: &Cell, names: &[&str]) -> Result<Star
     match sheet.pairs(|_, _| 0.0) {
         Ok(pairs) => {
             for pair in pairs {
-                let circles = (&sheet.circle(pair.0, [0, 0]), &sheet.circle(pair.1, pair.2));
-                add_link(&mut links, pair, circles, None, sheet.slack(pair));
+                add_link(&mut links, pair, &sheet, None);
             }
         }
         Err(words) => links = Err(words),
@@ -41,16 +40,19 @@ pub(crate) fn names(state: &State) -> Vec<&str> {
 }
 
 /// Adds the pair if it is linked. `proved` is a distance that the circles are known to keep.
-pub(crate) fn add_link(
-    links: &mut Result<Links, String>,
-    pair: Pair,
-    (one, other): (&Circle, &Circle),
-    proved: Option<f64>,
-    slack: f64,
-) {
+pub(crate) fn add_link(links: &mut Result<Links, String>, pair: Pair, sheet: &Sheet, proved: Option<f64>) {
     let Ok(known) = links else { return };
-    let apart = proved.or_else(|| some_distance(one, other, slack)).ok_or("core circles meet".to_owned());
-    match apart.and_then(|apart| linking_number(one, other, apart)) {
+    let slack = sheet.slack(pair);
+    let number = if sheet.is_round(pair) {
+        let (one, other) = (sheet.circle(pair.0, [0, 0]), sheet.circle(pair.1, pair.2));
+        let apart = proved.or_else(|| some_distance(&one, &other, slack)).ok_or("core circles meet".to_owned());
+        apart.and_then(|apart| linking_number(&one, &other, apart))
+    } else {
+        let (one, other) = (sheet.curve(pair.0, [0, 0]), sheet.curve(pair.1, pair.2));
+        let apart = proved.or_else(|| curve_pair::some_distance(&one, &other, slack)).ok_or("cores meet".to_owned());
+        apart.and_then(|apart| curve_pair::linking_number(&one, &other, apart))
+    };
+    match number {
         Ok(0) => {}
         Ok(number) => known.push((pair, number)),
         Err(words) => *links = Err(format!("rings {} and {} at {:?}: {words}", pair.0, pair.1, pair.2)),

@@ -115,7 +115,18 @@ impl<'a> Linked<'a> {
         Ok(Tie { is_link: kind == "link", terms, span, length })
     }
 
+    /// What is said of discs is not said of other curves.
+    fn all_round(&self, rings: &[Place]) -> Result<(), String> {
+        for place in rings {
+            if self.ring(*place)?.curve.is_some() {
+                return Err(format!("ring {} of a tie is no circle", place.0));
+            }
+        }
+        Ok(())
+    }
+
     fn strand_pair(&self, a: Place, a2: Place, b: Place) -> Result<f64, String> {
+        self.all_round(&[a, a2, b])?;
         self.link(a, b)?;
         self.link(a2, b)?;
         self.bodies_differ(a, a2)?;
@@ -127,6 +138,7 @@ impl<'a> Linked<'a> {
     }
 
     fn crossing_pairs(&self, [a, a2]: [Place; 2], [b, b2]: [Place; 2]) -> Result<f64, String> {
+        self.all_round(&[a, a2, b, b2])?;
         for (x, y) in [(a, b), (a, b2), (a2, b), (a2, b2)] {
             self.link(x, y)?;
         }

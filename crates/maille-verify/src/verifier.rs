@@ -7,7 +7,7 @@ use crate::{
     forces::forces,
     gaps::gaps_and_links,
     record::{Row, Run, State, Texts, Unreadable, read_rows, read_run, read_states},
-    report::{Check, Finding, RowReport, Verdict, not_of_curves},
+    report::{Check, Finding, RowReport, Verdict},
     sensitivities,
     sheet::{self, Sheet},
     start::{Start, names, same_rings, start},
@@ -95,9 +95,6 @@ impl Verifier {
     }
 
     fn findings(&self, row: &Row, state: &State) -> Vec<Finding> {
-        if !self.run.design.is_round() {
-            return not_of_curves();
-        }
         let found = matches!(row.status.as_str(), "threshold-reached" | "uncertified");
         let solved = row.certified() || row.comes_apart() || found;
         if !solved {

@@ -11,6 +11,7 @@ fn sheet(poses: [(Vec3, Vec3, Vec3); 2]) -> Sheet {
         normal: normal.normalize(),
         radius: 1.0,
         wire: 0.1,
+        curve: None,
     };
     let body = |(at, _, _): &(Vec3, Vec3, Vec3)| Body { position: *at, turn: UnitQuaternion::identity() };
     Sheet {

@@ -1,0 +1,366 @@
+//! Core curves that are no circles: closed curves of segments and arcs, from the forms of a design.
+
+use crate::sheet::{Vec3, frame};
+use nalgebra::UnitQuaternion;
+use serde::Deserialize;
+use std::f64::consts::{PI, TAU};
+
+/// A form as it is written in a design.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Form {
+    Stadium {
+        straight: f64,
+        radius: f64,
+    },
+    Square {
+        side: f64,
+        #[serde(default)]
+        fillet: f64,
+    },
+    Hexagon {
+        side: f64,
+        #[serde(default)]
+        fillet: f64,
+    },
+    Polyline {
+        points: Vec<[f64; 3]>,
+        #[serde(default)]
+        fillet: f64,
+    },
+    Ellipse {
+        a: f64,
+        b: f64,
+    },
+    TorusKnot {
+        p: f64,
+        q: f64,
+        #[serde(rename = "R")]
+        circle_radius: f64,
+        a: f64,
+    },
+}
+
+/// A segment (no curvature) or an arc: the point at arc length s is p + s t, or c + ϱ (u cos s/ϱ + v sin s/ϱ).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Piece {
+    /// Start of a segment, or centre of an arc.
+    at: Vec3,
+    /// Direction of a segment; from the centre to the start of an arc.
+    u: Vec3,
+    /// Tangent at the start of an arc.
+    v: Vec3,
+    /// Radius of an arc.
+    radius: Option<f64>,
+    pub length: f64,
+}
+
+/// Tangents that differ by a smaller sine are one.
+const SMOOTH: f64 = 1e-7;
+/// Arcs whose circles differ by less are of one.
+const ONE_CIRCLE: f64 = 1e-12;
+/// Pieces of a curve at most.
+const MOST_PIECES: usize = 10_000;
+
+impl Piece {
+    fn segment(from: Vec3, to: Vec3) -> Piece {
+        let length = (to - from).norm();
+        Piece { at: from, u: (to - from) / length, v: Vec3::zeros(), radius: None, length }
+    }
+
+    /// The arc from `from`, which it leaves along the unit vector `tangent`, to `to`; straight where that lies ahead.
+    fn arc(from: Vec3, tangent: Vec3, to: Vec3) -> Option<Piece> {
+        let chord = to - from;
+        let ahead = chord.dot(&tangent);
+        let aside = chord - tangent * ahead;
+        if aside.norm() == 0.0 {
+            return (ahead > 0.0).then(|| Piece::segment(from, to));
+        }
+        // The centre lies aside, as far from both ends.
+        let inward = aside.normalize();
+        let radius = chord.norm_squared() / (2.0 * chord.dot(&inward));
+        let half_rad = chord.dot(&inward).atan2(ahead);
+        let piece = Piece {
+            at: from + inward * radius,
+            u: -inward,
+            v: tangent,
+            radius: Some(radius),
+            length: 2.0 * half_rad * radius,
+        };
+        (radius.is_finite() && half_rad > 0.0).then_some(piece)
+    }
+
+    pub fn point(&self, s: f64) -> Vec3 {
+        match self.radius {
+            None => self.at + self.u * s,
+            Some(radius) => {
+                let (sin, cos) = (s / radius).sin_cos();
+                self.at + (self.u * cos + self.v * sin) * radius
+            }
+        }
+    }
+
+    pub fn tangent(&self, s: f64) -> Vec3 {
+        match self.radius {
+            None => self.u,
+            Some(radius) => {
+                let (sin, cos) = (s / radius).sin_cos();
+                self.v * cos - self.u * sin
+            }
+        }
+    }
+
+    /// Derivative of the tangent by arc length.
+    pub fn bend(&self, s: f64) -> Vec3 {
+        match self.radius {
+            None => Vec3::zeros(),
+            Some(radius) => {
+                let (sin, cos) = (s / radius).sin_cos();
+                (self.u * cos + self.v * sin) / -radius
+            }
+        }
+    }
+
+    /// Its length.
+    pub fn curvature(&self) -> f64 {
+        self.radius.map_or(0.0, |radius| 1.0 / radius)
+    }
+
+    /// The arc length of its point that is nearest to `p`.
+    pub fn nearest(&self, p: &Vec3) -> f64 {
+        let x = p - self.at;
+        match self.radius {
+            None => x.dot(&self.u).clamp(0.0, self.length),
+            Some(radius) => {
+                // The angle nearest to the middle of the arc.
+                let middle = 0.5 * self.length / radius;
+                let angle = x.dot(&self.v).atan2(x.dot(&self.u));
+                let angle = middle + (angle - middle + PI).rem_euclid(TAU) - PI;
+                (radius * angle).clamp(0.0, self.length)
+            }
+        }
+    }
+
+    /// Largest distance of its points from `p`.
+    fn reach(&self, p: &Vec3) -> f64 {
+        let ends = (self.point(0.0) - p).norm().max((self.point(self.length) - p).norm());
+        if self.radius.is_none() {
+            return ends;
+        }
+        // Across the centre, if that lies on it.
+        let s = self.nearest(&(self.at * 2.0 - p));
+        if s > 0.0 && s < self.length { ends.max((self.point(s) - p).norm()) } else { ends }
+    }
+
+    fn moved(&self, turn: &UnitQuaternion<f64>, by: &Vec3) -> Piece {
+        Piece { at: turn * self.at + by, u: turn * self.u, v: turn * self.v, ..*self }
+    }
+
+    /// Centre and radius of a ball that holds it.
+    pub fn ball(&self) -> (Vec3, f64) {
+        let center = (self.point(0.0) + self.point(self.length)) * 0.5;
+        (center, self.reach(&center) * (1.0 + 1e-12))
+    }
+}
+
+/// A closed curve.
+#[derive(Clone, Debug)]
+pub(crate) struct Curve {
+    pub pieces: Vec<Piece>,
+}
+
+/// A point of a curve, on a piece; a corner is no part of its neighbours' inside.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place {
+    pub piece: usize,
+    pub s: f64,
+    pub corner: bool,
+}
+
+impl Curve {
+    /// The form in its own frame, in units of `unit`; `tolerance` is that of biarcs, in the same units.
+    pub fn of(form: &Form, unit: f64, tolerance: f64) -> Result<Curve, String> {
+        let flat = |x: f64, y: f64| Vec3::new(x, y, 0.0) / unit;
+        let corners: Vec<Vec3>;
+        let rounding;
+        match form {
+            Form::Stadium { straight, radius } => {
+                let (h, r) = (0.5 * straight, *radius);
+                let half = |side: f64| half_circle(flat(side * h, 0.0), r / unit, side);
+                let pieces = match *straight == 0.0 {
+                    true => vec![half(1.0), half(-1.0)],
+                    false => vec![
+                        Piece::segment(flat(-h, -r), flat(h, -r)),
+                        half(1.0),
+                        Piece::segment(flat(h, r), flat(-h, r)),
+                        half(-1.0),
+                    ],
+                };
+                return Ok(Curve { pieces });
+            }
+            Form::Square { side, fillet } => {
+                let h = 0.5 * side;
+                corners = [(h, -h), (h, h), (-h, h), (-h, -h)].map(|(x, y)| flat(x, y)).to_vec();
+                rounding = fillet / unit;
+            }
+            Form::Hexagon { side, fillet } => {
+                let corner = |k: usize| {
+                    let (sin, cos) = (PI / 3.0 * k as f64).sin_cos();
+                    flat(side * cos, side * sin)
+                };
+                corners = (0..6).map(corner).collect();
+                rounding = fillet / unit;
+            }
+            Form::Polyline { points, fillet } => {
+                corners = points.iter().map(|p| Vec3::from(*p) / unit).collect();
+                rounding = fillet / unit;
+            }
+            Form::Ellipse { a, b } => {
+                let (a, b) = (a / unit, b / unit);
+                return Curve::smooth(4, tolerance, |t| {
+                    let (sin, cos) = t.sin_cos();
+                    [Vec3::new(a * cos, b * sin, 0.0), Vec3::new(-a * sin, b * cos, 0.0)]
+                });
+            }
+            Form::TorusKnot { p, q, circle_radius, a } => {
+                let (big, small) = (circle_radius / unit, a / unit);
+                return Curve::smooth(8 * p.max(*q) as usize, tolerance, |t| {
+                    let ((sp, cp), (sq, cq)) = ((p * t).sin_cos(), (q * t).sin_cos());
+                    let (rho, slope) = (big + small * cq, -small * q * sq);
+                    let at = Vec3::new(rho * cp, rho * sp, -small * sq);
+                    let along = Vec3::new(slope * cp - rho * p * sp, slope * sp + rho * p * cp, -small * q * cq);
+                    [at, along]
+                });
+            }
+        }
+        Curve::rounded(&corners, rounding)
+    }
+
+    fn whole(pieces: Vec<Option<Piece>>) -> Result<Curve, String> {
+        let pieces: Option<Vec<Piece>> = pieces.into_iter().collect();
+        pieces.map(|pieces| Curve { pieces }).ok_or_else(|| "a curve's form makes no curve".into())
+    }
+
+    fn rounded(corners: &[Vec3], radius: f64) -> Result<Curve, String> {
+        let n = corners.len();
+        let at = |k: usize| corners[k % n];
+        let way = |k: usize| (at(k + 1) - at(k)).normalize();
+        // What the arc at a corner takes of both edges: ϱ tan τ/2.
+        let taken = |k: usize| radius * (0.5 * way(k + n - 1).angle(&way(k))).tan();
+        let mut pieces = Vec::new();
+        for k in 0..n {
+            let (from, to) = (at(k) + way(k) * taken(k), at(k + 1) - way(k) * taken(k + 1));
+            if (to - from).norm() > SMOOTH * (at(k + 1) - at(k)).norm() {
+                pieces.push(Some(Piece::segment(from, to)));
+            }
+            if taken(k + 1) > 0.0 {
+                pieces.push(Piece::arc(to, way(k), at(k + 1) + way(k + 1) * taken(k + 1)));
+            }
+        }
+        Curve::whole(pieces)
+    }
+
+    /// Biarcs of equal spans, twice as many until seven points of each span are within the tolerance.
+    fn smooth(spans: usize, tolerance: f64, at: impl Fn(f64) -> [Vec3; 2]) -> Result<Curve, String> {
+        let mut spans = spans;
+        while 2 * spans <= MOST_PIECES {
+            let t = |x: f64| at(TAU * x / spans as f64);
+            let mut pieces = Vec::new();
+            let mut worst = 0.0_f64;
+            for k in 0..spans {
+                let ([from, leaves], [to, arrives]) = (t(k as f64), t(((k + 1) % spans) as f64));
+                let Some(pair) = two_arcs(from, leaves.normalize(), to, arrives.normalize()) else {
+                    return Err("a span of a smooth curve has no two arcs".into());
+                };
+                for part in 1..8 {
+                    let p = t(k as f64 + f64::from(part) / 8.0)[0];
+                    let away = pair.iter().map(|piece| (piece.point(piece.nearest(&p)) - p).norm());
+                    worst = worst.max(away.fold(f64::INFINITY, f64::min));
+                }
+                pieces.extend(pair);
+            }
+            if worst <= tolerance {
+                return Ok(Curve { pieces });
+            }
+            spans *= 2;
+        }
+        Err("a smooth curve needs too many arcs".into())
+    }
+
+    /// A circle: two halves.
+    pub fn ring(center: Vec3, normal: Vec3, radius: f64) -> Curve {
+        let (u, v) = frame(&normal);
+        let half =
+            |sign: f64| Piece { at: center, u: u * sign, v: v * sign, radius: Some(radius), length: PI * radius };
+        Curve { pieces: vec![half(1.0), half(-1.0)] }
+    }
+
+    pub fn moved(&self, turn: &UnitQuaternion<f64>, by: &Vec3) -> Curve {
+        Curve { pieces: self.pieces.iter().map(|piece| piece.moved(turn, by)).collect() }
+    }
+
+    /// Largest distance of its points from `p`.
+    pub fn reach(&self, p: &Vec3) -> f64 {
+        self.pieces.iter().map(|piece| piece.reach(p)).fold(0.0, f64::max)
+    }
+
+    /// Centre, normal and radius of the circle of which all pieces are arcs.
+    pub fn circle(&self) -> Option<(Vec3, Vec3, f64)> {
+        let of = |piece: &Piece| piece.radius.map(|radius| (piece.at, piece.u.cross(&piece.v), radius));
+        let first = of(self.pieces.first()?)?;
+        let same = |piece: &Piece| {
+            of(piece).is_some_and(|(at, normal, radius)| {
+                (at - first.0).norm() < ONE_CIRCLE
+                    && (normal - first.1).norm() < ONE_CIRCLE
+                    && (radius - first.2).abs() < ONE_CIRCLE
+            })
+        };
+        self.pieces.iter().all(same).then_some(first)
+    }
+
+    /// Whether pieces `k` − 1 and `k` meet in a corner.
+    fn is_corner(&self, k: usize) -> bool {
+        let n = self.pieces.len();
+        let before = &self.pieces[(k + n - 1) % n];
+        let (arrives, leaves) = (before.tangent(before.length), self.pieces[k % n].tangent(0.0));
+        arrives.cross(&leaves).norm() > SMOOTH || arrives.dot(&leaves) < 0.0
+    }
+
+    /// The nearest point to `p`. At a joint without a corner it is on the piece that has it inside, or the first.
+    pub fn nearest(&self, p: &Vec3) -> Place {
+        let away = |k: usize| {
+            let s = self.pieces[k].nearest(p);
+            (k, s, (self.pieces[k].point(s) - p).norm())
+        };
+        let all: Vec<(usize, f64, f64)> = (0..self.pieces.len()).map(away).collect();
+        let least = all.iter().map(|x| x.2).fold(f64::INFINITY, f64::min);
+        let inside = |x: &&(usize, f64, f64)| x.1 > 0.0 && x.1 < self.pieces[x.0].length;
+        let near = || all.iter().filter(|x| x.2 <= least + 1e-13);
+        let (piece, s, _) = near().find(inside).or_else(|| near().next()).copied().unwrap_or_default();
+        let length = self.pieces[piece].length;
+        let corner = s <= CORNER && self.is_corner(piece) || s >= length - CORNER && self.is_corner(piece + 1);
+        Place { piece, s, corner }
+    }
+}
+
+/// A point this near to a corner is at it, in reference radii.
+const CORNER: f64 = 1e-9;
+
+/// The half circle about `center`, to the side of +x or −x, counter-clockwise about z.
+fn half_circle(center: Vec3, radius: f64, side: f64) -> Piece {
+    Piece { at: center, u: Vec3::y() * -side, v: Vec3::x() * side, radius: Some(radius), length: PI * radius }
+}
+
+/// Two arcs from one point to another with these unit tangents, and one tangent where they meet: the middle of the middle leg of the polygon from,
+/// from + d t₀, to − d t₁, to, in which that leg is 2d long.
+fn two_arcs(from: Vec3, t0: Vec3, to: Vec3, t1: Vec3) -> Option<[Piece; 2]> {
+    let v = to - from;
+    // |v − d (t₀ + t₁)| = 2d.
+    let (square, linear, constant) = (2.0 * (1.0 - t0.dot(&t1)), v.dot(&(t0 + t1)), v.norm_squared());
+    let square = if square < 1e-3 { (t0 - t1).norm_squared() } else { square };
+    let root = (linear * linear + square * constant).sqrt();
+    let d = if linear >= 0.0 { constant / (linear + root) } else { (root - linear) / square };
+    let (one, other) = (from + t0 * d, to - t1 * d);
+    let (joint, along) = ((one + other) * 0.5, (other - one).try_normalize(0.0)?);
+    Some([Piece::arc(from, t0, joint)?, Piece::arc(joint, along, to)?])
+}
