@@ -171,7 +171,7 @@ pub(crate) fn linking_number(a: &Curve, b: &Curve, apart: f64) -> Result<i32, St
             let k = piece.curvature();
             let half = if k > 0.0 { (1.0 - (0.4 * apart * k).min(1.0)).acos() } else { PI };
             let n = (0.5 * piece.length * k / half).ceil().max(1.0);
-            if !(n <= CORNERS as f64) {
+            if n.is_nan() || n > CORNERS as f64 {
                 return Err(format!("curves {apart:.1e} R apart need too fine polygons"));
             }
             out.extend((0..n as usize).map(|i| piece.point(piece.length * i as f64 / n)));
