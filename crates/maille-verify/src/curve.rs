@@ -1,45 +1,10 @@
 //! Core curves that are no circles: closed curves of segments and arcs, from the forms of a design.
 
-use crate::sheet::{Vec3, frame};
-use nalgebra::UnitQuaternion;
-use serde::Deserialize;
+use crate::record::Form;
+use nalgebra::{UnitQuaternion, Vector3};
 use std::f64::consts::{PI, TAU};
 
-/// A form as it is written in a design.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub(crate) enum Form {
-    Stadium {
-        straight: f64,
-        radius: f64,
-    },
-    Square {
-        side: f64,
-        #[serde(default)]
-        fillet: f64,
-    },
-    Hexagon {
-        side: f64,
-        #[serde(default)]
-        fillet: f64,
-    },
-    Polyline {
-        points: Vec<[f64; 3]>,
-        #[serde(default)]
-        fillet: f64,
-    },
-    Ellipse {
-        a: f64,
-        b: f64,
-    },
-    TorusKnot {
-        p: f64,
-        q: f64,
-        #[serde(rename = "R")]
-        circle_radius: f64,
-        a: f64,
-    },
-}
+type Vec3 = Vector3<f64>;
 
 /// A segment (no curvature) or an arc: the point at arc length s is p + s t, or c + ϱ (u cos s/ϱ + v sin s/ϱ).
 #[derive(Clone, Copy, Debug)]
@@ -287,9 +252,8 @@ impl Curve {
         Err("a smooth curve needs too many arcs".into())
     }
 
-    /// A circle: two halves.
-    pub fn ring(center: Vec3, normal: Vec3, radius: f64) -> Curve {
-        let (u, v) = frame(&normal);
+    /// A circle: two halves. The vectors u and v are of length 1, in its plane and across each other.
+    pub fn ring(center: Vec3, (u, v): (Vec3, Vec3), radius: f64) -> Curve {
         let half =
             |sign: f64| Piece { at: center, u: u * sign, v: v * sign, radius: Some(radius), length: PI * radius };
         Curve { pieces: vec![half(1.0), half(-1.0)] }

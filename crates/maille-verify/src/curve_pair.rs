@@ -13,13 +13,15 @@
 
 use crate::{
     apart::Apart,
-    curvature::Local,
     curve::{Curve, Piece, Place},
     linking::gauss,
     sheet::{Sheet, Vec3},
 };
-use nalgebra::{Matrix2, SMatrix, UnitQuaternion, Vector2};
+use nalgebra::{Matrix2, SMatrix, SVector, UnitQuaternion, Vector2};
 use std::f64::consts::PI;
+
+/// Derivatives in translation and turn of a's element, then of b's; the last entry is that along a ring, for pairs of rings.
+type Local = SVector<f64, 13>;
 
 /// Boxes that are examined at most.
 const BOXES: usize = 4_000_000;
@@ -315,7 +317,7 @@ impl CurveContact {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::curve::Form;
+    use crate::{record::Form, sheet::frame};
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 
@@ -378,7 +380,7 @@ mod tests {
             let circle = |at: Vec3, n: Vec3| maille_geometry::Circle::new(at, nalgebra::Unit::new_normalize(n), 1.0);
             let (a, b) = (circle(Vec3::zeros(), n), circle(by, m));
             let Some(d) = crate::apart::some_distance(&a, &b, 1e-14).filter(|d| *d > 1e-3) else { continue };
-            let curves = [Curve::ring(Vec3::zeros(), n, 1.0), Curve::ring(by, m, 1.0)];
+            let curves = [Curve::ring(Vec3::zeros(), frame(&n), 1.0), Curve::ring(by, frame(&m), 1.0)];
             let own = linking_number(&curves[0], &curves[1], d);
             assert_eq!(own, crate::linking::linking_number(&a, &b, d));
         }

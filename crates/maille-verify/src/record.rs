@@ -2,7 +2,6 @@
 //!
 //! Only the fields that are verified are read; others may be there.
 
-use crate::curve::Form;
 use serde::{Deserialize, de::DeserializeOwned};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
@@ -94,6 +93,42 @@ impl Design {
     pub fn is_round(&self) -> bool {
         self.elements.iter().all(|element| element.curves.is_empty())
     }
+}
+
+/// A form as it is written in a design.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Form {
+    Stadium {
+        straight: f64,
+        radius: f64,
+    },
+    Square {
+        side: f64,
+        #[serde(default)]
+        fillet: f64,
+    },
+    Hexagon {
+        side: f64,
+        #[serde(default)]
+        fillet: f64,
+    },
+    Polyline {
+        points: Vec<[f64; 3]>,
+        #[serde(default)]
+        fillet: f64,
+    },
+    Ellipse {
+        a: f64,
+        b: f64,
+    },
+    TorusKnot {
+        p: f64,
+        q: f64,
+        #[serde(rename = "R")]
+        circle_radius: f64,
+        a: f64,
+    },
 }
 
 #[derive(Clone, Debug, Deserialize)]

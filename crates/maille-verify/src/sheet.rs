@@ -150,7 +150,9 @@ impl Sheet {
     /// The core of a ring in its element's frame, as a curve.
     pub fn own_curve(&self, ring: usize) -> Curve {
         let ring = &self.rings[ring];
-        ring.curve.as_ref().map_or_else(|| Curve::ring(ring.arm, ring.normal, ring.radius), |curve| (**curve).clone())
+        ring.curve
+            .as_ref()
+            .map_or_else(|| Curve::ring(ring.arm, frame(&ring.normal), ring.radius), |curve| (**curve).clone())
     }
 
     /// The core of a ring in the cell `shift` of a flat sheet, as a curve.
