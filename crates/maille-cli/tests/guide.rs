@@ -98,8 +98,13 @@ fn check(run: bool) {
             let mut printed = String::new();
             for command in &check.commands {
                 let fails = command[0] == "!";
+                // The reader stands in the repository, where the examples are.
+                let of_repository = |word: &String| match word.starts_with("examples/") {
+                    true => format!("{}/../../{word}", env!("CARGO_MANIFEST_DIR")),
+                    false => word.clone(),
+                };
                 let output = Command::new(env!("CARGO_BIN_EXE_maille"))
-                    .args(&command[usize::from(fails)..])
+                    .args(command[usize::from(fails)..].iter().map(of_repository))
                     .current_dir(folder.path())
                     .env("NO_COLOR", "1")
                     .output()
