@@ -55,7 +55,7 @@ impl Piece {
         (radius.is_finite() && half_rad > 0.0).then_some(piece)
     }
 
-    pub fn point(&self, s: f64) -> Vec3 {
+    pub fn position(&self, s: f64) -> Vec3 {
         match self.radius {
             None => self.at + self.u * s,
             Some(radius) => {
@@ -108,13 +108,13 @@ impl Piece {
 
     /// Largest distance of its points from `p`.
     fn reach(&self, p: &Vec3) -> f64 {
-        let ends = (self.point(0.0) - p).norm().max((self.point(self.length) - p).norm());
+        let ends = (self.position(0.0) - p).norm().max((self.position(self.length) - p).norm());
         if self.radius.is_none() {
             return ends;
         }
         // Across the centre, if that lies on it.
         let s = self.nearest(&(self.at * 2.0 - p));
-        if s > 0.0 && s < self.length { ends.max((self.point(s) - p).norm()) } else { ends }
+        if s > 0.0 && s < self.length { ends.max((self.position(s) - p).norm()) } else { ends }
     }
 
     fn moved(&self, turn: &UnitQuaternion<f64>, by: &Vec3) -> Piece {
@@ -123,7 +123,7 @@ impl Piece {
 
     /// Centre and radius of a ball that holds it.
     pub fn ball(&self) -> (Vec3, f64) {
-        let center = (self.point(0.0) + self.point(self.length)) * 0.5;
+        let center = (self.position(0.0) + self.position(self.length)) * 0.5;
         (center, self.reach(&center) * (1.0 + 1e-12))
     }
 }
@@ -239,7 +239,7 @@ impl Curve {
                 };
                 for part in 1..8 {
                     let p = t(k as f64 + f64::from(part) / 8.0)[0];
-                    let away = pair.iter().map(|piece| (piece.point(piece.nearest(&p)) - p).norm());
+                    let away = pair.iter().map(|piece| (piece.position(piece.nearest(&p)) - p).norm());
                     worst = worst.max(away.fold(f64::INFINITY, f64::min));
                 }
                 pieces.extend(pair);
@@ -294,7 +294,7 @@ impl Curve {
     pub fn nearest(&self, p: &Vec3) -> Place {
         let away = |k: usize| {
             let s = self.pieces[k].nearest(p);
-            (k, s, (self.pieces[k].point(s) - p).norm())
+            (k, s, (self.pieces[k].position(s) - p).norm())
         };
         let all: Vec<(usize, f64, f64)> = (0..self.pieces.len()).map(away).collect();
         let least = all.iter().map(|x| x.2).fold(f64::INFINITY, f64::min);

@@ -94,7 +94,7 @@ pub(crate) fn some_distance(a: &Curve, b: &Curve, slack: f64) -> Option<f64> {
 fn nearest_of(x: &Piece, y: &Piece) -> f64 {
     let part = |k: usize| (k as f64 + 0.5) / SEEDS as f64;
     let seeds = (0..SEEDS * SEEDS).map(|k| [part(k / SEEDS) * x.length, part(k % SEEDS) * y.length]);
-    let away = |at: &[f64; 2]| (y.point(at[1]) - x.point(at[0])).norm();
+    let away = |at: &[f64; 2]| (y.position(at[1]) - x.position(at[0])).norm();
     let best = seeds.min_by(|p, q| away(p).total_cmp(&away(q))).unwrap_or_default();
     nearer(x, y, best)
 }
@@ -102,7 +102,7 @@ fn nearest_of(x: &Piece, y: &Piece) -> f64 {
 /// A distance near two points, given by their arc lengths, by steps of halving size.
 fn nearer(x: &Piece, y: &Piece, from: [f64; 2]) -> f64 {
     let (mut at, mut step) = (from, [0.25 * x.length, 0.25 * y.length]);
-    let distance = |at: [f64; 2]| (y.point(at[1]) - x.point(at[0])).norm();
+    let distance = |at: [f64; 2]| (y.position(at[1]) - x.position(at[0])).norm();
     let mut least = distance(at);
     while step[0] > 1e-12 * x.length {
         let mut moved = false;
@@ -129,7 +129,7 @@ struct At {
 
 impl At {
     fn new(x: &Piece, y: &Piece, s: f64, t: f64) -> At {
-        let way = y.point(t) - x.point(s);
+        let way = y.position(t) - x.position(s);
         let (along_a, along_b) = (x.tangent(s), y.tangent(t));
         let across = -along_a.dot(&along_b);
         At {
@@ -176,7 +176,7 @@ pub(crate) fn linking_number(a: &Curve, b: &Curve, apart: f64) -> Result<i32, St
             if n.is_nan() || n > CORNERS as f64 {
                 return Err(format!("curves {apart:.1e} R apart need too fine polygons"));
             }
-            out.extend((0..n as usize).map(|i| piece.point(piece.length * i as f64 / n)));
+            out.extend((0..n as usize).map(|i| piece.position(piece.length * i as f64 / n)));
         }
         if out.len() > CORNERS {
             return Err(format!("curves {apart:.1e} R apart need polygons of {} corners", out.len()));
@@ -220,7 +220,7 @@ impl CurveContact {
     fn at(&self, poses: &[(Vec3, UnitQuaternion<f64>); 2], s: [f64; 2]) -> [[Vec3; 3]; 2] {
         [0, 1].map(|k| {
             let (piece, (at, turn)) = (&self.own[k].pieces[self.places[k].piece], &poses[k]);
-            [turn * piece.point(s[k]) + at, turn * piece.tangent(s[k]), turn * piece.bend(s[k])]
+            [turn * piece.position(s[k]) + at, turn * piece.tangent(s[k]), turn * piece.bend(s[k])]
         })
     }
 
@@ -332,7 +332,7 @@ mod tests {
     }
 
     fn points(curve: &Curve, n: usize) -> Vec<Vec3> {
-        let of = |piece: &Piece| (0..n).map(|k| piece.point(piece.length * k as f64 / n as f64)).collect::<Vec<_>>();
+        let of = |piece: &Piece| (0..n).map(|k| piece.position(piece.length * k as f64 / n as f64)).collect::<Vec<_>>();
         curve.pieces.iter().flat_map(of).collect()
     }
 
