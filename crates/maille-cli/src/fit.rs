@@ -222,7 +222,6 @@ fn one(
 
 /// What is asked.
 fn request(args: &Args, input: &Input, free: &[FreeSpec], targets: &[Target]) -> Result<FitRequest> {
-    input.rings_alone("a fit")?;
     // What is wrong with the design itself is told before anything else.
     input.compile(&Design { allow_initial_overlap: true, ..input.design.clone() }, maille::Cell::PRIMITIVE)?;
     let Tile([n, m]) = args.supercell.unwrap_or(Tile([1, 1]));

@@ -79,19 +79,6 @@ pub struct Input {
 }
 
 impl Input {
-    /// Refuses a design with curves for `what` is known of rings alone.
-    pub fn rings_alone(&self, what: &str) -> Result<()> {
-        if self.design.elements.iter().all(|e| e.curves.is_empty()) {
-            return Ok(());
-        }
-        let problem = format!("{} has curves: {what} is there for rings alone", self.design.name);
-        Err(crate::exit::wrong(
-            crate::exit::DESIGN,
-            problem,
-            "limits, boundaries, rolls, meshes and pictures take curves",
-        ))
-    }
-
     /// Reads the design as [`read`](Input::read) does, and sets parameters of it.
     pub fn read_with(name: &str, settings: &[Setting], minor_radius: Option<f64>) -> Result<Input> {
         let mut input = Self::read(name)?;

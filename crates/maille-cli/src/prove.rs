@@ -84,7 +84,6 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let input = args.design.read()?;
     let file = args.out.clone().unwrap_or_else(|| usual_file(args, &input));
     args.replace.check(&file)?;
-    input.rings_alone("a proof by boxes")?;
     input.compile(&input.design, Cell::PRIMITIVE)?;
     let design = serde_json::to_value(&input.design).into_diagnostic().wrap_err("cannot write the design")?;
     // What cannot be proved is refused before anything is solved.

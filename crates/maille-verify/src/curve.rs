@@ -307,6 +307,21 @@ impl Curve {
     }
 }
 
+impl Curve {
+    /// The same place on the piece that meets its own there without a corner.
+    pub fn across_joint(&self, place: Place) -> Option<Place> {
+        let n = self.pieces.len();
+        let (start, end) = (place.s <= JOINT, place.s >= self.pieces[place.piece].length - JOINT);
+        if place.corner || !(start || end) {
+            return None;
+        }
+        let piece = if end { (place.piece + 1) % n } else { (place.piece + n - 1) % n };
+        Some(Place { piece, s: if end { 0.0 } else { self.pieces[piece].length }, corner: false })
+    }
+}
+
+/// A point this near to where two pieces meet is on both: rounding.
+const JOINT: f64 = 1e-13;
 /// A point this near to a corner is at it, in reference radii.
 const CORNER: f64 = 1e-9;
 

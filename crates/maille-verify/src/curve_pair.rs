@@ -212,7 +212,17 @@ impl CurveContact {
             let (at, turn): &(Vec3, UnitQuaternion<f64>) = &poses[k];
             own[k].nearest(&(turn.inverse() * (points[k] - at)))
         };
-        let places = [place(0), place(1)];
+        let mut places = [place(0), place(1)];
+        // Where two pieces meet the second derivative jumps. The larger one along the curve is the stricter: with it the least distance grows most.
+        for k in 0..2 {
+            if let Some(other) = own[k].across_joint(places[k]) {
+                let way = poses[k].1.inverse() * (points[1] - points[0]) * (2.0 * k as f64 - 1.0);
+                let bend = |at: &Place| way.dot(&own[k].pieces[at.piece].bend(at.s));
+                if bend(&other) > bend(&places[k]) {
+                    places[k] = other;
+                }
+            }
+        }
         CurveContact { places, poses, touching: sheet.touching(a, b), own }
     }
 

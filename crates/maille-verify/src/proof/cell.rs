@@ -50,6 +50,9 @@ fn flipped(sign: f64, by: f64) -> bool {
 impl Cell {
     /// The cell of a design, and all its states with l1 of at least `l1_from`. What is wrong with the question otherwise.
     pub(crate) fn new(design: &Design, direction_deg: f64, l2: f64, l1_from: f64) -> Result<Cell, String> {
+        if !design.is_round() {
+            return Err("the cell has curves; proofs are of rings alone".into());
+        }
         let rings: Vec<_> = design.elements.iter().flat_map(|e| e.rings.iter().map(move |ring| (e, ring))).collect();
         let ([(e0, r0), (e1, r1)], 2) = (&rings[..], design.elements.len()) else {
             let (elements, rings) = (design.elements.len(), rings.len());

@@ -116,7 +116,7 @@ pub struct FitProgress {
 /// on from there.
 ///
 /// # Errors
-/// For no starts, numbers without bounds or a tolerance that is not positive; what is wrong with the given design, and where it has no certified limit
+/// For a design with curves, no starts, numbers without bounds or a tolerance that is not positive; what is wrong with the given design, and where it has no certified limit
 /// for a target, or no factor of the shape above 0, or was cancelled before it was solved.
 pub fn fit(
     family: &Family<'_>,
@@ -132,6 +132,10 @@ pub fn fit(
     let written = (family.make)(&first).map_err(head)?;
     let links = Sheet::in_cells(&written, options.cells.clone()).map_err(head)?.model().links.clone();
     let model = Model::compile(&written, LatticeCell::PRIMITIVE).map_err(head)?;
+    if !model.is_round() {
+        let help = "vary its numbers by a study instead";
+        return Err(InvalidInput::new("design", "has curves, for which no derivatives are known yet", help));
+    }
     let symmetries = family.rates(&first).map(|rates| permutations(&model, &rates)).unwrap_or_default();
     let solved = Cell::new(0);
     let search = Search {

@@ -3,16 +3,15 @@
 mod minima;
 mod tree;
 
-pub use minima::CurveMinimum;
-pub use minima::curve_distance_minima;
-pub(crate) use minima::distance_lower_bound;
+pub use minima::{CurveMinimum, curve_distance_minima};
+pub(crate) use minima::{curve_distance, distance_lower_bound};
 
 use self::tree::Node;
 use crate::{
     design::shape::SMOOTH,
     state::{Pose, images::Image},
 };
-use maille_geometry::{Circle, Piece, Vec3};
+use maille_geometry::{Circle, Piece, Place, Vec3};
 use nalgebra::UnitQuaternion;
 use std::{borrow::Cow, f64::consts::TAU, sync::Arc};
 
@@ -150,6 +149,16 @@ impl Curve {
             curvature: of.curvature(t),
             smooth: (t > 0.0 || joint(piece)) && (t < 1.0 || joint(piece + 1)),
             piece,
+        }
+    }
+
+    /// Derivative of the tangent on the piece that meets another one at this end.
+    fn beyond(&self, piece: usize, end: Place) -> Option<Vec3> {
+        let n = self.pieces.len();
+        match end {
+            Place::Inside => None,
+            Place::Start => Some(self.pieces[(piece + n - 1) % n].curvature(1.0)),
+            Place::End => Some(self.pieces[(piece + 1) % n].curvature(0.0)),
         }
     }
 

@@ -16,7 +16,7 @@ use crate::{
     lattice::Shift,
     model::{
         Model,
-        curve::{Core, curve_distance_minima},
+        curve::{Core, curve_distance, curve_distance_minima},
     },
     state::State,
 };
@@ -65,7 +65,7 @@ pub fn core_distance(model: &Model, state: &State, pair: &RingPair) -> f64 {
     let (a, b) = cores(model, state, pair);
     match (&a, &b) {
         (Core::Circle(a), Core::Circle(b)) => circle_distance_minima(a, b).closest().distance,
-        _ => curve_distance_minima(&a, &b, 0.0)[0].distance,
+        _ => curve_distance(&a, &b),
     }
 }
 
@@ -78,8 +78,8 @@ pub fn closest_points(model: &Model, state: &State, [(a, cell_a), (b, cell_b)]: 
             [minimum.point_a, minimum.point_b]
         }
         _ => {
-            let minimum = curve_distance_minima(&a, &b, 0.0)[0];
-            [minimum.a.point, minimum.b.point]
+            let minima = curve_distance_minima(&a, &b, 0.0);
+            minima.first().map_or([Vec3::repeat(f64::NAN); 2], |m| [m.a.point, m.b.point])
         }
     }
 }
@@ -115,10 +115,7 @@ pub fn links(model: &Model, state: &State, pairs: &[RingPair]) -> Vec<Link> {
             let number = match (&a, &b) {
                 (Core::Circle(a), Core::Circle(b)) => linking_number(a, b),
                 // Where it cannot be told the two are too near to be kept apart.
-                _ => {
-                    let apart = curve_distance_minima(&a, &b, 0.0)[0].distance;
-                    curve_linking_number(&a.pieces(), &b.pieces(), apart).unwrap_or(0)
-                }
+                _ => curve_linking_number(&a.pieces(), &b.pieces(), curve_distance(&a, &b)).unwrap_or(0),
             };
             Link { pair, number }
         })

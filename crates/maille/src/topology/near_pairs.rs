@@ -62,7 +62,10 @@ impl NearPair {
 
     /// Least core distance.
     pub(crate) fn distance(&self) -> f64 {
-        self.minima().first().map_or_else(|| self.curve_minima(0.0)[0].distance, |minimum| minimum.distance)
+        match self.circles() {
+            Some(_) => self.minima()[0].distance,
+            None => self.curve_minima(0.0).first().map_or(f64::NAN, |minimum| minimum.distance),
+        }
     }
 
     /// Whether the gap is at most `band`; the minima are looked for only where the floor does not tell.

@@ -1,6 +1,6 @@
 //! The thesis's side signs (§4.3.3): on which side of the other rings of its element a neighbour passes through a ring.
 //!
-//! A rule of the thesis, for comparison. It is no invariant: a sign can flip while nothing is crossed. What keeps the
+//! A rule of the thesis for circles, for comparison. It is no invariant: a sign can flip while nothing is crossed. What keeps the
 //! topology is the step bound ([`super::step_bound`]).
 
 use super::links;
@@ -66,7 +66,8 @@ impl SideSigns {
             for RingPair { ring_a: through, ring_b: neighbour, shift } in link.pair.both_ways() {
                 for plane in model.elements[model.rings[through].element].rings.clone() {
                     let pair = RingPair { ring_a: plane, ring_b: neighbour, shift };
-                    if plane == through || !links(model, &model.start, &[pair]).is_empty() {
+                    let round = [through, neighbour, plane].iter().all(|ring| model.rings[*ring].is_round());
+                    if !round || plane == through || !links(model, &model.start, &[pair]).is_empty() {
                         continue;
                     }
                     let mut side = Side { through, neighbour, shift, plane, positive: true };

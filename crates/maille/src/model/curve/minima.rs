@@ -34,7 +34,7 @@ struct Pair<'a> {
     found: Vec<CurveMinimum>,
 }
 
-/// All local minima of the distance of two core curves up to `far`, and the least one in any case; ascending.
+/// All local minima of the distance of two core curves up to `far`, and the least one in any case; ascending. None of curves that are not finite.
 pub fn curve_distance_minima(a: &Core, b: &Core, far: f64) -> Vec<CurveMinimum> {
     let ((own, at_a), (other, at_b)) = (a.curve(), b.curve());
     let mut pair =
@@ -42,9 +42,15 @@ pub fn curve_distance_minima(a: &Core, b: &Core, far: f64) -> Vec<CurveMinimum> 
     pair.visit(0, 0, &pair.moved(0));
     let mut out = pair.found;
     // A distance that is computed anew differs in its last digit.
-    out.retain(|m| m.distance <= far.max(pair.least) * (1.0 + SAME));
+    let most = far.max(pair.least) * (1.0 + SAME);
+    out.retain(|m| m.distance <= most);
     out.sort_by(|x, y| x.distance.total_cmp(&y.distance));
     out.into_iter().map(|m| CurveMinimum { a: m.a.moved(&at_a), b: m.b.moved(&at_a), ..m }).collect()
+}
+
+/// The least distance of two core curves; NaN of such that are not finite.
+pub(crate) fn curve_distance(a: &Core, b: &Core) -> f64 {
+    curve_distance_minima(a, b, 0.0).first().map_or(f64::NAN, |minimum| minimum.distance)
 }
 
 /// The pose of b in the frame of a.
@@ -136,8 +142,19 @@ impl Pair<'_> {
             Place::End => 1.0,
             Place::Inside => piece.nearest(point),
         };
-        let a = self.a.at(i, t(of_a, m.place_a, &m.point_a));
-        let b = self.b.at(j, t(of_b, m.place_b, &m.point_b)).moved(&self.motion);
+        let mut a = self.a.at(i, t(of_a, m.place_a, &m.point_a));
+        let mut b = self.b.at(j, t(of_b, m.place_b, &m.point_b));
+        // Where pieces meet the second derivative jumps. The larger one along the curve keeps the contact nearer to where it is: no motion
+        // then raises the distance by more than is counted.
+        let way = m.point_b - m.point_a;
+        if let Some(other) = self.a.beyond(i, m.place_a).filter(|other| (other - a.curvature).dot(&way) < 0.0) {
+            a.curvature = other;
+        }
+        let back = self.motion.rotation.inverse() * way;
+        if let Some(other) = self.b.beyond(j, m.place_b).filter(|other| (other - b.curvature).dot(&back) > 0.0) {
+            b.curvature = other;
+        }
+        let b = b.moved(&self.motion);
         CurveMinimum { distance: (a.point - b.point).norm(), a, b }
     }
 
