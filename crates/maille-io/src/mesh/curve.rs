@@ -131,7 +131,7 @@ fn corner(point: Vec3, before: Vec3, after: Vec3, along: f64, small: f64, share:
     (1..steps).map(|k| Section { point, tangent: tangent(k), along }).collect()
 }
 
-/// For each section two unit vectors across the tangent, right-handed with it.
+/// For each section two unit vectors u, v across the tangent, u × v against it: so faces look outward.
 fn frames(sections: &[Section], length: f64) -> Vec<[Vec3; 2]> {
     let carried = |u: Vec3, from: &Vec3, to: &Vec3| {
         let turned = Rotation3::rotation_between(from, to).map_or(u, |rotation| rotation * u);
@@ -150,7 +150,77 @@ fn frames(sections: &[Section], length: f64) -> Vec<[Vec3; 2]> {
         let back =
             Rotation3::from_axis_angle(&Unit::new_normalize(section.tangent), -missed_rad * section.along / length);
         let u = back * u;
-        [u, section.tangent.cross(&u)]
+        [u, u.cross(&section.tangent)]
     };
     sections.iter().zip(&u).map(turned).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::read_design;
+    use maille::{Cell, model::Model};
+    use std::{collections::HashMap, f64::consts::PI};
+
+    fn curve(form: &str) -> Curve {
+        let text = format!(
+            "name = \"a\"\nminor_radius = 0.1\nreference_radius = 1.0\n[lattice]\na1 = [9.0, 0.0, 0.0]\na2 = [0.0, 9.0, 0.0]\n\
+             [[elements]]\nname = \"e\"\ncenter = [0.0, 0.0, 0.0]\ncurves = [{{ {form} }}]\n"
+        );
+        let model = Model::compile(&read_design("a", &text).unwrap(), Cell::PRIMITIVE).unwrap();
+        model.rings[0].curve.as_deref().unwrap().clone()
+    }
+
+    const FORMS: [&str; 5] = [
+        "stadium = { straight = 2.0, radius = 0.5 }",
+        "square = { side = 1.6 }",
+        "hexagon = { side = 1.0, fillet = 0.3 }",
+        "ellipse = { a = 1.4, b = 0.8 }",
+        "torus_knot = { p = 1, q = 4, R = 1.0, a = 0.4 }",
+    ];
+
+    /// Closed, outward, within what it says of the tube, and not farther outside than it says.
+    #[test]
+    fn meshes_are_closed_and_near_their_tubes() {
+        for form in FORMS {
+            let curve = curve(form);
+            for fineness in [Fineness::Tolerance(0.02), Fineness::Tolerance(0.004), Fineness::Segments(40, None)] {
+                let mesh = curve_mesh(&curve, [1.0, 0.1], fineness, 1.0, 1.0).unwrap();
+                let mut edges: HashMap<(usize, usize), usize> = HashMap::new();
+                for [a, b, c] in mesh.triangles() {
+                    [(a, b), (b, c), (c, a)].into_iter().for_each(|edge| *edges.entry(edge).or_default() += 1);
+                }
+                let twice = |(&(a, b), &count): (&(usize, usize), &usize)| count == 1 && edges.contains_key(&(b, a));
+                assert!(edges.iter().all(twice), "{form}");
+                assert_eq!(mesh.vertices.len() + mesh.triangle_count(), edges.len() / 2, "{form}");
+                // By Pappus a section sweeps its area times the length; round a corner it turns about its middle, and sweeps nothing.
+                let v = &mesh.vertices;
+                let volume: f64 = mesh.triangles().map(|[a, b, c]| v[a].dot(&v[b].cross(&v[c])) / 6.0).sum();
+                let (tube, skin) = (PI * 0.01 * curve.length(), 2.0 * PI * 0.1 * curve.length());
+                assert!((volume - tube).abs() < skin * mesh.chordal_error(), "{form}: {volume} of {tube}");
+                let away = |p: &Vec3| {
+                    let points = curve.pieces.iter().map(|piece| (piece.point(piece.nearest(p)) - p).norm());
+                    points.fold(f64::INFINITY, f64::min) - 0.1
+                };
+                // Inside a sharp bend the two straight tubes run into each other.
+                let sharp = form.starts_with("square");
+                for corners in mesh.triangles() {
+                    let [a, b, c] = corners.map(|k| v[k]);
+                    for p in [a, (a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5, (a + b + c) / 3.0] {
+                        let away = away(&p);
+                        assert!(away < mesh.protrusion() + 1e-9, "{form}: {away} outside");
+                        assert!(sharp || away > -mesh.chordal_error() - 1e-9, "{form}: {away} inside");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_makes_no_tube_is_refused() {
+        let curve = curve(FORMS[0]);
+        let of = |fineness| curve_mesh(&curve, [1.0, 0.1], fineness, 1.0, 1.0).map(|mesh| mesh.segments);
+        assert!(matches!(of(Fineness::Tolerance(1e-9)), Err(MeshError::TooFine { .. })));
+        assert!(matches!(of(Fineness::Segments(40, Some(2))), Err(MeshError::TooCoarse)));
+    }
 }
