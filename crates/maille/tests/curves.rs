@@ -333,3 +333,45 @@ fn links_of_curves_are_the_same_in_every_cell() {
     assert_eq!(one.links.len() * 4, four.links.len());
     assert!(close_pairs(&four, &four.start, 0.0).len() >= four.links.len());
 }
+
+/// Sides beside each other, nearly parallel: to first order the rows say how near the curves come after any small motion.
+#[test]
+fn rows_of_sides_beside_each_other_foresee_the_gap() {
+    let mut rng = ChaCha8Rng::seed_from_u64(11);
+    for shape in [
+        Shape::Stadium { straight: 1.0, radius: 0.7 },
+        Shape::Square { side: 2.0, fillet: 0.0 },
+        Shape::Hexagon { side: 1.1, fillet: 0.2 },
+    ] {
+        let mut design = chain(shape, 0.05, 40.0);
+        design.elements[1].curves[0].normal = design.elements[0].curves[0].normal;
+        design.reference_radius = 1.0;
+        let mut model = compiled(&design);
+        let flat = model.start.core(&model, 0, [0, 0]);
+        let wide = flat.extent(&Vec3::y()).map(f64::abs)[0] + flat.extent(&Vec3::y())[1];
+        // Side by side, one shifted along the sides and tilted by less than can be seen.
+        model.start.poses[1].position = model.start.poses[0].position + Vec3::new(0.4, wide + 0.1001, 0.0);
+        model.start.poses[1].rotation = UnitQuaternion::from_scaled_axis(Vec3::new(0.0, 0.0, 1e-6));
+        let parameters = vec![Parameter { weight: 1.0, ..Parameter::default() }];
+        let family = LatticeFamily { base: [model.start.a1, model.start.a2], parameters, metric: None, roll: None };
+        let program = SheetProgram::new(&model, &family);
+        let x = program.posed(model.start.clone(), vec![0.0]);
+        let n = program.objective().len();
+        let rows = program.rows(&x, 0.05, Derivatives::First);
+        for _ in 0..40 {
+            let step: Vec<f64> = (0..n).map(|_| 1e-3 * rng.random_range(-1.0..1.0)).collect();
+            let after = |row: &Row| {
+                let held = row.columns.iter().zip(&row.gradient).filter(|(c, _)| **c < n);
+                row.gap + held.map(|(c, g)| g * step[*c]).sum::<f64>()
+            };
+            let foreseen = rows.iter().map(after).fold(f64::INFINITY, f64::min);
+            let there = program.rows(&program.moved(&x, &step), 0.1, Derivatives::First);
+            let gap = there.iter().map(|row| row.gap).fold(f64::INFINITY, f64::min);
+            assert!(
+                (gap - foreseen).abs() < 1e-4,
+                "{:?}: {gap}, foreseen {foreseen}",
+                design.elements[0].curves[0].shape
+            );
+        }
+    }
+}

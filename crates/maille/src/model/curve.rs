@@ -152,6 +152,17 @@ impl Curve {
         }
     }
 
+    /// The pieces that come within an arc length of one of its points.
+    fn pieces_within(&self, point: &CurvePoint, away: f64) -> Vec<usize> {
+        let (n, whole) = (self.pieces.len(), self.length());
+        let at = point.angle_rad / TAU * whole;
+        let ahead = |from: f64, to: f64| (to - from).rem_euclid(whole) <= away;
+        let mut out = vec![point.piece];
+        out.extend((1..n).map(|k| (point.piece + k) % n).take_while(|k| ahead(at, self.lengths[*k])));
+        out.extend((1..n).map(|k| (point.piece + n - k) % n).take_while(|k| ahead(self.lengths[*k + 1], at)));
+        out
+    }
+
     /// Derivative of the tangent on the piece that meets another one at this end.
     fn beyond(&self, piece: usize, end: Place) -> Option<Vec3> {
         let n = self.pieces.len();
@@ -245,6 +256,11 @@ impl Core {
     pub(crate) fn on_piece(&self, piece: usize, t: f64) -> CurvePoint {
         let (curve, pose) = self.curve();
         curve.at(piece, t).moved(&pose)
+    }
+
+    /// The pieces that come within an arc length of one of its points.
+    pub(crate) fn pieces_within(&self, point: &CurvePoint, away: f64) -> Vec<usize> {
+        self.curve().0.pieces_within(point, away)
     }
 
     /// The point at an angle: see [`CurvePoint::angle_rad`].

@@ -98,3 +98,76 @@ impl CurveContact {
         (out - grad * grad.transpose()) / distance
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use maille_geometry::{Circle, Piece};
+    use nalgebra::UnitQuaternion;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    /// A circle near the origin of its frame.
+    fn circle(rng: &mut ChaCha8Rng) -> Piece {
+        let mut vector = || Vec3::from_fn(|_, _| rng.random_range(-0.5..0.5));
+        let (center, normal) = (vector(), vector());
+        Piece::circle(Circle::new(center, nalgebra::Unit::new_normalize(normal), 0.8))
+    }
+
+    /// The point at `t` of a piece as a rotation and a place have it.
+    fn point(piece: &Piece, t: f64) -> CurvePoint {
+        let (point, tangent, curvature) = (piece.point(t), piece.tangent(t), piece.curvature(t));
+        CurvePoint { point, angle_rad: 0.0, tangent, curvature, smooth: true, piece: 0 }
+    }
+
+    /// Where points move and where they are held: the Hessian is the derivative of the gradient at the points that are then nearest.
+    #[test]
+    fn hessians_are_those_of_gradients() {
+        let mut rng = ChaCha8Rng::seed_from_u64(3);
+        for case in 0..60 {
+            let pieces = [circle(&mut rng), circle(&mut rng)];
+            let between = Vec3::new(3.0, 0.0, 0.0) + Vec3::from_fn(|_, _| rng.random_range(-0.5..0.5));
+            let moves = [case % 2 == 0, case / 2 % 2 == 0];
+            // Places on the pieces, from which those that move go to where they are nearest.
+            let held = [0, 1].map(|_| rng.random_range(0.0..1.0));
+            let at = |y: &Grad| {
+                let [x, turn_a, turn_b] = [0, 3, 6].map(|k| Vec3::new(y[k], y[k + 1], y[k + 2]));
+                let turned =
+                    |piece: &Piece, turn: Vec3, to: Vec3| piece.moved(&UnitQuaternion::from_scaled_axis(turn), &to);
+                let a = turned(&pieces[0], turn_a, Vec3::zeros());
+                let b = turned(&pieces[1], turn_b, between + x);
+                let mut t = held;
+                for _ in 0..400 {
+                    for k in 0..2 {
+                        if moves[k] {
+                            let [from, to] = if k == 0 { [&a, &b] } else { [&b, &a] };
+                            t[k] = from.nearest(&to.point(t[1 - k]));
+                        }
+                    }
+                }
+                let points = [point(&a, t[0]), point(&b, t[1])];
+                CurveContact { moves, ..CurveContact::of(points, &Vec3::zeros(), &(between + x)) }
+            };
+            let here = at(&Grad::zeros());
+            if moves == [true, true] && here.along().symmetric_eigenvalues().min() < 0.3 {
+                continue;
+            }
+            let hessian = here.hessian();
+            let h = 1e-5;
+            for k in 0..9 {
+                let mut step = Grad::zeros();
+                step[k] = h;
+                // The arms turn with the pose: derivatives by α and β are those at the pose from which they turn, to first order.
+                let slope = (at(&step).gradient().1 - at(&-step).gradient().1) / (2.0 * h);
+                for c in 0..3 {
+                    let error = (slope[c] - hessian[(c, k)]).abs();
+                    assert!(error < 1e-6, "{case} {moves:?} {c} {k}: {} {}", slope[c], hessian[(c, k)]);
+                }
+                let distance = |f: f64| at(&(step * f)).gradient().0;
+                let (far, gap) = (200.0, distance(0.0));
+                let bend = (distance(far) - 2.0 * gap + distance(-far)) / (far * h).powi(2);
+                assert!((bend - hessian[(k, k)]).abs() < 1e-4, "{case} {moves:?} {k}: {bend} {}", hessian[(k, k)]);
+            }
+        }
+    }
+}

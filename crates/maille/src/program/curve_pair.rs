@@ -22,6 +22,9 @@ use std::f64::consts::TAU;
 
 /// Sine of the angle of segments beside each other below which both ends of their common stretch are rows.
 const PARALLEL: f64 = 0.1;
+/// Segments are looked for within this arc length of a minimum, in reference radii: where sides lie beside each other, the nearest point of
+/// one that ends in an arc is on the arc.
+const BEFORE: f64 = 0.1;
 /// Arc lengths from a flat contact at which there are rows beside it, in reference radii.
 const BESIDE: [f64; 6] = [-0.18, -0.12, -0.06, 0.06, 0.12, 0.18];
 /// Points of a pair that are nearer than this, in reference radii, are one row.
@@ -53,32 +56,36 @@ fn end_beside(a: &Core, (i, end): (usize, f64), b: &Core, j: usize) -> Option<[C
 
 /// The rows beside the minimum `m`, which may be one end of a stretch where the curves keep their distance.
 fn beside(near: &NearPair, m: &CurveMinimum) -> Vec<Candidate> {
-    let (i, j) = (m.a.piece, m.b.piece);
-    let (of_a, of_b) = (near.a.piece(i), near.b.piece(j));
+    let segments = |core: &Core, at: &CurvePoint| {
+        let pieces = core.pieces_within(at, BEFORE).into_iter().map(|k| (k, core.piece(k)));
+        pieces.filter_map(|(k, piece)| if let Piece::Segment(it) = piece { Some((k, it)) } else { None }).collect()
+    };
+    let (of_a, of_b): (Vec<_>, Vec<_>) = (segments(&near.a, &m.a), segments(&near.b, &m.b));
     let mut out = Vec::new();
-    if let (Piece::Segment(x), Piece::Segment(y)) = (of_a, of_b) {
-        if x.along().cross(&y.along()).norm() < PARALLEL {
+    for ((i, one), (j, other)) in of_a.iter().flat_map(|x| of_b.iter().map(move |y| (x, y))) {
+        if one.along().cross(&other.along()).norm() < PARALLEL {
             // A held point and one that moves along its segment.
             for end in [0.0, 1.0] {
-                out.extend(end_beside(&near.a, (i, end), &near.b, j).map(|points| (points, [false, true])));
-                let swapped = end_beside(&near.b, (j, end), &near.a, i);
-                out.extend(swapped.map(|[b, a]| ([a, b], [true, false])));
+                let there = end_beside(&near.a, (*i, end), &near.b, *j);
+                out.extend(there.map(|points| Candidate { points, moves: [false, true], minimum: true }));
+                let back = end_beside(&near.b, (*j, end), &near.a, *i);
+                out.extend(back.map(|[b, a]| Candidate { points: [a, b], moves: [true, false], minimum: true }));
             }
         }
-        return out.into_iter().map(|(points, moves)| Candidate { points, moves, minimum: true }).collect();
     }
+    let on_segments =
+        [(&near.a, m.a), (&near.b, m.b)].map(|(core, at)| matches!(core.piece(at.piece), Piece::Segment(_)));
     let contact = CurveContact::of([m.a, m.b], &m.a.point, &m.b.point);
     let least = (contact.along() / m.distance.max(1e-12)).symmetric_eigenvalues().min();
-    if !(m.a.smooth && m.b.smooth && least < FLAT) {
-        return Vec::new();
+    if on_segments != [true, true] && m.a.smooth && m.b.smooth && least < FLAT {
+        let whole = near.b.length();
+        out.extend(BESIDE.map(|along| {
+            let b = near.b.at_angle(m.b.angle_rad + TAU * along / whole);
+            let a = near.a.nearest(&b.point);
+            Candidate { points: [a, b], moves: [a.smooth, false], minimum: false }
+        }));
     }
-    let whole = near.b.length();
-    let sample = |along: f64| {
-        let b = near.b.at_angle(m.b.angle_rad + TAU * along / whole);
-        let a = near.a.nearest(&b.point);
-        Candidate { points: [a, b], moves: [a.smooth, false], minimum: false }
-    };
-    BESIDE.map(sample).to_vec()
+    out
 }
 
 impl SheetProgram<'_> {
