@@ -125,8 +125,8 @@ impl CoreCurve {
     fn new(curve: &maille::model::Curve, unit: f64) -> Self {
         let radii = curve.arc_radii();
         CoreCurve {
-            length: curve.length() * unit,
-            segments: curve.pieces.len() - radii.len(),
+            length: curve.own_length() * unit,
+            segments: curve.own_pieces().count() - radii.len(),
             arcs: radii.len(),
             least_radius: radii.into_iter().map(|r| r * unit).min_by(f64::total_cmp),
             deviation: curve.deviation * unit,
@@ -280,7 +280,7 @@ fn metres(unit: Option<&str>, args: &Args) -> Result<Option<f64>> {
 
 /// A core of length L is as much wire, and π L r² of metal: of a ring L = 2 π R.
 fn wire(model: &Model, metres: Option<f64>, area: f64, density: Option<f64>) -> Wire {
-    let core = |r: &maille::model::Ring| r.curve.as_ref().map_or(TAU * r.major_radius, |curve| curve.length());
+    let core = |r: &maille::model::Ring| r.curve.as_ref().map_or(TAU * r.major_radius, |curve| curve.own_length());
     let length: f64 = model.rings.iter().map(|r| core(r) * model.unit).sum();
     let of_ring = |r: &maille::model::Ring| core(r) * (TAU / 2.0) * r.minor_radius * r.minor_radius;
     let volume = model.rings.iter().map(of_ring).sum::<f64>() * model.unit.powi(3);

@@ -143,6 +143,19 @@ pub(crate) struct Place {
 }
 
 impl Curve {
+    /// The closed curves of a form in its own frame: one, or those of a frame's cycles.
+    pub fn all_of(form: &Form, unit: f64, tolerance: f64) -> Result<Vec<Curve>, String> {
+        let Form::Frame { vertices, edges } = form else { return Ok(vec![Curve::of(form, unit, tolerance)?]) };
+        let at = |v: usize| vertices.get(v).map(|p| Vec3::from(*p) / unit).ok_or("a strut to no vertex".to_owned());
+        let of = |walk: Vec<usize>| {
+            let corners: Vec<Vec3> = walk.into_iter().map(at).collect::<Result<_, String>>()?;
+            let n = corners.len();
+            let pieces = (0..n).map(|k| Piece::segment(corners[k], corners[(k + 1) % n])).collect();
+            Ok(Curve { pieces })
+        };
+        walks(vertices.len(), edges)?.into_iter().map(of).collect()
+    }
+
     /// The form in its own frame, in units of `unit`; `tolerance` is that of biarcs, in the same units.
     pub fn of(form: &Form, unit: f64, tolerance: f64) -> Result<Curve, String> {
         let flat = |x: f64, y: f64| Vec3::new(x, y, 0.0) / unit;
@@ -180,6 +193,46 @@ impl Curve {
                 corners = points.iter().map(|p| Vec3::from(*p) / unit).collect();
                 rounding = fillet / unit;
             }
+            Form::Path { parts } => {
+                let at = |k: usize| Vec3::from(parts[k % parts.len()].to) / unit;
+                let pieces = (0..parts.len()).map(|k| {
+                    let (from, to) = (at(k + parts.len() - 1), at(k));
+                    let Some(via) = parts[k].through else { return Some(Piece::segment(from, to)) };
+                    // The centre of the circle through three points, from the first.
+                    let (a, b) = (Vec3::from(via) / unit - from, to - from);
+                    let n = a.cross(&b);
+                    let center = (b * a.norm_squared() - a * b.norm_squared()).cross(&n) / (2.0 * n.norm_squared());
+                    Piece::arc(from, n.cross(&-center).normalize(), to)
+                });
+                return Curve::whole(pieces.collect());
+            }
+            Form::Spline { points } => {
+                let n = points.len();
+                let at = |k: usize| Vec3::from(points[k % n]) / unit;
+                let span = |k: usize| (at(k + 1) - at(k)).norm();
+                // The slope at point k of the parabola through it and its neighbours.
+                let slope = |k: usize| {
+                    let (h, g) = (span(k + n - 1), span(k));
+                    let rise = (at(k + 1) - at(k)) / g - (at(k) - at(k + n - 1)) / h;
+                    (at(k + 1) - at(k)) / g - rise * (g / (g + h))
+                };
+                return Curve::smooth(n, tolerance, |t| {
+                    // Rounding may leave the end of a span just before it.
+                    let x = t / TAU * n as f64 + 1e-12;
+                    let (k, u) = (x.floor() as usize % n, x.fract());
+                    let h = span(k);
+                    // The four cubics of Hermite.
+                    let (p, q, v, w) = (at(k), at(k + 1), slope(k) * h, slope((k + 1) % n) * h);
+                    let (u2, u3) = (u * u, u * u * u);
+                    let point = p * (2.0 * u3 - 3.0 * u2 + 1.0)
+                        + v * (u3 - 2.0 * u2 + u)
+                        + q * (3.0 * u2 - 2.0 * u3)
+                        + w * (u3 - u2);
+                    let along = (q - p) * (6.0 * (u - u2)) + v * (3.0 * u2 - 4.0 * u + 1.0) + w * (3.0 * u2 - 2.0 * u);
+                    [point, along]
+                });
+            }
+            Form::Frame { .. } => return Err("a frame is no single curve".into()),
             Form::Ellipse { a, b } => {
                 let (a, b) = (a / unit, b / unit);
                 return Curve::smooth(4, tolerance, |t| {
@@ -324,6 +377,56 @@ impl Curve {
 const JOINT: f64 = 1e-13;
 /// A point this near to a corner is at it, in reference radii.
 const CORNER: f64 = 1e-9;
+
+/// The closed walks of a frame, as `docs/theory/curves.md` has them: those of each strut beside the tree, back through it; then each strut that
+/// is on none, there and back.
+fn walks(vertices: usize, edges: &[[usize; 2]]) -> Result<Vec<Vec<usize>>, String> {
+    // Steps from vertex 0, and the vertex before; vertices in the order in which they are reached.
+    let mut before: Vec<Option<(usize, usize)>> = vec![None; vertices];
+    let mut reached = vec![0];
+    *before.first_mut().ok_or("a frame without vertices")? = Some((0, 0));
+    let mut next = 0;
+    let mut beside = vec![true; edges.len()];
+    while let Some(&v) = reached.get(next) {
+        next += 1;
+        for (k, edge) in edges.iter().enumerate().filter(|(_, edge)| edge.contains(&v)) {
+            let w = edge[0] + edge[1] - v;
+            if before.get(w).ok_or("a strut to no vertex")?.is_none() {
+                before[w] = before[v].map(|(steps, _)| (steps + 1, v));
+                beside[k] = false;
+                reached.push(w);
+            }
+        }
+    }
+    let before: Vec<(usize, usize)> =
+        before.into_iter().collect::<Option<_>>().ok_or("a frame that falls into parts")?;
+    let mut on_cycle = vec![false; edges.len()];
+    let mut out = Vec::new();
+    for (_, &[a, b]) in edges.iter().enumerate().filter(|(k, _)| beside[*k]) {
+        // From b up, and up to a, until both meet.
+        let (mut up, mut down) = (vec![b], vec![a]);
+        loop {
+            let (x, y) = (up[up.len() - 1], down[down.len() - 1]);
+            if x == y {
+                break;
+            }
+            match before[x].0 >= before[y].0 {
+                true => up.push(before[x].1),
+                false => down.push(before[y].1),
+            }
+        }
+        down.pop();
+        up.extend(down.into_iter().rev());
+        for (k, edge) in edges.iter().enumerate() {
+            let n = up.len();
+            on_cycle[k] |=
+                (0..n).any(|i| edge.contains(&up[i]) && edge.contains(&up[(i + 1) % n]) && up[i] != up[(i + 1) % n]);
+        }
+        out.push(up);
+    }
+    out.extend(edges.iter().zip(&on_cycle).filter(|(_, on)| !**on).map(|(edge, _)| edge.to_vec()));
+    Ok(out)
+}
 
 /// The half circle about `center`, to the side of +x or −x, counter-clockwise about z.
 fn half_circle(center: Vec3, radius: f64, side: f64) -> Piece {

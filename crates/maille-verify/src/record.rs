@@ -118,6 +118,16 @@ pub(crate) enum Form {
         #[serde(default)]
         fillet: f64,
     },
+    Path {
+        parts: Vec<Part>,
+    },
+    Spline {
+        points: Vec<[f64; 3]>,
+    },
+    Frame {
+        vertices: Vec<[f64; 3]>,
+        edges: Vec<[usize; 2]>,
+    },
     Ellipse {
         a: f64,
         b: f64,
@@ -129,6 +139,13 @@ pub(crate) enum Form {
         circle_radius: f64,
         a: f64,
     },
+}
+
+/// A part of a path.
+#[derive(Clone, Debug, Deserialize)]
+pub(crate) struct Part {
+    pub to: [f64; 3],
+    pub through: Option<[f64; 3]>,
 }
 
 #[derive(Clone, Debug, Deserialize)]

@@ -125,8 +125,8 @@ fn same_copy(cell: &Cell, a: [i32; 2], b: [i32; 2]) -> bool {
 /// Share of R within which biarcs stand for a smooth curve, where a design does not say.
 const CURVE_TOLERANCE: f64 = 1e-6;
 
-/// The tube of a curve of element `element`.
-fn tube(design: &Design, spec: &CurveSpec, element: usize) -> Result<Ring, String> {
+/// The tubes of a curve of element `element`.
+fn tubes(design: &Design, spec: &CurveSpec, element: usize) -> Result<Vec<Ring>, String> {
     let unit = design.reference_radius;
     let wire = spec.minor_radius.or(design.minor_radius).ok_or("a curve without a minor radius")? / unit;
     let tolerance = design.curve_tolerance.map_or(CURVE_TOLERANCE, |tolerance| tolerance / unit);
@@ -134,11 +134,14 @@ fn tube(design: &Design, spec: &CurveSpec, element: usize) -> Result<Ring, Strin
     let x = (along - normal * normal.dot(&along)).normalize();
     let turn = UnitQuaternion::from_basis_unchecked(&[x, normal.cross(&x), normal]);
     let arm = Vec3::from(spec.offset) / unit;
-    let curve = Curve::of(&spec.shape, unit, tolerance)?.moved(&turn, &arm);
-    Ok(match curve.circle() {
-        Some((arm, normal, radius)) => Ring { element, arm, normal, radius, wire, curve: None },
-        None => Ring { element, arm, normal, radius: curve.reach(&arm), wire, curve: Some(Arc::new(curve)) },
-    })
+    let ring = |curve: Curve| {
+        let curve = curve.moved(&turn, &arm);
+        match curve.circle() {
+            Some((arm, normal, radius)) => Ring { element, arm, normal, radius, wire, curve: None },
+            None => Ring { element, arm, normal, radius: curve.reach(&arm), wire, curve: Some(Arc::new(curve)) },
+        }
+    };
+    Ok(Curve::all_of(&spec.shape, unit, tolerance)?.into_iter().map(ring).collect())
 }
 
 impl Sheet {
@@ -193,7 +196,7 @@ impl Sheet {
                 });
             }
             for curve in &spec.curves {
-                out.rings.push(tube(design, curve, out.bodies.len())?);
+                out.rings.extend(tubes(design, curve, out.bodies.len())?);
             }
             let way = p1 * f64::from(copy[0]) + p2 * f64::from(copy[1]);
             let position = Vec3::from(spec.center) / unit + way;

@@ -12,7 +12,7 @@ mod repeat;
 pub(crate) mod shape;
 
 pub use parameters::{Parameter, TAKEN};
-pub use shape::Shape;
+pub use shape::{PathPart, Shape};
 
 /// Name in [`Design::varied`] of the factor by which distances between elements were multiplied.
 pub const SPACING: &str = "spacing";
@@ -398,7 +398,13 @@ impl Design {
         if let Some(tightest) = shape::tightest(&pieces).filter(|tightest| r >= *tightest) {
             let problem = format!("minor radius {r} is not smaller than the curve's least radius {tightest:.6}");
             out.add(field, problem, "a wire cannot bend more sharply than that: take a thinner one, or a wider curve");
-        } else if let Some(gap) = shape::self_overlap(&pieces, r) {
+            return;
+        }
+        let overlap = match &curve.shape {
+            Shape::Frame { edges, .. } => shape::frame_overlap(&pieces, edges, r),
+            _ => shape::self_overlap(&pieces, r),
+        };
+        if let Some(gap) = overlap {
             let problem = format!(
                 "the tube runs into itself: its core comes as near to itself as {gap:.6}, the wire is {} thick",
                 2.0 * r

@@ -24,26 +24,45 @@ pub(super) const ELEMENT: &[&str] = &["name", "center", "rings", "curves"];
 /// Keys of a ring.
 pub(super) const RING: &[&str] = &["major_radius", "normal", "offset", "minor_radius"];
 /// Keys of a curve: one of its forms, and where it sits.
-pub(super) const CURVE: &[&str] =
-    &["stadium", "square", "hexagon", "polyline", "ellipse", "torus_knot", "normal", "along", "offset", "minor_radius"];
+pub(super) const CURVE: &[&str] = &[
+    "stadium",
+    "square",
+    "hexagon",
+    "polyline",
+    "path",
+    "spline",
+    "ellipse",
+    "torus_knot",
+    "frame",
+    "normal",
+    "along",
+    "offset",
+    "minor_radius",
+];
 /// Forms of curves with their keys.
-pub(super) const FORMS: [(&str, &[&str]); 6] = [
+pub(super) const FORMS: [(&str, &[&str]); 9] = [
     ("stadium", &["straight", "radius"]),
     ("square", &["side", "fillet"]),
     ("hexagon", &["side", "fillet"]),
     ("polyline", &["points", "fillet"]),
+    ("path", &["parts"]),
+    ("spline", &["points"]),
     ("ellipse", &["a", "b"]),
     ("torus_knot", &["p", "q", "R", "a"]),
+    ("frame", &["vertices", "edges"]),
 ];
+/// Keys of a part of a path.
+pub(super) const PART: &[&str] = &["to", "through"];
 /// Keys of a parameter that has bounds.
 pub(super) const PARAMETER: &[&str] = &["value", "min", "max"];
 
-const TABLES: [(&[&str], &str); 6] = [
+const TABLES: [(&[&str], &str); 7] = [
     (TOP, "at the top of the file, above the first [table]"),
     (LATTICE, "in [lattice]"),
     (ELEMENT, "in an [[elements]] table"),
     (RING, "in a ring { … }"),
     (CURVE, "in a curve { … }"),
+    (PART, "in a part { to = … } of a path"),
     (PARAMETER, "in a parameter { value = …, min = …, max = … }"),
 ];
 

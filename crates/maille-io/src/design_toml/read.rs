@@ -1,10 +1,12 @@
 //! From a TOML table to a [`Design`], collecting every problem on the way.
 
-use super::fields::{self, CURVE, ELEMENT, FORMS, LATTICE, PARAMETER, RING, TOP};
+use super::fields::{self, CURVE, ELEMENT, FORMS, LATTICE, PARAMETER, PART, RING, TOP};
 use super::index::Index;
 use super::problem::DesignProblem;
 use crate::nearest::nearest;
-use maille::design::{CurveSpec, DESIGN_SCHEMA, Design, ElementSpec, LatticeSpec, Parameter, RingSpec, Shape, Source};
+use maille::design::{
+    CurveSpec, DESIGN_SCHEMA, Design, ElementSpec, LatticeSpec, Parameter, PathPart, RingSpec, Shape, Source,
+};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use toml::Spanned;
@@ -236,11 +238,29 @@ impl Reader<'_> {
             true => self.optional(&at, "fillet", Self::number)?.unwrap_or(0.0),
             false => 0.0,
         };
-        if name == "polyline" {
-            let help = "points = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]], the corners";
-            let (value, path) = self.required(&at, "points", help)?;
-            let points = self.list(value, &path, &format!("write {help}"), Self::vector)?;
-            return Some(Shape::Polyline { points, fillet });
+        let corners = "[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]]";
+        let points = |reader: &mut Self, key: &str| {
+            let help = format!("{key} = {corners}");
+            let (value, path) = reader.required(&at, key, &help)?;
+            reader.list(value, &path, &format!("write {help}"), Self::vector)
+        };
+        match name {
+            "polyline" => return points(self, "points").map(|points| Shape::Polyline { points, fillet }),
+            "spline" => return points(self, "points").map(|points| Shape::Spline { points }),
+            "path" => {
+                let help = "parts = [{ to = [1.0, 0.0, 0.0] }, { to = [-1.0, 0.0, 0.0], through = [0.0, 1.0, 0.0] }]";
+                let (value, path) = self.required(&at, "parts", help)?;
+                let parts = self.list(value, &path, &format!("write {help}"), Self::part)?;
+                return Some(Shape::Path { parts });
+            }
+            "frame" => {
+                let vertices = points(self, "vertices");
+                let help = "edges = [[0, 1], [1, 2], [2, 0]], the numbers of two vertices each, from 0";
+                let (value, path) = self.required(&at, "edges", help)?;
+                let edges = self.list(value, &path, &format!("write {help}"), Self::edge)?;
+                return Some(Shape::Frame { vertices: vertices?, edges });
+            }
+            _ => {}
         }
         let needed = keys.iter().filter(|key| **key != "fillet");
         let numbers: Vec<Option<f64>> = needed
@@ -253,6 +273,25 @@ impl Reader<'_> {
             [side] if name == "hexagon" => Shape::Hexagon { side, fillet },
             [p, q, circle_radius, a] => Shape::TorusKnot { p, q, circle_radius, a },
             _ => unreachable!("a form that is not in FORMS"),
+        })
+    }
+
+    fn part(&mut self, value: &Value<'_>, path: &str) -> Option<PathPart> {
+        let at = self.table(value, path, PART, "write { to = [1.0, 0.0, 0.0] }")?;
+        let to = self.required(&at, "to", "to = [1.0, 0.0, 0.0], where the part ends");
+        let to = to.and_then(|(v, p)| self.vector(v, &p));
+        let through = self.optional(&at, "through", Self::vector);
+        Some(PathPart { to: to?, through: through? })
+    }
+
+    fn edge(&mut self, value: &Value<'_>, path: &str) -> Option<[u32; 2]> {
+        let numbers = match value.get_ref() {
+            DeValue::Array(array) => array.iter().map(|v| whole(v)).collect::<Option<Vec<u32>>>(),
+            _ => None,
+        };
+        let edge = numbers.and_then(|numbers| <[u32; 2]>::try_from(numbers).ok());
+        edge.or_else(|| {
+            self.wrong_type(value, path, "the numbers of two vertices", "write [0, 1]; vertices count from 0")
         })
     }
 
@@ -385,11 +424,8 @@ impl Reader<'_> {
     }
 
     fn integer(&mut self, value: &Value<'_>, path: &str) -> Option<u32> {
-        let number = match value.get_ref() {
-            DeValue::Integer(i) => u32::from_str_radix(i.as_str(), i.radix()).ok(),
-            _ => None,
-        };
-        number.or_else(|| self.wrong_type(value, path, "a version number", &format!("write schema = {DESIGN_SCHEMA}")))
+        whole(value)
+            .or_else(|| self.wrong_type(value, path, "a version number", &format!("write schema = {DESIGN_SCHEMA}")))
     }
 
     fn boolean(&mut self, value: &Value<'_>, path: &str) -> Option<bool> {
@@ -449,5 +485,12 @@ mod tests {
             assert_eq!(serde_json::to_value(source).unwrap(), name);
             assert_eq!(source_name(source), name);
         }
+    }
+}
+
+fn whole(value: &Value<'_>) -> Option<u32> {
+    match value.get_ref() {
+        DeValue::Integer(i) => u32::from_str_radix(i.as_str(), i.radix()).ok(),
+        _ => None,
     }
 }

@@ -101,10 +101,31 @@ impl Numbers<'_> {
     fn curve(&self, path: &str, curve: &CurveSpec) -> String {
         let form = format!("{path}.{}", curve.shape.name());
         let mut numbers: Vec<String> = Vec::new();
-        if let Shape::Polyline { points, .. } = &curve.shape {
-            let point = |(k, p): (usize, &[f64; 3])| self.vector(&format!("{form}.points[{k}]"), *p);
-            let points: Vec<String> = points.iter().enumerate().map(point).collect();
-            numbers.push(format!("points = [{}]", points.join(", ")));
+        let point = |(name, p): (String, [f64; 3])| (self.vector(&format!("{form}.{name}"), p), name);
+        let points: Vec<(String, String)> = curve.shape.points().into_iter().map(point).collect();
+        let listed = |key: &str| {
+            let all: Vec<&str> = points.iter().map(|(vector, _)| vector.as_str()).collect();
+            format!("{key} = [{}]", all.join(", "))
+        };
+        match &curve.shape {
+            Shape::Polyline { .. } | Shape::Spline { .. } => numbers.push(listed("points")),
+            Shape::Frame { edges, .. } => {
+                numbers.push(listed("vertices"));
+                let edges: Vec<String> = edges.iter().map(|[a, b]| format!("[{a}, {b}]")).collect();
+                numbers.push(format!("edges = [{}]", edges.join(", ")));
+            }
+            Shape::Path { parts } => {
+                let written = |k: usize| {
+                    let of = |key: &str| {
+                        let name = format!("parts[{k}].{key}");
+                        points.iter().find(|(_, known)| *known == name).map(|(vector, _)| format!("{key} = {vector}"))
+                    };
+                    format!("{{ {} }}", [of("to"), of("through")].into_iter().flatten().collect::<Vec<_>>().join(", "))
+                };
+                let parts: Vec<String> = (0..parts.len()).map(written).collect();
+                numbers.push(format!("parts = [{}]", parts.join(", ")));
+            }
+            _ => {}
         }
         for (name, x) in curve.shape.numbers() {
             let place = format!("{form}.{name}");

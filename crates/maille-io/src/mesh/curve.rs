@@ -50,11 +50,35 @@ pub(super) fn curve_mesh(
     if across < 3 {
         return Err(MeshError::TooCoarse);
     }
+    let [mesh_major_radius, mesh_minor_radius] = [major_radius, minor_radius].map(|r| r * unit * mm);
+    let (mut vertices, mut normals) = (Vec::new(), Vec::new());
+    if curve.is_of_frame() {
+        let steps = polygon(small, share).div_ceil(4);
+        let sections = 2 * (steps + 1);
+        for (point, axis, u) in curve.own_pieces().flat_map(|strut| capsule(strut, steps)) {
+            for j in 0..across {
+                let (sin, cos) = (TAU * j as f64 / across as f64).sin_cos();
+                // u is as long as the section is wide, and what is missing points along the strut.
+                let normal = (u * cos + u.cross(&axis.0) * sin) + axis.0 * axis.1;
+                vertices.push((point + normal * minor_radius) * (unit * mm));
+                normals.push(normal);
+            }
+        }
+        let segments = Segments { around: vertices.len() / across, across };
+        return Ok(TorusMesh {
+            major_radius: mesh_major_radius,
+            minor_radius: mesh_minor_radius,
+            segments,
+            chords: Some(share * mm),
+            sections_of_strut: Some(sections),
+            vertices,
+            normals,
+        });
+    }
     let sections = sections(curve, small / unit, share / unit);
     if sections.len() > MOST_SECTIONS {
         return Err(MeshError::TooFine { segments: sections.len(), most: MOST_SECTIONS });
     }
-    let (mut vertices, mut normals) = (Vec::new(), Vec::new());
     for (section, [u, v]) in sections.iter().zip(frames(&sections, curve.length())) {
         for j in 0..across {
             let (sin, cos) = (TAU * j as f64 / across as f64).sin_cos();
@@ -64,8 +88,27 @@ pub(super) fn curve_mesh(
         }
     }
     let segments = Segments { around: sections.len(), across };
-    let [major_radius, minor_radius] = [major_radius, minor_radius].map(|r| r * unit * mm);
-    Ok(TorusMesh { major_radius, minor_radius, segments, chords: Some(share * mm), vertices, normals })
+    Ok(TorusMesh {
+        major_radius: mesh_major_radius,
+        minor_radius: mesh_minor_radius,
+        segments,
+        chords: Some(share * mm),
+        sections_of_strut: None,
+        vertices,
+        normals,
+    })
+}
+
+/// Sections of a strut with round ends: the middle of each, the strut's axis with how far the section leans along it, and a vector across
+/// as long as the section is wide, in wire radii. Each end is a half ball of so many steps.
+fn capsule(strut: &Piece, steps: usize) -> Vec<(Vec3, (Vec3, f64), Vec3)> {
+    let axis = strut.tangent(0.5);
+    let u = axis.cross(&Vec3::ith(axis.iamin(), 1.0)).normalize();
+    let section = |end: f64, k: usize| {
+        let (along, wide) = (TAU / 4.0 * k as f64 / steps as f64).sin_cos();
+        (strut.point(end), (axis, if end == 0.0 { -along } else { along }), u * wide)
+    };
+    (0..=steps).rev().map(|k| section(0.0, k)).chain((0..=steps).map(|k| section(1.0, k))).collect()
 }
 
 fn radius(piece: &Piece) -> Option<f64> {

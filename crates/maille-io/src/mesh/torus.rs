@@ -93,6 +93,8 @@ pub struct TorusMesh {
     pub segments: Segments,
     /// Of another curve, how far its chords may stray; of a torus it follows from the radii.
     pub chords: Option<f64>,
+    /// Of the struts of a frame, sections of each: the first and the last are its poles, and no faces join two struts.
+    pub sections_of_strut: Option<usize>,
     /// Vertices.
     pub vertices: Vec<Vec3>,
     /// Outward unit normals of the torus at the vertices.
@@ -113,34 +115,41 @@ impl TorusMesh {
                 normals.push(Vec3::new(cos_v * cos_u, cos_v * sin_u, sin_v));
             }
         }
-        TorusMesh { major_radius, minor_radius, segments, chords: None, vertices, normals }
+        TorusMesh { major_radius, minor_radius, segments, chords: None, sections_of_strut: None, vertices, normals }
     }
 
-    /// Number of quadrilaterals: as many as vertices.
+    /// Number of quadrilaterals: as many as vertices, but for those that would join two struts.
     pub fn quad_count(&self) -> usize {
-        self.vertices.len()
+        let Segments { around, across } = self.segments;
+        (around - self.sections_of_strut.map_or(0, |sections| around / sections)) * across
     }
 
     /// Number of triangles.
     pub fn triangle_count(&self) -> usize {
-        2 * self.quad_count()
+        let Segments { around, across } = self.segments;
+        2 * self.quad_count() - self.sections_of_strut.map_or(0, |sections| 2 * around / sections) * across
     }
 
-    /// The quadrilaterals, counter-clockwise seen from outside.
+    /// The quadrilaterals, counter-clockwise seen from outside; at the pole of a strut two corners are one.
     pub fn quads(&self) -> impl Iterator<Item = [usize; 4]> + use<> {
         let Segments { around, across } = self.segments;
-        (0..around).flat_map(move |i| {
+        let sections = self.sections_of_strut;
+        let is_last = move |i: usize| sections.is_some_and(|n| i % n == n - 1);
+        let is_pole = move |i: usize| sections.is_some_and(|n| i % n == 0 || i % n == n - 1);
+        let at = move |i: usize, j: usize| i * across + if is_pole(i) { 0 } else { j };
+        (0..around).filter(move |i| !is_last(*i)).flat_map(move |i| {
             let next = (i + 1) % around;
             (0..across).map(move |j| {
                 let k = (j + 1) % across;
-                [i * across + j, next * across + j, next * across + k, i * across + k]
+                [at(i, j), at(next, j), at(next, k), at(i, k)]
             })
         })
     }
 
     /// The triangles, counter-clockwise seen from outside.
     pub fn triangles(&self) -> impl Iterator<Item = [usize; 3]> + use<> {
-        self.quads().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]])
+        let split = |[a, b, c, d]: [usize; 4]| [[a, b, c], [a, c, d]];
+        self.quads().flat_map(split).filter(|[a, b, c]| a != b && b != c && c != a)
     }
 
     /// Bound of the distance between mesh and torus.

@@ -86,7 +86,8 @@ impl Scene {
                 match state.core(model, ring, shift) {
                     Core::Circle(circle) => scene.tori.push(Tube::Torus(Torus { circle, minor_radius })),
                     curve => {
-                        let pieces = drawn(&curve.pieces()).into_iter().map(|piece| Tube::Piece(piece, minor_radius));
+                        let pieces =
+                            drawn(&curve.own_pieces()).into_iter().map(|piece| Tube::Piece(piece, minor_radius));
                         scene.tori.extend(pieces);
                     }
                 }

@@ -1,10 +1,22 @@
 //! Forms of core curves other than circles, and the segments and arcs that they are made of.
 
-use maille_geometry::{Arc, Circle, Piece, Segment, Vec3, biarc, piece_distance_minima};
-use serde::{Deserialize, Serialize};
-use std::f64::consts::{PI, TAU};
+mod corners;
+mod frame;
+mod overlap;
+mod smooth;
 
-/// The form of a closed core curve in its own frame: about the origin, plane forms in z = 0.
+pub(crate) use frame::Owned;
+pub(super) use overlap::{frame_overlap, self_overlap, tightest};
+
+use self::{
+    corners::{problem_of_parts, rounded, setback, stadium, through_parts},
+    smooth::{smooth, through_points},
+};
+use maille_geometry::{Circle, Piece, Vec3};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
+
+/// The form of a core curve in its own frame: about the origin, plane forms in z = 0. All are closed curves but frames.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Shape {
@@ -39,6 +51,24 @@ pub enum Shape {
         #[serde(default)]
         fillet: f64,
     },
+    /// A closed path of segments and arcs in space.
+    Path {
+        /// Its parts; each begins where the one before it ends, and the first where the last ends.
+        parts: Vec<PathPart>,
+    },
+    /// A closed smooth curve through points in space: between two of them a cubic, which leaves each point as the parabola through it
+    /// and its two neighbours does, with the lengths of the chords as parameter.
+    Spline {
+        /// The points.
+        points: Vec<[f64; 3]>,
+    },
+    /// A cage: straight struts between vertices.
+    Frame {
+        /// The vertices.
+        vertices: Vec<[f64; 3]>,
+        /// Struts, by the numbers of their two vertices, from 0.
+        edges: Vec<[u32; 2]>,
+    },
     /// An ellipse.
     Ellipse {
         /// Half of its width along x.
@@ -61,6 +91,28 @@ pub enum Shape {
     },
 }
 
+/// A part of a path.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PathPart {
+    /// Where it ends.
+    pub to: [f64; 3],
+    /// A point of the arc on the way; without one the part is straight.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub through: Option<[f64; 3]>,
+}
+
+/// The pieces of one closed core curve.
+#[derive(Clone, Debug)]
+pub(crate) struct CorePieces {
+    /// Segments and arcs, in order.
+    pub pieces: Vec<Piece>,
+    /// What of each belongs to this curve alone: see [`Owned`].
+    pub owned: Vec<Owned>,
+    /// How far the form is from its pieces at most, at sampled points.
+    pub deviation: f64,
+}
+
 /// Most pieces of one curve.
 pub(crate) const MOST_PIECES: usize = 10_000;
 /// Sine of the angle below which two tangents are one.
@@ -74,12 +126,39 @@ impl Shape {
             Shape::Square { .. } => "square",
             Shape::Hexagon { .. } => "hexagon",
             Shape::Polyline { .. } => "polyline",
+            Shape::Path { .. } => "path",
+            Shape::Spline { .. } => "spline",
+            Shape::Frame { .. } => "frame",
             Shape::Ellipse { .. } => "ellipse",
             Shape::TorusKnot { .. } => "torus_knot",
         }
     }
 
-    /// Its numbers with their names in a design file, but for the points of a polyline.
+    /// Its points with their names in a design file, as `points[2]` or `parts[0].through`.
+    pub fn points(&self) -> Vec<(String, [f64; 3])> {
+        let mut copy = self.clone();
+        copy.points_mut().into_iter().map(|(name, point)| (name, *point)).collect()
+    }
+
+    fn points_mut(&mut self) -> Vec<(String, &mut [f64; 3])> {
+        let numbered = |name: &'static str| move |(k, p): (usize, _)| (format!("{name}[{k}]"), p);
+        match self {
+            Shape::Polyline { points, .. } | Shape::Spline { points } => {
+                points.iter_mut().enumerate().map(numbered("points")).collect()
+            }
+            Shape::Frame { vertices, .. } => vertices.iter_mut().enumerate().map(numbered("vertices")).collect(),
+            Shape::Path { parts } => {
+                let named = parts.iter_mut().enumerate().flat_map(|(k, PathPart { to, through })| {
+                    let through = through.as_mut().map(|p| (format!("parts[{k}].through"), p));
+                    std::iter::once((format!("parts[{k}].to"), to)).chain(through)
+                });
+                named.collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// Its numbers with their names in a design file, but for those of points.
     pub fn numbers(&self) -> Vec<(&'static str, f64)> {
         let mut copy = self.clone();
         copy.numbers_mut().into_iter().map(|(name, number)| (name, *number)).collect()
@@ -92,6 +171,7 @@ impl Shape {
                 vec![("side", side), ("fillet", fillet)]
             }
             Shape::Polyline { fillet, .. } => vec![("fillet", fillet)],
+            Shape::Path { .. } | Shape::Spline { .. } | Shape::Frame { .. } => Vec::new(),
             Shape::Ellipse { a, b } => vec![("a", a), ("b", b)],
             Shape::TorusKnot { p, q, circle_radius, a } => {
                 vec![("p", p), ("q", q), ("R", circle_radius), ("a", a)]
@@ -101,13 +181,11 @@ impl Shape {
 
     /// The number of this name: `straight`, or `points[2][0]`.
     pub(super) fn number_mut(&mut self, name: &str) -> Option<&mut f64> {
-        match (name.strip_prefix("points["), self) {
-            (Some(place), Shape::Polyline { points, .. }) => {
-                let (point, axis) = place.strip_suffix(']')?.split_once("][")?;
-                points.get_mut(point.parse::<usize>().ok()?)?.get_mut(axis.parse::<usize>().ok()?)
-            }
-            (_, shape) => shape.named_mut(name),
-        }
+        let Some((point, axis)) = name.strip_suffix(']').and_then(|rest| rest.rsplit_once('[')) else {
+            return self.named_mut(name);
+        };
+        let found = self.points_mut().into_iter().find(|(known, _)| known == point);
+        found.and_then(|(_, p)| p.get_mut(axis.parse::<usize>().ok()?))
     }
 
     fn named_mut(&mut self, name: &str) -> Option<&mut f64> {
@@ -116,9 +194,7 @@ impl Shape {
 
     /// The same form with every length multiplied by `factor`.
     pub(super) fn scale(&mut self, factor: f64) {
-        if let Shape::Polyline { points, .. } = self {
-            points.iter_mut().flatten().for_each(|x| *x *= factor);
-        }
+        self.points_mut().into_iter().flat_map(|(_, point)| point).for_each(|x| *x *= factor);
         let lengths = self.numbers_mut().into_iter().filter(|(name, _)| !["p", "q"].contains(name));
         lengths.for_each(|(_, number)| *number *= factor);
     }
@@ -141,6 +217,9 @@ impl Shape {
                 return Some((name.into(), format!("{x} is not {what}"), "give a length in the file's unit"));
             }
         }
+        if let Some((name, point)) = self.points().into_iter().find(|(_, p)| p.iter().any(|x| !x.is_finite())) {
+            return Some((name, format!("{point:?} is not finite"), "give three finite numbers"));
+        }
         let whole = |x: f64| x.fract() == 0.0 && x <= 1000.0;
         match self {
             Shape::TorusKnot { p, q, .. } if !(whole(*p) && whole(*q)) => {
@@ -159,13 +238,15 @@ impl Shape {
                 let problem = format!("a = {a} is not smaller than R = {circle_radius}: the curve meets the axis");
                 Some(("a".into(), problem, "take a < R"))
             }
-            Shape::Polyline { points, .. } if points.len() < 3 || points.len() > MOST_PIECES / 2 => {
+            Shape::Polyline { points, .. } | Shape::Spline { points }
+                if points.len() < 3 || points.len() > MOST_PIECES / 2 =>
+            {
                 let problem = format!("{} points", points.len());
-                Some(("points".into(), problem, "a closed polygon has 3 corners or more, at most 5000"))
+                Some(("points".into(), problem, "a closed curve has 3 points or more, at most 5000"))
             }
-            Shape::Polyline { points, .. } if points.iter().flatten().any(|x| !x.is_finite()) => {
-                Some(("points".into(), "are not all finite".into(), "give three finite numbers for each corner"))
-            }
+            Shape::Path { parts } => problem_of_parts(parts),
+            Shape::Frame { vertices, edges } => frame::problem(vertices, edges),
+            Shape::Spline { points } => same_points(points),
             Shape::Polyline { .. } | Shape::Square { .. } | Shape::Hexagon { .. } => self.problem_of_corners(),
             _ => None,
         }
@@ -178,8 +259,7 @@ impl Shape {
         let edge = |k: usize| corners[(k + 1) % n] - corners[k % n];
         for k in 0..n {
             if edge(k).norm() == 0.0 {
-                let problem = format!("points {k} and {} are one", (k + 1) % n);
-                return Some(("points".into(), problem, "leave one of them out; the last is joined to the first"));
+                return Some(are_one(k, n));
             }
             let turn_rad = edge(k).angle(&edge(k + 1));
             if PI - turn_rad < 1e-3 {
@@ -215,17 +295,29 @@ impl Shape {
         }
     }
 
-    /// Its segments and arcs, in order. Smooth forms become biarcs, spans halved until no sampled point is farther than
-    /// `tolerance` from them. None where the numbers make no curve.
+    /// The segments and arcs of a closed curve, in order, and the struts of a frame. Smooth forms become biarcs, spans halved until no sampled point
+    /// is farther than `tolerance` from them. None where the numbers make no curve.
     pub fn pieces(&self, tolerance: f64) -> Option<Vec<Piece>> {
         self.approximation(tolerance).map(|(pieces, _)| pieces)
     }
 
-    /// The same, and how far the form is from its pieces at most, at sampled points.
-    pub fn approximation(&self, tolerance: f64) -> Option<(Vec<Piece>, f64)> {
+    /// Its closed curves: one, or those of a frame (`docs/theory/curves.md`).
+    pub(crate) fn cores(&self, tolerance: f64) -> Option<Vec<CorePieces>> {
+        if let Shape::Frame { vertices, edges } = self {
+            return frame::cores(vertices, edges);
+        }
+        let (pieces, deviation) = self.approximation(tolerance)?;
+        Some(vec![CorePieces { owned: vec![Owned::ALL; pieces.len()], pieces, deviation }])
+    }
+
+    /// As [`Self::pieces`], and how far the form is from its pieces at most, at sampled points.
+    fn approximation(&self, tolerance: f64) -> Option<(Vec<Piece>, f64)> {
         let exact = |pieces: Vec<Piece>| Some((pieces, 0.0));
         match self {
             Shape::Stadium { straight, radius } => exact(stadium(*straight, *radius)),
+            Shape::Path { parts } => through_parts(parts).and_then(exact),
+            Shape::Spline { points } => through_points(points, tolerance),
+            Shape::Frame { vertices, edges } => frame::struts(vertices, edges).and_then(exact),
             Shape::Ellipse { a, b } if a == b => {
                 exact(vec![Piece::circle(Circle::new(Vec3::zeros(), Vec3::z_axis(), *a))])
             }
@@ -263,6 +355,12 @@ impl Shape {
             Shape::Square { side, .. } => side * 0.5_f64.sqrt(),
             Shape::Hexagon { side, .. } => *side,
             Shape::Polyline { points, .. } => points.iter().map(|p| Vec3::from(*p).norm()).fold(0.0, f64::max),
+            Shape::Frame { vertices, .. } => vertices.iter().map(|p| Vec3::from(*p).norm()).fold(0.0, f64::max),
+            Shape::Path { .. } | Shape::Spline { .. } => {
+                let pieces = self.pieces(f64::INFINITY).unwrap_or_default();
+                let farthest = |piece: &Piece| piece.point(piece.farthest(&Vec3::zeros())).norm();
+                pieces.iter().map(farthest).fold(0.0, f64::max)
+            }
         }
     }
 }
@@ -277,120 +375,19 @@ pub(crate) fn ball(piece: &Piece) -> (Vec3, f64) {
     (at, (piece.point(piece.farthest(&at)) - at).norm())
 }
 
-/// Least radius of the arcs among `pieces`; none where all are straight.
-pub(super) fn tightest(pieces: &[Piece]) -> Option<f64> {
-    let radii = pieces.iter().filter_map(|piece| match piece {
-        Piece::Segment(_) => None,
-        Piece::Arc(arc) => Some(arc.circle().radius),
-    });
-    radii.min_by(f64::total_cmp)
+/// Two points that follow each other, of `n`, and are one.
+fn are_one(k: usize, n: usize) -> (String, String, &'static str) {
+    let problem = format!("points {k} and {} are one", (k + 1) % n);
+    ("points".into(), problem, "leave one of them out; the last is joined to the first")
 }
 
-/// How near the core comes to itself where the tube of radius `r` runs into itself; none where it does not.
-///
-/// Points count that are a local minimum of their distance, or, at corners, pieces that are no neighbours. Those that are nearer along the curve than
-/// half of the circle with the wire's radius, π r, are parts of one bend.
-pub(super) fn self_overlap(pieces: &[Piece], r: f64) -> Option<f64> {
-    let n = pieces.len();
-    let mut at = vec![0.0];
-    pieces.iter().for_each(|piece| at.push(at[at.len() - 1] + piece.length()));
-    let total = at[n];
-    let balls: Vec<(Vec3, f64)> = pieces.iter().map(ball).collect();
-    let mut least: Option<f64> = None;
-    for i in 0..n {
-        for j in i + 1..n {
-            if (balls[i].0 - balls[j].0).norm() - balls[i].1 - balls[j].1 >= 2.0 * r {
-                continue;
-            }
-            for m in piece_distance_minima(&pieces[i], &pieces[j]).as_slice() {
-                let place = |k: usize, p: &Vec3| at[k] + pieces[k].length() * pieces[k].nearest(p);
-                let way = (place(j, &m.point_b) - place(i, &m.point_a)).abs();
-                if m.distance < 2.0 * r && way.min(total - way) > PI * r && least.is_none_or(|d| m.distance < d) {
-                    least = Some(m.distance);
-                }
-            }
-        }
-    }
-    least
+fn same_points(points: &[[f64; 3]]) -> Option<(String, String, &'static str)> {
+    let n = points.len();
+    (0..n).find(|&k| points[k] == points[(k + 1) % n]).map(|k| are_one(k, n))
 }
 
 fn greatest_divisor(a: u32, b: u32) -> u32 {
     if b == 0 { a } else { greatest_divisor(b, a % b) }
-}
-
-fn stadium(straight: f64, radius: f64) -> Vec<Piece> {
-    let half = 0.5 * straight;
-    if straight == 0.0 {
-        return vec![Piece::circle(Circle::new(Vec3::zeros(), Vec3::z_axis(), radius))];
-    }
-    let corner = |x: f64, y: f64| Vec3::new(x * half, y * radius, 0.0);
-    let side = |from, to| Segment::new(from, to).map(Piece::Segment);
-    let cap = |x: f64| {
-        let circle = Circle::new(Vec3::x() * (x * half), Vec3::z_axis(), radius);
-        let start_rad = circle.angle_rad(&corner(x, -x));
-        Arc::new(circle, start_rad, PI).map(Piece::Arc)
-    };
-    let pieces =
-        [side(corner(-1.0, -1.0), corner(1.0, -1.0)), cap(1.0), side(corner(1.0, 1.0), corner(-1.0, 1.0)), cap(-1.0)];
-    pieces.into_iter().flatten().collect()
-}
-
-/// How much of an edge the fillet of corner `k` takes: ϱ tan(τ/2), τ the turn.
-fn setback(corners: &[Vec3], k: usize, fillet: f64) -> f64 {
-    let n = corners.len();
-    let (before, at, after) = (corners[(k + n - 1) % n], corners[k % n], corners[(k + 1) % n]);
-    fillet * (0.5 * (at - before).angle(&(after - at))).tan()
-}
-
-/// A closed polygon with its corners rounded.
-fn rounded(corners: &[Vec3], fillet: f64) -> Option<Vec<Piece>> {
-    let n = corners.len();
-    let along = |k: usize| (corners[(k + 1) % n] - corners[k % n]).normalize();
-    let mut out = Vec::new();
-    for k in 0..n {
-        let (from, to) = (corners[k], corners[(k + 1) % n]);
-        let (first, last) = (setback(corners, k, fillet), setback(corners, k + 1, fillet));
-        let (start, end) = (from + along(k) * first, to - along(k) * last);
-        // Fillets may take all of an edge.
-        if (end - start).norm() > SMOOTH * (to - from).norm() {
-            out.push(Piece::Segment(Segment::new(start, end)?));
-        }
-        if last > 0.0 {
-            let beyond = to + along(k + 1) * last;
-            out.push(Piece::Arc(Arc::from_tangent(end, along(k), beyond)?));
-        }
-    }
-    Some(out)
-}
-
-/// Points of a span at which its deviation is measured.
-const SAMPLES: usize = 8;
-
-/// A smooth closed curve, given by point and derivative at 0 ≤ t ≤ 2π, as biarcs of equal spans of t, so many that sampled points are
-/// within `tolerance`. From `spans` on, always twice as many.
-fn smooth(spans: usize, tolerance: f64, at: impl Fn(f64) -> [Vec3; 2]) -> Option<(Vec<Piece>, f64)> {
-    let mut spans = spans.max(1);
-    while 2 * spans <= MOST_PIECES {
-        let t = |k: f64| TAU * k / spans as f64;
-        let mut pieces = Vec::with_capacity(2 * spans);
-        let mut worst: f64 = 0.0;
-        for k in 0..spans {
-            // The last point is the first one, to the last digit.
-            let ([start, leaving], [end, arriving]) = (at(t(k as f64)), at(t(((k + 1) % spans) as f64)));
-            let pair = biarc(start, leaving, end, arriving)?;
-            for sample in 1..SAMPLES {
-                let point = at(t(k as f64 + sample as f64 / SAMPLES as f64))[0];
-                let away = pair.iter().map(|piece| (piece.point(piece.nearest(&point)) - point).norm());
-                worst = worst.max(away.fold(f64::INFINITY, f64::min));
-            }
-            pieces.extend(pair);
-        }
-        if worst <= tolerance {
-            return Some((pieces, worst));
-        }
-        spans *= 2;
-    }
-    None
 }
 
 #[cfg(test)]

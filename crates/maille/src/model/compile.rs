@@ -2,7 +2,7 @@
 
 use super::{Curve, Element, FAR, MANY, Model, Ring};
 use crate::{
-    design::{CurveSpec, Design},
+    design::{CurveSpec, Design, shape::CorePieces},
     error::InvalidInput,
     lattice::{self, Cell},
     state::{Pose, State},
@@ -44,26 +44,28 @@ fn one_circle(pieces: &[Piece]) -> Option<Circle> {
     circles.iter().all(same).then_some(first)
 }
 
-/// The tube of a curve, in units of the reference radius. Where that is a torus it is a ring like any other.
-fn ring_of(design: &Design, element: usize, spec: &CurveSpec) -> Ring {
+/// The tubes of a curve, in units of the reference radius: one, or those of a frame. Where one is a torus it is a ring like any other.
+fn rings_of(design: &Design, element: usize, spec: &CurveSpec) -> Vec<Ring> {
     let unit = design.reference_radius;
     let offset = Vec3::from(spec.offset) / unit;
     let rotation = spec.rotation().unwrap_or_default();
     let minor_radius = spec.minor_radius.or(design.minor_radius).unwrap_or(f64::NAN) / unit;
-    // The design has been checked.
-    let found = spec.shape.scaled(1.0 / unit).approximation(design.tolerance_of_curves() / unit);
-    let (pieces, deviation) = found.unwrap_or_default();
-    let pieces: Vec<Piece> = pieces.iter().map(|piece| piece.moved(&rotation, &offset)).collect();
-    if let Some(Circle { center, normal, radius }) = one_circle(&pieces) {
-        return Ring { element, offset: center, normal, major_radius: radius, minor_radius, curve: None };
-    }
-    let curve = Curve::new(pieces, deviation);
     let normal = Unit::new_normalize(rotation * Vec3::z());
-    // Most forms lie about their origin.
-    let found = curve.center();
-    let center = if curve.reach(&offset) <= curve.reach(&found) * (1.0 + CENTERED) { offset } else { found };
-    let major_radius = curve.reach(&center);
-    Ring { element, offset: center, normal, major_radius, minor_radius, curve: Some(Arc::new(curve)) }
+    let ring = |core: CorePieces| {
+        let pieces: Vec<Piece> = core.pieces.iter().map(|piece| piece.moved(&rotation, &offset)).collect();
+        if let Some(Circle { center, normal, radius }) = one_circle(&pieces) {
+            return Ring { element, offset: center, normal, major_radius: radius, minor_radius, curve: None };
+        }
+        let curve = Curve::new(CorePieces { pieces, ..core });
+        // Most forms lie about their origin.
+        let found = curve.center();
+        let center = if curve.reach(&offset) <= curve.reach(&found) * (1.0 + CENTERED) { offset } else { found };
+        let major_radius = curve.reach(&center);
+        Ring { element, offset: center, normal, major_radius, minor_radius, curve: Some(Arc::new(curve)) }
+    };
+    // The design has been checked.
+    let cores = spec.shape.scaled(1.0 / unit).cores(design.tolerance_of_curves() / unit);
+    cores.unwrap_or_default().into_iter().map(ring).collect()
 }
 
 impl Model {
@@ -115,7 +117,7 @@ impl Model {
                     curve: None,
                 });
             }
-            rings.extend(spec.curves.iter().map(|curve| ring_of(design, elements.len(), curve)));
+            rings.extend(spec.curves.iter().flat_map(|curve| rings_of(design, elements.len(), curve)));
             let reach = rings[first..].iter().map(|r| r.offset.norm() + r.major_radius).fold(0.0, f64::max);
             let position = (Vec3::from(spec.center) - origin) / unit;
             elements.push(Element { name: spec.name.clone(), rings: first..rings.len(), reach, anchor: [0.0; 2] });

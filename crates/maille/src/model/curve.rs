@@ -4,11 +4,11 @@ mod minima;
 mod tree;
 
 pub use minima::{CurveMinimum, curve_distance_minima};
-pub(crate) use minima::{curve_distance, distance_lower_bound};
+pub(crate) use minima::{curve_distance, distance_lower_bound, owned_distance_minima};
 
 use self::tree::Node;
 use crate::{
-    design::shape::SMOOTH,
+    design::shape::{CorePieces, Owned, SMOOTH},
     state::{Pose, images::Image},
 };
 use maille_geometry::{Circle, Piece, Place, Vec3};
@@ -20,6 +20,8 @@ use std::{borrow::Cow, f64::consts::TAU, sync::Arc};
 pub struct Curve {
     /// The pieces, each from where the one before ends.
     pub pieces: Vec<Piece>,
+    /// What of each belongs to this curve: the struts of a frame lie on several, and count on one.
+    pub(crate) owned: Vec<Owned>,
     /// How far the form that they stand for is from them, at sampled points.
     pub deviation: f64,
     /// Length of the curve up to the start of each piece, and all of it.
@@ -32,7 +34,7 @@ pub struct Curve {
 
 impl Curve {
     /// The curve of these pieces.
-    pub(crate) fn new(pieces: Vec<Piece>, deviation: f64) -> Self {
+    pub(crate) fn new(CorePieces { pieces, owned, deviation }: CorePieces) -> Self {
         let mut lengths = vec![0.0];
         for piece in &pieces {
             lengths.push(lengths[lengths.len() - 1] + piece.length());
@@ -47,7 +49,27 @@ impl Curve {
             })
             .collect();
         let nodes = tree::nodes(&pieces);
-        Curve { pieces, deviation, lengths, smooth, nodes }
+        Curve { pieces, owned, deviation, lengths, smooth, nodes }
+    }
+
+    /// The pieces that belong to it: all, but those of a frame that lie on a curve before it, too.
+    pub fn own_pieces(&self) -> impl Iterator<Item = &Piece> {
+        self.pieces.iter().zip(&self.owned).filter(|(_, owned)| owned.inside).map(|(piece, _)| piece)
+    }
+
+    /// Length of the pieces that belong to it.
+    pub fn own_length(&self) -> f64 {
+        self.own_pieces().map(Piece::length).sum()
+    }
+
+    /// Whether a strut with this point belongs to it.
+    pub(crate) fn owns(&self, point: &CurvePoint) -> bool {
+        self.owned[point.piece].inside
+    }
+
+    /// Whether it is one of a frame's.
+    pub fn is_of_frame(&self) -> bool {
+        self.owned.iter().any(|owned| *owned != Owned::ALL)
     }
 
     /// Length of the curve.
@@ -61,7 +83,7 @@ impl Curve {
             Piece::Segment(_) => None,
             Piece::Arc(arc) => Some(arc.circle().radius),
         };
-        self.pieces.iter().filter_map(radius).collect()
+        self.own_pieces().filter_map(radius).collect()
     }
 
     /// Largest distance of its points from `p`.
@@ -229,7 +251,8 @@ impl Core {
             Core::Circle(circle) => {
                 let pose = Pose { position: circle.center, rotation: UnitQuaternion::identity() };
                 let circle = Circle { center: Vec3::zeros(), ..*circle };
-                (Cow::Owned(Curve::new(vec![Piece::circle(circle)], 0.0)), pose)
+                let pieces = vec![Piece::circle(circle)];
+                (Cow::Owned(Curve::new(CorePieces { pieces, owned: vec![Owned::ALL], deviation: 0.0 })), pose)
             }
             Core::Curve(curve, pose) => (Cow::Borrowed(&**curve), *pose),
         }
@@ -258,9 +281,16 @@ impl Core {
         curve.at(piece, t).moved(&pose)
     }
 
-    /// The pieces that come within an arc length of one of its points.
+    /// Its own pieces that come within an arc length of one of its points.
     pub(crate) fn pieces_within(&self, point: &CurvePoint, away: f64) -> Vec<usize> {
-        self.curve().0.pieces_within(point, away)
+        let curve = self.curve().0;
+        curve.pieces_within(point, away).into_iter().filter(|k| curve.owned[*k].inside).collect()
+    }
+
+    /// Its own pieces as they stand.
+    pub fn own_pieces(&self) -> Vec<Piece> {
+        let (curve, pose) = self.curve();
+        curve.own_pieces().map(|piece| piece.moved(&pose.rotation, &pose.position)).collect()
     }
 
     /// The point at an angle: see [`CurvePoint::angle_rad`].

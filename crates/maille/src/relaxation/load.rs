@@ -279,9 +279,10 @@ fn for_points_of(model: &Model, state: &State, floor: Floor, index: usize, mut e
     let pose = &state.poses[ring.element];
     if let Some(curve) = &ring.curve {
         for angle in floor_angles_rad() {
-            let arm = pose.rotation * curve.at_angle(angle).point;
+            let at = curve.at_angle(angle);
+            let arm = pose.rotation * at.point;
             let height = (pose.position + arm).z - floor.height;
-            if height < ring.minor_radius {
+            if height < ring.minor_radius && curve.owns(&at) {
                 each(arm, height, ring.minor_radius);
             }
         }

@@ -4,7 +4,7 @@ use super::{RingPair, broad_phase::in_chunks, close_pairs};
 use crate::{
     model::{
         Model,
-        curve::{Core, CurveMinimum, curve_distance_minima, distance_lower_bound},
+        curve::{Core, CurveMinimum, curve_distance, distance_lower_bound, owned_distance_minima},
     },
     state::State,
 };
@@ -55,7 +55,7 @@ impl NearPair {
         if let Some((_, minima)) = known.filter(|(up_to, _)| *up_to >= far) {
             return minima;
         }
-        let minima: Arc<[CurveMinimum]> = curve_distance_minima(&self.a, &self.b, far).into();
+        let minima: Arc<[CurveMinimum]> = owned_distance_minima(&self.a, &self.b, far).into();
         *self.of_curves.borrow_mut() = Some((far, Arc::clone(&minima)));
         minima
     }
@@ -64,7 +64,11 @@ impl NearPair {
     pub(crate) fn distance(&self) -> f64 {
         match self.circles() {
             Some(_) => self.minima()[0].distance,
-            None => self.curve_minima(0.0).first().map_or(f64::NAN, |minimum| minimum.distance),
+            // Of a frame's curves the nearest points may belong to others.
+            None => match self.curve_minima(0.0).first() {
+                Some(minimum) => minimum.distance,
+                None => curve_distance(&self.a, &self.b),
+            },
         }
     }
 

@@ -28,6 +28,8 @@ struct Pair<'a> {
     b: &'a Curve,
     /// From the frame of b to that of a.
     motion: Pose,
+    /// Whether all pieces count, or those that belong to the curves.
+    all: bool,
     /// Minima up to this distance are wanted, and the least one.
     far: f64,
     least: f64,
@@ -36,9 +38,18 @@ struct Pair<'a> {
 
 /// All local minima of the distance of two core curves up to `far`, and the least one in any case; ascending. None of curves that are not finite.
 pub fn curve_distance_minima(a: &Core, b: &Core, far: f64) -> Vec<CurveMinimum> {
+    minima(a, b, far, true)
+}
+
+/// The same between what belongs to the curves: what two curves of a frame share counts on one.
+pub(crate) fn owned_distance_minima(a: &Core, b: &Core, far: f64) -> Vec<CurveMinimum> {
+    minima(a, b, far, false)
+}
+
+fn minima(a: &Core, b: &Core, far: f64, all: bool) -> Vec<CurveMinimum> {
     let ((own, at_a), (other, at_b)) = (a.curve(), b.curve());
-    let mut pair =
-        Pair { a: &own, b: &other, motion: relative(&at_a, &at_b), far, least: f64::INFINITY, found: Vec::new() };
+    let motion = relative(&at_a, &at_b);
+    let mut pair = Pair { a: &own, b: &other, motion, all, far, least: f64::INFINITY, found: Vec::new() };
     pair.visit(0, 0, &pair.moved(0));
     let mut out = pair.found;
     // A distance that is computed anew differs in its last digit.
@@ -106,12 +117,19 @@ impl Pair<'_> {
 
     /// The minima between piece `i` of a and piece `j` of b.
     fn look(&mut self, i: usize, j: usize) {
+        if !(self.all || self.a.owned[i].any() && self.b.owned[j].any()) {
+            return;
+        }
         let (b, motion) = (self.b, self.motion);
         let of_b = |k: usize| b.pieces[k].moved(&motion.rotation, &motion.position);
         let (own, other) = (self.a.pieces[i], of_b(j));
         for m in piece_distance_minima(&own, &other).as_slice() {
             if m.distance > self.far.max(self.least) {
                 break;
+            }
+            let owned = self.a.owned[i].at(m.place_a) && self.b.owned[j].at(m.place_b);
+            if !(self.all || owned) {
+                continue;
             }
             let way = m.point_b - m.point_a;
             let n = self.b.pieces.len();
