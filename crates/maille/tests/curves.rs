@@ -4,7 +4,7 @@ mod common;
 
 use common::{exact_map, map, rows, shaken};
 use maille::{
-    design::{CurveSpec, Design, Shape},
+    design::{CurveSpec, Design, PathPart, Shape},
     lattice::Cell,
     model::{Core, Model, curve::curve_distance_minima},
     program::{LatticeFamily, Parameter, SheetProgram},
@@ -94,7 +94,25 @@ fn forms() -> Vec<Shape> {
         Shape::Ellipse { a: 1.4, b: 0.8 },
         knot(1.0, 4.0),
         knot(2.0, 3.0),
+        path_of_stadium(1.0, 0.7),
+        Shape::Spline { points: vec![[1.4, 0.0, 0.2], [0.0, 1.0, -0.2], [-1.2, 0.1, 0.3], [0.1, -0.9, 0.0]] },
     ]
+}
+
+fn path_of_stadium(straight: f64, radius: f64) -> Shape {
+    let part = |to: [f64; 2], through: Option<[f64; 2]>| PathPart {
+        to: [to[0], to[1], 0.0],
+        through: through.map(|p| [p[0], p[1], 0.0]),
+    };
+    let h = 0.5 * straight;
+    Shape::Path {
+        parts: vec![
+            part([h, -radius], None),
+            part([h, radius], Some([h + radius, 0.0])),
+            part([-h, radius], None),
+            part([-h, -radius], Some([-h - radius * 0.8, -radius * 0.6])),
+        ],
+    }
 }
 
 /// Against all pairs of pieces, and steps along the curves to both sides of each minimum.
@@ -291,6 +309,34 @@ fn a_chain_of_squares_has_its_closed_form() {
         let (l1, status) = limit(&chain(Shape::Square { side, fillet }, r, 0.7 * pitch), 0.0);
         assert!((0.7 * pitch * (1.0 + l1) - pitch).abs() < 1e-10, "{fillet}: {} {pitch}", 0.7 * pitch * (1.0 + l1));
         assert_eq!(status == Status::Global, round < sharp, "{fillet}");
+    }
+}
+
+/// Stadia as paths of two segments and two arcs; squares as frames, alone and with a strut across, whose cycles share it; and a frame whose
+/// loose end is in nothing's way.
+#[test]
+fn paths_and_frames_lock_as_the_forms_that_they_are() {
+    let (stadium, path) = (Shape::Stadium { straight: 1.0, radius: 0.7 }, path_of_stadium(1.0, 0.7));
+    let limits = [stadium, path].map(|shape| limit(&chain(shape, 0.1, 3.0), 0.0));
+    assert!((limits[0].0 - limits[1].0).abs() < 1e-10 && limits[0].1 == limits[1].1, "{limits:?}");
+    let corners = [[1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0], [-1.0, -1.0, 0.0], [-1.0, -1.0, 0.3]];
+    let sides = vec![[0, 1], [1, 2], [2, 3], [3, 0]];
+    let frame = |corners: &[[f64; 3]], more: &[[u32; 2]]| Shape::Frame {
+        vertices: corners.to_vec(),
+        edges: sides.iter().chain(more).copied().collect(),
+    };
+    let pitch = 0.7 * 2.0 * (SQRT_2 * 2.0 - 2.0 * 3.0_f64.sqrt() * 0.1);
+    let sharp = limit(&chain(Shape::Square { side: 2.0, fillet: 0.0 }, 0.1, pitch), 0.0);
+    for (frame, curves) in [
+        (frame(&corners[..4], &[]), 1),
+        // The links pull at corners 0 and 2, which this strut does not touch.
+        (frame(&corners[..4], &[[1, 3]]), 2),
+        (frame(&corners, &[[3, 4]]), 2),
+    ] {
+        let design = chain(frame, 0.1, pitch);
+        assert_eq!(compiled(&design).rings.len(), 2 * curves);
+        let found = limit(&design, 0.0);
+        assert!((found.0 - sharp.0).abs() < 1e-9 && found.1 == sharp.1, "{found:?} {sharp:?}");
     }
 }
 

@@ -393,6 +393,7 @@ fn greatest_divisor(a: u32, b: u32) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::TAU;
 
     fn is_closed(pieces: &[Piece]) -> bool {
         (0..pieces.len()).all(|k| {
@@ -420,6 +421,16 @@ mod tests {
         close(of(Shape::Square { side: 2.0, fillet: 1.0 }, 1e-6), TAU);
         close(of(Shape::Hexagon { side: 1.0, fillet: 0.0 }, 1e-6), 6.0);
         close(of(Shape::Ellipse { a: 1.5, b: 1.5 }, 1e-6), 3.0 * PI);
+        let part = |to: [f64; 3], through: Option<[f64; 3]>| PathPart { to, through };
+        let third = [(-0.5f64), 0.75_f64.sqrt(), 0.0];
+        let parts = vec![part([-1.0, 0.0, 0.0], Some(third)), part([1.0, 0.0, 0.0], None)];
+        close(of(Shape::Path { parts }, 1e-6), PI + 2.0);
+        let parts = vec![part([-0.5, -third[1], 0.0], Some(third)), part([1.0, 0.0, 0.0], None)];
+        close(of(Shape::Path { parts }, 1e-6), 2.0 / 3.0 * TAU + 3.0_f64.sqrt());
+        // Cubics through so many points of a circle are as long as it is, to the fourth power of their distance.
+        let on_circle = |k: usize| [(TAU * k as f64 / 64.0).cos(), (TAU * k as f64 / 64.0).sin(), 0.0];
+        let spline = of(Shape::Spline { points: (0..64).map(on_circle).collect() }, 1e-9);
+        assert!((spline - TAU).abs() < 1e-5, "{spline}");
         // Ramanujan's second formula, exact to 1e-8 here.
         let (a, b): (f64, f64) = (1.2, 1.0);
         let h = ((a - b) / (a + b)).powi(2);
@@ -461,5 +472,14 @@ mod tests {
         wrong(polygon(&[[0.0; 3], [1.0, 0.0, 0.0]]), "points", "2 points");
         wrong(polygon(&[[0.0; 3], [1.0, 0.0, 0.0], [1.0, 0.0, 0.0]]), "points", "are one");
         wrong(polygon(&[[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]]), "points", "turns back");
+        let path = |parts: &[([f64; 3], Option<[f64; 3]>)]| Shape::Path {
+            parts: parts.iter().map(|(to, through)| PathPart { to: *to, through: *through }).collect(),
+        };
+        let (a, b) = ([1.0, 0.0, 0.0], [0.0; 3]);
+        wrong(path(&[(a, None)]), "parts", "1 parts");
+        wrong(path(&[(a, None), (a, None)]), "parts[0].to", "ends where it begins");
+        wrong(path(&[(a, Some([0.5, 0.0, 0.0])), (b, Some([0.5, 1.0, 0.0]))]), "parts[0].through", "on the line");
+        wrong(path(&[(a, None), (b, None)]), "parts[0].to", "turns back");
+        wrong(Shape::Spline { points: vec![a, b, b] }, "points", "points 1 and 2 are one");
     }
 }

@@ -44,6 +44,31 @@ fn one_circle(pieces: &[Piece]) -> Option<Circle> {
     circles.iter().all(same).then_some(first)
 }
 
+/// Largest distance of points of the pieces from `p`.
+fn reach(pieces: &[Piece], p: &Vec3) -> f64 {
+    pieces.iter().map(|piece| (piece.point(piece.farthest(p)) - p).norm()).fold(0.0, f64::max)
+}
+
+/// Steps to the centre of pieces.
+const STEPS: usize = 200;
+
+/// A centre from which the pieces reach nearly as little as possible (Bădoiu and Clarkson, "Smaller core-sets for balls", 2003: each step
+/// goes a smaller part of the way to the farthest point).
+fn center(pieces: &[Piece]) -> Vec3 {
+    let mut at = pieces.iter().map(|piece| piece.point(0.5)).sum::<Vec3>() / pieces.len() as f64;
+    let mut best = (reach(pieces, &at), at);
+    for step in 1..=STEPS {
+        let far = pieces.iter().map(|piece| piece.point(piece.farthest(&at)));
+        let far = far.max_by(|x, y| (x - at).norm().total_cmp(&(y - at).norm())).unwrap_or(at);
+        at += (far - at) / (step + 1) as f64;
+        let reach = reach(pieces, &at);
+        if reach < best.0 * (1.0 - 1e-12) {
+            best = (reach, at);
+        }
+    }
+    best.1
+}
+
 /// The tubes of a curve, in units of the reference radius: one, or those of a frame. Where one is a torus it is a ring like any other.
 fn rings_of(design: &Design, element: usize, spec: &CurveSpec) -> Vec<Ring> {
     let unit = design.reference_radius;
@@ -51,21 +76,24 @@ fn rings_of(design: &Design, element: usize, spec: &CurveSpec) -> Vec<Ring> {
     let rotation = spec.rotation().unwrap_or_default();
     let minor_radius = spec.minor_radius.or(design.minor_radius).unwrap_or(f64::NAN) / unit;
     let normal = Unit::new_normalize(rotation * Vec3::z());
+    // The design has been checked.
+    let cores = spec.shape.scaled(1.0 / unit).cores(design.tolerance_of_curves() / unit).unwrap_or_default();
+    let moved = |piece: &Piece| piece.moved(&rotation, &offset);
+    // The balls of all cycles of a frame have one centre: so links of the same two elements bound the same vector.
+    let all: Vec<Piece> = cores.iter().flat_map(|core| core.pieces.iter().map(moved)).collect();
+    // Most forms lie about their origin.
+    let found = center(&all);
+    let center = if reach(&all, &offset) <= reach(&all, &found) * (1.0 + CENTERED) { offset } else { found };
     let ring = |core: CorePieces| {
-        let pieces: Vec<Piece> = core.pieces.iter().map(|piece| piece.moved(&rotation, &offset)).collect();
+        let pieces: Vec<Piece> = core.pieces.iter().map(moved).collect();
         if let Some(Circle { center, normal, radius }) = one_circle(&pieces) {
             return Ring { element, offset: center, normal, major_radius: radius, minor_radius, curve: None };
         }
+        let major_radius = reach(&pieces, &center);
         let curve = Curve::new(CorePieces { pieces, ..core });
-        // Most forms lie about their origin.
-        let found = curve.center();
-        let center = if curve.reach(&offset) <= curve.reach(&found) * (1.0 + CENTERED) { offset } else { found };
-        let major_radius = curve.reach(&center);
         Ring { element, offset: center, normal, major_radius, minor_radius, curve: Some(Arc::new(curve)) }
     };
-    // The design has been checked.
-    let cores = spec.shape.scaled(1.0 / unit).cores(design.tolerance_of_curves() / unit);
-    cores.unwrap_or_default().into_iter().map(ring).collect()
+    cores.into_iter().map(ring).collect()
 }
 
 impl Model {

@@ -86,28 +86,6 @@ impl Curve {
         self.own_pieces().filter_map(radius).collect()
     }
 
-    /// Largest distance of its points from `p`.
-    pub(crate) fn reach(&self, p: &Vec3) -> f64 {
-        self.pieces.iter().map(|piece| (piece.point(piece.farthest(p)) - p).norm()).fold(0.0, f64::max)
-    }
-
-    /// A centre from which the curve reaches nearly as little as possible (Bădoiu and Clarkson, "Smaller core-sets for balls", 2003: each
-    /// step goes a smaller part of the way to the farthest point).
-    pub(crate) fn center(&self) -> Vec3 {
-        let mut at = self.pieces.iter().map(|piece| piece.point(0.5)).sum::<Vec3>() / self.pieces.len() as f64;
-        let mut best = (self.reach(&at), at);
-        for step in 1..=STEPS {
-            let far = self.pieces.iter().map(|piece| piece.point(piece.farthest(&at)));
-            let far = far.max_by(|x, y| (x - at).norm().total_cmp(&(y - at).norm())).unwrap_or(at);
-            at += (far - at) / (step + 1) as f64;
-            let reach = self.reach(&at);
-            if reach < best.0 * (1.0 - 1e-12) {
-                best = (reach, at);
-            }
-        }
-        best.1
-    }
-
     /// Whether `map`, an isometry, takes the pieces to those of `other`, in any order and direction.
     pub(crate) fn maps_to(&self, other: &Curve, map: impl Fn(Vec3) -> Vec3, tolerance: f64) -> bool {
         let points = |piece: &Piece| [0.0, 0.5, 1.0].map(|t| piece.point(t));
@@ -127,9 +105,6 @@ impl Curve {
             })
     }
 }
-
-/// Steps to the centre of a curve.
-const STEPS: usize = 200;
 
 /// A core curve as it stands.
 #[derive(Clone, Debug)]
