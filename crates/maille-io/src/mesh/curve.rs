@@ -259,6 +259,39 @@ mod tests {
         }
     }
 
+    /// Each strut of a frame is closed by half balls, and meshed once.
+    #[test]
+    fn struts_are_closed_and_near_their_capsules() {
+        let curve = curve(
+            "frame = { vertices = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.2], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.2]], \
+             edges = [[0, 1], [1, 2], [2, 3], [3, 0], [0, 2]] }",
+        );
+        let struts: Vec<&Piece> = curve.own_pieces().collect();
+        assert!(struts.len() > 1);
+        for fineness in [Fineness::Tolerance(0.02), Fineness::Tolerance(0.002), Fineness::Segments(40, None)] {
+            let mesh = curve_mesh(&curve, [1.0, 0.1], fineness, 1.0, 1.0).unwrap();
+            let mut edges: HashMap<(usize, usize), usize> = HashMap::new();
+            for [a, b, c] in mesh.triangles() {
+                [(a, b), (b, c), (c, a)].into_iter().for_each(|edge| *edges.entry(edge).or_default() += 1);
+            }
+            assert!(edges.iter().all(|(&(a, b), &count)| count == 1 && edges.contains_key(&(b, a))));
+            assert_eq!((mesh.triangles().count(), mesh.quads().count()), (mesh.triangle_count(), mesh.quad_count()));
+            let v = &mesh.vertices;
+            let volume: f64 = mesh.triangles().map(|[a, b, c]| v[a].dot(&v[b].cross(&v[c])) / 6.0).sum();
+            let (mut capsules, mut skin) = (0.0, 0.0);
+            for strut in &struts {
+                capsules += PI * 0.01 * strut.length() + 4.0 / 3.0 * PI * 0.001;
+                skin += 2.0 * PI * 0.1 * strut.length() + 4.0 * PI * 0.01;
+            }
+            let missing = capsules - volume;
+            assert!(missing > 0.0 && missing < skin * mesh.chordal_error(), "{volume} of {capsules}");
+            for (vertex, normal) in v.iter().zip(&mesh.normals) {
+                let away = struts.iter().map(|strut| (strut.point(strut.nearest(vertex)) - vertex).norm());
+                assert!(away.fold(f64::INFINITY, f64::min) < 0.1 + 1e-12 && (normal.norm() - 1.0).abs() < 1e-12);
+            }
+        }
+    }
+
     #[test]
     fn what_makes_no_tube_is_refused() {
         let curve = curve(FORMS[0]);

@@ -261,18 +261,25 @@ impl Scene {
 
     /// The corner of the box around the meshes with the smallest x, y and z.
     pub fn corner(&self) -> Vec3 {
+        self.mesh_box(|_| true)[0]
+    }
+
+    /// Least and largest corner of the box around the meshes of those shapes that `counts`.
+    fn mesh_box(&self, counts: impl Fn(&TorusMesh) -> bool) -> [Vec3; 2] {
         // Copies of a ring in other cells are translated, but turned in a rolled sheet.
         let mut reaches = vec![None; self.first_ring.last().map_or(0, |last| last + self.largest_kind())];
-        self.rings().fold(Vec3::repeat(f64::INFINITY), |corner, ring| {
+        let nothing = [Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY)];
+        self.rings().filter(|ring| counts(&self.shapes[ring.shape])).fold(nothing, |[least, largest], ring| {
             if self.rolled {
                 reaches[ring.ring] = None;
             }
-            let reach: &mut Option<Vec3> = &mut reaches[ring.ring];
-            let reach = reach.get_or_insert_with(|| {
+            let reach: &mut Option<[Vec3; 2]> = &mut reaches[ring.ring];
+            let [below, above] = reach.get_or_insert_with(|| {
                 let turned = self.shapes[ring.shape].vertices.iter().map(|v| ring.pose.rotation * v);
-                turned.fold(Vec3::repeat(f64::INFINITY), |least, v| least.inf(&v))
+                turned.fold(nothing, |[least, largest], v| [least.inf(&v), largest.sup(&v)])
             });
-            corner.inf(&(ring.pose.translation.vector + *reach))
+            let at = ring.pose.translation.vector;
+            [least.inf(&(at + *below)), largest.sup(&(at + *above))]
         })
     }
 
@@ -286,13 +293,16 @@ impl Scene {
         ring.pose.rotation * vertex + (ring.pose.translation.vector - self.origin)
     }
 
-    /// Least and largest corner of the box around the tori.
+    /// Least and largest corner of the box around the tori, and the meshes of other curves.
     ///
     /// A circle of radius R and normal n reaches R √(1 − n_k²) along axis k.
     pub fn bounds(&self) -> [Vec3; 2] {
-        let (mut least, mut largest) = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
+        let [mut least, mut largest] = self.mesh_box(|shape| shape.chords.is_some());
         for ring in self.rings() {
             let shape = &self.shapes[ring.shape];
+            if shape.chords.is_some() {
+                continue;
+            }
             let normal = ring.pose.rotation * Vec3::z();
             let reach = normal.map(|n| shape.major_radius * (1.0 - n * n).max(0.0).sqrt() + shape.minor_radius);
             least = least.inf(&(ring.pose.translation.vector - reach));
