@@ -290,9 +290,11 @@ impl Reader<'_> {
             _ => None,
         };
         let edge = numbers.and_then(|numbers| <[u32; 2]>::try_from(numbers).ok());
-        edge.or_else(|| {
-            self.wrong_type(value, path, "the numbers of two vertices", "write [0, 1]; vertices count from 0")
-        })
+        if edge.is_none() {
+            let help = "write [0, 1]; vertices count from 0";
+            self.problems.push(DesignProblem::new(path, "is not the numbers of two vertices", help, value.span()));
+        }
+        edge
     }
 
     fn ring(&mut self, value: &Value<'_>, path: &str) -> Option<RingSpec> {

@@ -220,6 +220,11 @@ export interface Parameter {
   max?: number | null;
 }
 
+export interface PathPart {
+  to: [number, number, number];
+  through: [number, number, number] | null;
+}
+
 export interface PoseRecord {
   element: string;
   position: [number, number, number];
@@ -264,6 +269,9 @@ export type Shape =
   | { "square": { side: number; fillet: number } }
   | { "hexagon": { side: number; fillet: number } }
   | { "polyline": { points: [number, number, number][]; fillet: number } }
+  | { "path": { parts: PathPart[] } }
+  | { "spline": { points: [number, number, number][] } }
+  | { "frame": { vertices: [number, number, number][]; edges: [number, number][] } }
   | { "ellipse": { a: number; b: number } }
   | { "torus_knot": { p: number; q: number; R: number; a: number } };
 

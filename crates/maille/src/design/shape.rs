@@ -476,7 +476,7 @@ mod tests {
             parts: parts.iter().map(|(to, through)| PathPart { to: *to, through: *through }).collect(),
         };
         let (a, b) = ([1.0, 0.0, 0.0], [0.0; 3]);
-        wrong(path(&[(a, None)]), "parts", "1 parts");
+        wrong(path(&[(a, None)]), "parts", "1 part");
         wrong(path(&[(a, None), (a, None)]), "parts[0].to", "ends where it begins");
         wrong(path(&[(a, Some([0.5, 0.0, 0.0])), (b, Some([0.5, 1.0, 0.0]))]), "parts[0].through", "on the line");
         wrong(path(&[(a, None), (b, None)]), "parts[0].to", "turns back");

@@ -64,7 +64,7 @@ pub(super) fn problem_of_parts(parts: &[PathPart]) -> Option<(String, String, &'
     if parts.len() < 2 || parts.len() > MOST_PIECES {
         return Some((
             "parts".into(),
-            format!("{} parts", parts.len()),
+            format!("{} part{}", parts.len(), if parts.len() == 1 { "" } else { "s" }),
             "a closed path has 2 parts or more, at most 10000; for a circle write a ring",
         ));
     }
