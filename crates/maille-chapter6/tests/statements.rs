@@ -37,6 +37,7 @@ fn limits_along(design: &Design, directions: &[f64], l2: &[f64], words: &str) ->
         program_version: String::new(),
         input_hash: String::new(),
         design: design.clone(),
+        curve_deviation: None,
         parameters: serde_json::json!(question),
         counters: Counters::of(&rows),
         files: Default::default(),

@@ -354,6 +354,13 @@ impl Design {
         self.curve_tolerance.unwrap_or(CURVE_TOLERANCE * self.reference_radius)
     }
 
+    /// How far smooth curves are from the segments and arcs that stand for them, at most, at sampled points. None without such curves.
+    pub fn curve_deviation(&self) -> Option<f64> {
+        let curves = self.elements.iter().flat_map(|e| &e.curves);
+        let deviations = curves.filter_map(|curve| curve.shape.deviation(self.tolerance_of_curves()));
+        deviations.filter(|deviation| *deviation > 0.0).max_by(f64::total_cmp)
+    }
+
     fn add_problems_of_curve(&self, curve: &CurveSpec, at: &str, out: &mut Problems) {
         if out.finite(format!("{at}.normal"), &curve.normal) && curve.normal == [0.0; 3] {
             out.add(format!("{at}.normal"), "is zero", "give any non-zero vector, as [0.0, 0.0, 1.0]");

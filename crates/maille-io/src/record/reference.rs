@@ -133,6 +133,7 @@ mod tests {
             program_version: "0.1.0".into(),
             input_hash: "0".into(),
             design,
+            curve_deviation: None,
             parameters: Value::Null,
             counters: Counters::of(&rows),
             files: Default::default(),

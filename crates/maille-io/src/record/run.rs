@@ -22,6 +22,9 @@ pub struct RunRecord {
     pub input_hash: String,
     /// The design as computed.
     pub design: Design,
+    /// How far smooth curves are from the arcs that stand for them, at most, in the file's unit; none without such curves.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub curve_deviation: Option<f64>,
     /// Every parameter and tolerance that was used.
     pub parameters: Value,
     /// What was done.
@@ -40,6 +43,7 @@ impl RunRecord {
             program_version: program_version.to_owned(),
             input_hash: input_hash(design, parameters),
             design: design.clone(),
+            curve_deviation: design.curve_deviation(),
             parameters: parameters.clone(),
             counters: Counters::default(),
             files: BTreeMap::new(),

@@ -47,6 +47,7 @@ pub fn record(name: &str, design: Design, rows: Vec<LimitRow>) -> NamedRecord {
         program_version: "0.1.0".into(),
         input_hash: "0".into(),
         design,
+        curve_deviation: None,
         parameters: serde_json::json!(question),
         counters: Counters::of(&rows),
         files: Default::default(),

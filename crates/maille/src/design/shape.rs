@@ -301,6 +301,11 @@ impl Shape {
         self.approximation(tolerance).map(|(pieces, _)| pieces)
     }
 
+    /// How far it is from its pieces at most, at sampled points: 0 where they are the form itself.
+    pub fn deviation(&self, tolerance: f64) -> Option<f64> {
+        self.approximation(tolerance).map(|(_, deviation)| deviation)
+    }
+
     /// Its closed curves: one, or those of a frame (`docs/theory/curves.md`).
     pub(crate) fn cores(&self, tolerance: f64) -> Option<Vec<CorePieces>> {
         if let Shape::Frame { vertices, edges } = self {
