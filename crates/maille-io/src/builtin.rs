@@ -47,7 +47,14 @@ const DESIGNS: &[Builtin] = embed![
     "cable",
     "curb",
     "byzantine",
-    "box";
+    "box",
+    "stadium-chain",
+    "stadium-sheet",
+    "squares",
+    "hexagons",
+    "ellipses",
+    "torus-knots",
+    "cages";
     "1.1",
     "1.2",
     "2",
@@ -59,7 +66,7 @@ const DESIGNS: &[Builtin] = embed![
     "5.2",
 ];
 
-/// All built-in designs: those of the thesis, weaves with a name, and closer starts of chapter 6.
+/// All built-in designs: those of the thesis, weaves with a name, sheets of other elements than rings, and closer starts of chapter 6.
 pub fn builtin_designs() -> &'static [Builtin] {
     DESIGNS
 }

@@ -18,24 +18,24 @@ fn a_sample_of_every_design_is_proved() {
         let name = design["name"].as_str().unwrap();
         // 5 where a limit is not found: what is certified is verified all the same.
         let pulls = if design["single"] == true { "" } else { "--directions 0,37.5 --l2=-0.125,0" };
-        let line = format!("characterize {name} {pulls} --cell 1x1 --out {name} --quiet");
+        // A knot of 1,024 arcs takes long.
+        let starts = if name == "torus-knots" { "--starts 1" } else { "" };
+        let line = format!("characterize {name} {pulls} {starts} --cell 1x1 --out {name} --quiet");
         assert!([0, 5].contains(&code(&maille(dir.path(), &line))), "{line}");
         all_proved(dir.path(), name);
     }
 }
 
-/// Long links, rounded and sharp squares, and a knot of biarcs; what is planted is found.
+/// Long links and rounded squares; what is planted is found.
 #[test]
 fn limits_of_curves_are_proved() {
     let dir = tempfile::tempdir().unwrap();
-    let design = |name: &str| format!("{}/../../examples/curves/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     for (name, rest) in [
         ("stadium-chain", ""),
         ("stadium-sheet", "--directions 0,30,45 --l2=-0.1,0"),
         ("squares", "--directions 0,30,45 --l2 0"),
-        ("knot", "--directions 0 --l2 0 --starts 1"),
     ] {
-        let line = format!("characterize {} {rest} --cell 1x1 --out {name} --quiet", design(name));
+        let line = format!("characterize {name} {rest} --cell 1x1 --out {name} --quiet");
         assert_eq!(code(&maille(dir.path(), &line)), 0, "{line}");
         all_proved(dir.path(), name);
     }
@@ -55,7 +55,7 @@ fn limits_of_curves_are_proved() {
 #[test]
 fn what_knows_rings_alone_refuses_curves() {
     let dir = tempfile::tempdir().unwrap();
-    let design = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/curves/stadium-sheet.toml");
+    let design = "stadium-sheet";
     maille(dir.path(), &format!("characterize {design} --directions 0,30 --l2 0 --out record --quiet"));
     for line in [
         format!("prove {design} --direction 0 --l2 0"),
