@@ -320,7 +320,7 @@ fn paths_and_frames_lock_as_the_forms_that_they_are() {
     let limits = [stadium, path].map(|shape| limit(&chain(shape, 0.1, 3.0), 0.0));
     assert!((limits[0].0 - limits[1].0).abs() < 1e-10 && limits[0].1 == limits[1].1, "{limits:?}");
     let corners = [[1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0], [-1.0, -1.0, 0.0], [-1.0, -1.0, 0.3]];
-    let sides = vec![[0, 1], [1, 2], [2, 3], [3, 0]];
+    let sides = [[0, 1], [1, 2], [2, 3], [3, 0]];
     let frame = |corners: &[[f64; 3]], more: &[[u32; 2]]| Shape::Frame {
         vertices: corners.to_vec(),
         edges: sides.iter().chain(more).copied().collect(),

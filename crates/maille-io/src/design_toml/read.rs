@@ -286,7 +286,7 @@ impl Reader<'_> {
 
     fn edge(&mut self, value: &Value<'_>, path: &str) -> Option<[u32; 2]> {
         let numbers = match value.get_ref() {
-            DeValue::Array(array) => array.iter().map(|v| whole(v)).collect::<Option<Vec<u32>>>(),
+            DeValue::Array(array) => array.iter().map(whole).collect::<Option<Vec<u32>>>(),
             _ => None,
         };
         let edge = numbers.and_then(|numbers| <[u32; 2]>::try_from(numbers).ok());
@@ -477,6 +477,13 @@ impl Reader<'_> {
     }
 }
 
+fn whole(value: &Value<'_>) -> Option<u32> {
+    match value.get_ref() {
+        DeValue::Integer(i) => u32::from_str_radix(i.as_str(), i.radix()).ok(),
+        _ => None,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -487,12 +494,5 @@ mod tests {
             assert_eq!(serde_json::to_value(source).unwrap(), name);
             assert_eq!(source_name(source), name);
         }
-    }
-}
-
-fn whole(value: &Value<'_>) -> Option<u32> {
-    match value.get_ref() {
-        DeValue::Integer(i) => u32::from_str_radix(i.as_str(), i.radix()).ok(),
-        _ => None,
     }
 }

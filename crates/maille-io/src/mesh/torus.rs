@@ -135,7 +135,7 @@ impl TorusMesh {
         let Segments { around, across } = self.segments;
         let sections = self.sections_of_strut;
         let is_last = move |i: usize| sections.is_some_and(|n| i % n == n - 1);
-        let is_pole = move |i: usize| sections.is_some_and(|n| i % n == 0 || i % n == n - 1);
+        let is_pole = move |i: usize| sections.is_some_and(|n| i.is_multiple_of(n) || i % n == n - 1);
         let at = move |i: usize, j: usize| i * across + if is_pole(i) { 0 } else { j };
         (0..around).filter(move |i| !is_last(*i)).flat_map(move |i| {
             let next = (i + 1) % around;

@@ -1,11 +1,13 @@
 //! Forms of core curves other than circles, and the segments and arcs that they are made of.
 
+mod core;
 mod corners;
 mod frame;
 mod overlap;
 mod smooth;
 
-pub(crate) use frame::Owned;
+pub use self::core::PathPart;
+pub(crate) use self::core::{CorePieces, MOST_PIECES, Owned, SMOOTH, ball};
 pub(super) use overlap::{frame_overlap, self_overlap, tightest};
 
 use self::{
@@ -90,33 +92,6 @@ pub enum Shape {
         a: f64,
     },
 }
-
-/// A part of a path.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PathPart {
-    /// Where it ends.
-    pub to: [f64; 3],
-    /// A point of the arc on the way; without one the part is straight.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub through: Option<[f64; 3]>,
-}
-
-/// The pieces of one closed core curve.
-#[derive(Clone, Debug)]
-pub(crate) struct CorePieces {
-    /// Segments and arcs, in order.
-    pub pieces: Vec<Piece>,
-    /// What of each belongs to this curve alone: see [`Owned`].
-    pub owned: Vec<Owned>,
-    /// How far the form is from its pieces at most, at sampled points.
-    pub deviation: f64,
-}
-
-/// Most pieces of one curve.
-pub(crate) const MOST_PIECES: usize = 10_000;
-/// Sine of the angle below which two tangents are one.
-pub(crate) const SMOOTH: f64 = 1e-7;
 
 impl Shape {
     /// Its key in a design file.
@@ -368,16 +343,6 @@ impl Shape {
             }
         }
     }
-}
-
-/// A ball around a piece.
-pub(crate) fn ball(piece: &Piece) -> (Vec3, f64) {
-    let middle = (piece.point(0.0) + piece.point(1.0)) * 0.5;
-    let at = match piece {
-        Piece::Arc(arc) if arc.sweep_rad() > std::f64::consts::PI => arc.circle().center,
-        _ => middle,
-    };
-    (at, (piece.point(piece.farthest(&at)) - at).norm())
 }
 
 /// Two points that follow each other, of `n`, and are one.

@@ -1,6 +1,6 @@
 //! Stadia, polygons with sharp and rounded corners, and paths of segments and arcs.
 
-use super::{MOST_PIECES, PathPart, SMOOTH};
+use super::core::{MOST_PIECES, PathPart, SMOOTH};
 use maille_geometry::{Arc, Circle, Piece, Segment, Vec3};
 use nalgebra::{Rotation3, Unit};
 use std::f64::consts::PI;

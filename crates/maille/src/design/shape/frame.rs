@@ -4,39 +4,9 @@
 //! written, and for each strut that is not in it, in order, the strut with the way back through the tree. What is linked with the
 //! frame is linked with one of these. Struts that are on no cycle follow, each as a curve there and back.
 
-use super::{CorePieces, MOST_PIECES};
-use maille_geometry::{Piece, Place, Segment, Vec3};
+use super::core::{CorePieces, MOST_PIECES, Owned};
+use maille_geometry::{Piece, Segment, Vec3};
 use std::collections::{BTreeSet, VecDeque};
-
-/// What of a piece belongs to its curve. A strut of a frame lies on several cycles, and belongs to the first; so does a vertex.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Owned {
-    /// The piece without its ends.
-    pub inside: bool,
-    /// Its first point.
-    pub start: bool,
-    /// Its last point.
-    pub end: bool,
-}
-
-impl Owned {
-    /// All of it.
-    pub const ALL: Owned = Owned { inside: true, start: true, end: true };
-
-    /// Whether anything of it does.
-    pub fn any(self) -> bool {
-        self.inside || self.start || self.end
-    }
-
-    /// Whether a place of the piece belongs to the curve.
-    pub fn at(self, place: Place) -> bool {
-        match place {
-            Place::Start => self.start,
-            Place::Inside => self.inside,
-            Place::End => self.end,
-        }
-    }
-}
 
 /// What is wrong with a frame.
 pub(super) fn problem(vertices: &[[f64; 3]], edges: &[[u32; 2]]) -> Option<(String, String, &'static str)> {

@@ -1,6 +1,6 @@
 //! Bends that are too tight for a wire, and wires that run into themselves.
 
-use super::ball;
+use super::core::ball;
 use maille_geometry::{Piece, Vec3, piece_distance_minima};
 use std::f64::consts::PI;
 

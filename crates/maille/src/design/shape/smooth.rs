@@ -1,6 +1,6 @@
 //! Smooth curves as biarcs.
 
-use super::MOST_PIECES;
+use super::core::MOST_PIECES;
 use maille_geometry::{Piece, Vec3, biarc};
 use std::f64::consts::TAU;
 
@@ -34,7 +34,7 @@ pub(super) fn smooth(spans: usize, tolerance: f64, at: impl Fn(f64) -> [Vec3; 2]
     None
 }
 
-/// A closed cubic spline through points: see [`Shape::Spline`](super::Shape::Spline).
+/// A closed cubic spline through points: see `Shape::Spline`.
 pub(super) fn through_points(points: &[[f64; 3]], tolerance: f64) -> Option<(Vec<Piece>, f64)> {
     let n = points.len();
     let at = |k: usize| Vec3::from(points[k % n]);

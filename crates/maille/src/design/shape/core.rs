@@ -1,0 +1,71 @@
+//! What all forms become: the pieces of closed curves.
+
+use maille_geometry::{Piece, Place, Vec3};
+use serde::{Deserialize, Serialize};
+
+/// Most pieces of one curve.
+pub(crate) const MOST_PIECES: usize = 10_000;
+/// Sine of the angle below which two tangents are one.
+pub(crate) const SMOOTH: f64 = 1e-7;
+
+/// The pieces of one closed core curve.
+#[derive(Clone, Debug)]
+pub(crate) struct CorePieces {
+    /// Segments and arcs, in order.
+    pub pieces: Vec<Piece>,
+    /// What of each belongs to this curve alone: see [`Owned`].
+    pub owned: Vec<Owned>,
+    /// How far the form is from its pieces at most, at sampled points.
+    pub deviation: f64,
+}
+
+/// What of a piece belongs to its curve. A strut of a frame lies on several cycles, and belongs to the first; so does a vertex.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Owned {
+    /// The piece without its ends.
+    pub inside: bool,
+    /// Its first point.
+    pub start: bool,
+    /// Its last point.
+    pub end: bool,
+}
+
+impl Owned {
+    /// All of it.
+    pub const ALL: Owned = Owned { inside: true, start: true, end: true };
+
+    /// Whether anything of it does.
+    pub fn any(self) -> bool {
+        self.inside || self.start || self.end
+    }
+
+    /// Whether a place of the piece belongs to the curve.
+    pub fn at(self, place: Place) -> bool {
+        match place {
+            Place::Start => self.start,
+            Place::Inside => self.inside,
+            Place::End => self.end,
+        }
+    }
+}
+
+/// A part of a path.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PathPart {
+    /// Where it ends.
+    pub to: [f64; 3],
+    /// A point of the arc on the way; without one the part is straight.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub through: Option<[f64; 3]>,
+}
+
+/// A ball around a piece.
+pub(crate) fn ball(piece: &Piece) -> (Vec3, f64) {
+    let middle = (piece.point(0.0) + piece.point(1.0)) * 0.5;
+    let at = match piece {
+        Piece::Arc(arc) if arc.sweep_rad() > std::f64::consts::PI => arc.circle().center,
+        _ => middle,
+    };
+    (at, (piece.point(piece.farthest(&at)) - at).norm())
+}
