@@ -228,7 +228,7 @@ pub(crate) fn balance(sheet: &Sheet, points: &[(Closed<'_>, f64)], free: &Free) 
 }
 
 /// A recorded contact of which one is no circle, if the record's points and normal are where they should be.
-fn placed_on_curves(sheet: &Sheet, contact: &Contact, unit: f64) -> Result<CurveContact, String> {
+pub(crate) fn placed_on_curves(sheet: &Sheet, contact: &Contact, unit: f64) -> Result<CurveContact, String> {
     let (a, b, shift) = (contact.ring_a, contact.ring_b, contact.shift);
     if sheet.rings[a].element == sheet.rings[b].element && shift == [0, 0] {
         return Err("is of an element with itself".into());

@@ -205,8 +205,7 @@ const FLATTEST: f64 = 1e-6;
 impl CurveContact {
     /// The contact nearest to two points.
     pub fn new(sheet: &Sheet, (a, b, shift): (usize, usize, [i32; 2]), points: [Vec3; 2]) -> Self {
-        let body = |ring: usize| &sheet.bodies[sheet.rings[ring].element];
-        let poses = [(body(a).position, body(a).turn), (body(b).position + sheet.translation(shift), body(b).turn)];
+        let poses = [sheet.place(a, [0, 0]), sheet.place(b, shift)];
         let own = [sheet.own_curve(a), sheet.own_curve(b)];
         let place = |k: usize| {
             let (at, turn): &(Vec3, UnitQuaternion<f64>) = &poses[k];
@@ -255,7 +254,7 @@ impl CurveContact {
 
     /// The arc lengths of the least distance where the elements have moved, from those of the contact, by Newton's method. Pieces go on beyond
     /// their ends, and corners stay.
-    fn least(&self, poses: &[(Vec3, UnitQuaternion<f64>); 2]) -> Result<[f64; 2], String> {
+    pub fn least(&self, poses: &[(Vec3, UnitQuaternion<f64>); 2]) -> Result<[f64; 2], String> {
         let mut s = self.places.map(|place| place.s);
         let free = self.places.map(|place| !place.corner);
         for _ in 0..STEPS {
@@ -279,6 +278,30 @@ impl CurveContact {
             }
         }
         Ok(s)
+    }
+
+    /// How fast the distance grows along the curves, as they slide most easily: 1 for straight ones across each other, little where they run along
+    /// each other, and the points move fast with the elements.
+    pub fn stiffness(&self) -> f64 {
+        let [[pa, ta, ka], [pb, tb, kb]] = self.at(&self.poses, self.arc_lengths());
+        let (way, across) = (pb - pa, -ta.dot(&tb));
+        let along = [1.0 - way.dot(&ka), 1.0 + way.dot(&kb)];
+        match self.places.map(|place| place.corner) {
+            [false, false] => Matrix2::new(along[0], across, across, along[1]).symmetric_eigenvalues().min(),
+            [true, true] => 1.0,
+            [one, _] => along[usize::from(one)],
+        }
+    }
+
+    /// The arc lengths of the points.
+    pub fn arc_lengths(&self) -> [f64; 2] {
+        self.places.map(|place| place.s)
+    }
+
+    /// Distance of the points at two arc lengths where the elements have moved to these places, less the sum of the minor radii.
+    pub fn gap_at(&self, poses: &[(Vec3, UnitQuaternion<f64>); 2], s: [f64; 2]) -> f64 {
+        let [[p, ..], [q, ..]] = self.at(poses, s);
+        (q - p).norm() - self.touching
     }
 
     /// The derivative of the distance in translations and turns of both elements (the last entry belongs to pairs of circles), after a motion.

@@ -4,7 +4,7 @@ use crate::{
     files::{checksum, say, sha256},
     gaps::gaps_and_links,
     record::{Contact, Design, Pose, Row, State, Unreadable, json},
-    report::{Check, Finding, Verdict, not_of_curves},
+    report::{Check, Finding, Verdict},
     roll_forces::{Objective, Rate, Written, roll_forces},
     rolled::{Motions, Rolled, joined},
     sheet::{self, Pair, Sheet, Vec3},
@@ -248,9 +248,7 @@ impl RollVerifier {
         let roll = &self.rolls[k];
         let certified = roll.status == "local";
         let mut findings = vec![status(roll, certified, self.design.reference_radius)];
-        if !self.design.is_round() {
-            findings.extend(not_of_curves());
-        } else if roll.curvature.is_some() {
+        if roll.curvature.is_some() {
             findings.extend(self.of_state(roll, certified).unwrap_or_else(|words| vec![say(Verdict::False, words)]));
         }
         let (direction_deg, axis, status) = (roll.direction_deg, roll.axis.clone(), roll.status.clone());

@@ -4,12 +4,14 @@
 //! nothing, about the axis and along it, and a change of height with l1, stay among them: their curvature is 0.
 //!
 //! **A contact.** The distance d(y, θ) of the point θ of ring b from the circle of ring a, as the unknowns move by y; derivatives are
-//! differences of fourth order. The least distance over θ has ∇²g = d_yy − d_yθ d_θy/d_θθ.
+//! differences of fourth order. The least distance over θ has ∇²g = d_yy − d_yθ d_θy/d_θθ. Where one of the cores is no circle, slopes are those at
+//! points that stay, and second derivatives are differences of slopes at points that are found anew.
 
 use crate::{
     apart::Arc,
-    balance::{COMPLEMENTARITY, RESIDUAL, least, placed},
+    balance::{COMPLEMENTARITY, RESIDUAL, least, placed, placed_on_curves},
     curvature::{CURVATURE, Curvature, FLATTEST, ZERO_MODE, kept, turns},
+    curve_pair::CurveContact,
     record::Contact,
     report::{Check, Finding, Verdict},
     rolled::Motions,
@@ -20,6 +22,10 @@ use nalgebra::{DMatrix, DVector, Point3, Unit, UnitQuaternion};
 
 /// Step of first derivatives, in core distances and radians.
 const STEP: f64 = 1e-3;
+/// Step of differences of slopes at points of two curves, which may go along them much faster.
+const SHORT_STEP: f64 = 1e-4;
+/// Steps are shorter where curves run along each other, down to this share.
+const SOFTEST: f64 = 1e-2;
 /// Step of second derivatives.
 const LONG_STEP: f64 = 1e-2;
 /// Contacts that carry more are kept.
@@ -79,21 +85,49 @@ impl Unknown {
     }
 }
 
+/// Where two cores are closed.
+enum Closed {
+    /// A point of ring b, in the frame of its element.
+    Point(Vec3),
+    /// Of curves.
+    Curves(Box<CurveContact>),
+}
+
 /// A pair of rings next to a point at which they are closed.
 struct Held<'a> {
     sheet: &'a Sheet,
     roll: Motions,
     pair: Pair,
-    /// The point, in the frame of its element.
-    point: Vec3,
+    /// What is closed.
+    at: Closed,
     force: f64,
     /// The gap that it keeps.
     keeps: f64,
 }
 
 impl Held<'_> {
-    /// The distance of the point, less the minor radii, when the unknowns have moved by these steps.
+    /// The distance of the point, less the minor radii, when the unknowns have moved by these steps; of two curves that of the points where they
+    /// are closed.
     fn gap(&self, steps: &[(Unknown, f64)]) -> f64 {
+        self.gap_of(steps, if let Closed::Curves(contact) = &self.at { contact.arc_lengths() } else { [0.0; 2] })
+    }
+
+    /// The slope along an unknown when others have moved by these steps, at the points of two curves that are then nearest: these do not count for
+    /// it, as the distance is least there.
+    fn slope_after(&self, contact: &CurveContact, along: Unknown, steps: &[(Unknown, f64)]) -> f64 {
+        let Ok(s) = contact.least(&self.poses(steps)) else { return f64::NAN };
+        let g = |x: f64| {
+            let all: Vec<(Unknown, f64)> = steps.iter().copied().chain([(along, x)]).collect();
+            self.gap_of(&all, s)
+        };
+        // Of sixth order, with a long step: its rounding is divided by a short one.
+        let h = self.step(LONG_STEP);
+        let odd = |k: f64| g(k * h) - g(-k * h);
+        (45.0 * odd(1.0) - 9.0 * odd(2.0) + odd(3.0)) / (60.0 * h)
+    }
+
+    /// Where the elements of both rings stand when the unknowns have moved by these steps; the second in its image.
+    fn poses(&self, steps: &[(Unknown, f64)]) -> [(Vec3, UnitQuaternion<f64>); 2] {
         let (a, b, shift) = self.pair;
         let (mut lattice, mut roll) = (self.sheet.lattice, self.roll);
         for (unknown, x) in steps {
@@ -105,27 +139,37 @@ impl Held<'_> {
             }
         }
         let body = |ring: usize| {
-            let (ring, body) = (&self.sheet.rings[ring], &self.sheet.bodies[self.sheet.rings[ring].element]);
+            let (element, body) = (self.sheet.rings[ring].element, &self.sheet.bodies[self.sheet.rings[ring].element]);
             let (mut at, mut turn) = (body.position, Vec3::zeros());
             for (unknown, x) in steps {
                 match unknown {
-                    Unknown::Shift(e, by) if *e == ring.element => at += by * *x,
-                    Unknown::Turn(e, by) if *e == ring.element => turn += by * *x,
+                    Unknown::Shift(e, by) if *e == element => at += by * *x,
+                    Unknown::Turn(e, by) if *e == element => turn += by * *x,
                     _ => {}
                 }
             }
-            let turn = UnitQuaternion::from_scaled_axis(turn) * body.turn;
-            (at + turn * ring.arm, turn, turn * ring.normal, ring.radius)
+            (at, UnitQuaternion::from_scaled_axis(turn) * body.turn)
         };
-        let (center, _, normal, radius) = body(a);
-        let one = Circle::new(center, Unit::new_normalize(normal), radius);
-        let (center, turn, normal, _) = body(b);
-        let along = steps.iter().filter(|(unknown, _)| matches!(unknown, Unknown::Point)).map(|(_, x)| x).sum();
-        let forward = UnitQuaternion::from_axis_angle(&Unit::new_normalize(normal), along);
-        let point = Point3::from(center + forward * (turn * self.point));
-        let image = roll.image(lattice, shift);
-        let widened: f64 = steps.iter().filter(|(unknown, _)| matches!(unknown, Unknown::Gap)).map(|(_, x)| x).sum();
-        distance(&(image * point).coords, &one) - self.sheet.touching(a, b) - self.keeps - widened
+        let (image, (at, turn)) = (roll.image(lattice, shift), body(b));
+        [body(a), ((image * Point3::from(at)).coords, image.rotation * turn)]
+    }
+
+    /// As [`Self::gap`], at two arc lengths of curves.
+    fn gap_of(&self, steps: &[(Unknown, f64)], s: [f64; 2]) -> f64 {
+        let (a, b, _) = self.pair;
+        let sum = |of: fn(&Unknown) -> bool| steps.iter().filter(|(u, _)| of(u)).map(|(_, x)| x).sum::<f64>();
+        let beyond = self.keeps + sum(|unknown| matches!(unknown, Unknown::Gap));
+        let poses = self.poses(steps);
+        let point = match &self.at {
+            Closed::Point(point) => point,
+            Closed::Curves(contact) => return contact.gap_at(&poses, s) - beyond,
+        };
+        let ([first, second], [one, other]) = (poses, [a, b].map(|ring| &self.sheet.rings[ring]));
+        let circle = Circle::new(first.0 + first.1 * one.arm, Unit::new_normalize(first.1 * one.normal), one.radius);
+        let along = sum(|unknown| matches!(unknown, Unknown::Point));
+        let forward = UnitQuaternion::from_axis_angle(&Unit::new_normalize(second.1 * other.normal), along);
+        let point = second.0 + second.1 * other.arm + forward * (second.1 * point);
+        distance(&point, &circle) - self.sheet.touching(a, b) - beyond
     }
 
     /// A step of this share of the core distance.
@@ -163,13 +207,31 @@ pub(crate) fn roll_forces(
     let mut held = Vec::new();
     for (k, contact) in contacts.iter().enumerate() {
         let pair = (contact.ring_a, contact.ring_b, contact.shift);
+        if pair.0.max(pair.1) >= sheet.rings.len() {
+            return both(Verdict::False, format!("contact {k} is of ring {}", pair.0.max(pair.1)));
+        }
+        if !roll.counts([pair.0, pair.1].map(|ring| sheet.rings[ring].element), pair.2) {
+            return both(Verdict::False, format!("contact {k} is of elements that do not count for each other"));
+        }
+        let force = contact.force;
+        if !sheet.is_round(pair) {
+            match placed_on_curves(sheet, contact, unit) {
+                Ok(found) if (force * found.slope()).abs() > RESIDUAL => {
+                    let words = format!("contact {k} is not where its curves are nearest, by {:.1e}", found.slope());
+                    return both(Verdict::False, words);
+                }
+                Ok(found) => {
+                    let at = Closed::Curves(Box::new(found));
+                    held.push(Held { sheet, roll: roll.motions, pair, at, force, keeps });
+                }
+                Err(words) => return both(Verdict::False, format!("contact {k} {words}")),
+            }
+            continue;
+        }
         let angle = match placed(sheet, contact, unit) {
             Ok(angle) => angle,
             Err(words) => return both(Verdict::False, format!("contact {k} {words}")),
         };
-        if !roll.counts([pair.0, pair.1].map(|ring| sheet.rings[ring].element), pair.2) {
-            return both(Verdict::False, format!("contact {k} is of elements that do not count for each other"));
-        }
         let (one, other) = (sheet.circle(pair.0, [0, 0]), sheet.circle(pair.1, pair.2));
         let arc = Arc::new(&one, &other);
         let bend = (arc.at(angle + 1e-5).slope - arc.at(angle - 1e-5).slope) / 2e-5;
@@ -182,7 +244,8 @@ pub(crate) fn roll_forces(
         let out = (u * angle.cos() + v * angle.sin()) * other.radius;
         let image = roll.motions.image(sheet.lattice, pair.2);
         let turn = image.rotation * sheet.bodies[sheet.rings[pair.1].element].turn;
-        held.push(Held { sheet, roll: roll.motions, pair, point: turn.inverse() * out, force: contact.force, keeps });
+        let at = Closed::Point(turn.inverse() * out);
+        held.push(Held { sheet, roll: roll.motions, pair, at, force, keeps });
     }
     let mut unknowns = unknowns(sheet, rates);
     let first_rate = unknowns.len() - rates.len();
@@ -324,8 +387,13 @@ fn curvature(
             gradient.iter().for_each(|(j, y)| gram[(*i, *j)] += x * y);
         }
         let own = held.own(unknowns);
-        let bend = second(held, Unknown::Point, None);
-        let aside: Vec<f64> = own.iter().map(|&i| second(held, unknowns[i], Some(Unknown::Point))).collect();
+        let (bend, aside) = match held.at {
+            Closed::Point(_) => {
+                let aside = own.iter().map(|&i| second(held, unknowns[i], Some(Unknown::Point)));
+                (second(held, Unknown::Point, None), aside.collect())
+            }
+            Closed::Curves(_) => (1.0, vec![0.0; own.len()]),
+        };
         for (p, &i) in own.iter().enumerate() {
             for (q, &j) in own[..=p].iter().enumerate() {
                 let other = (i != j).then_some(unknowns[j]);
@@ -389,7 +457,16 @@ fn of(of_sum: &DMatrix<f64>, gram: &DMatrix<f64>) -> Curvature {
 
 /// The second derivative of the distance along one unknown, or mixed along two. With D(h) the usual difference of second order,
 /// (D(h) − 20 D(h/2) + 64 D(h/4))/45 has an error of sixth order.
+///
+/// Of two curves it is a difference of fourth order of slopes.
 fn second(held: &Held<'_>, one: Unknown, other: Option<Unknown>) -> f64 {
+    if let Closed::Curves(contact) = &held.at {
+        let (g, h) = (
+            |x: f64| held.slope_after(contact, one, &[(other.unwrap_or(one), x)]),
+            held.step(SHORT_STEP * contact.stiffness().clamp(SOFTEST, 1.0)),
+        );
+        return (8.0 * (g(h) - g(-h)) - (g(2.0 * h) - g(-2.0 * h))) / (12.0 * h);
+    }
     let at = |h: f64| match other {
         None => {
             let g = |x: f64| held.gap(&[(one, x)]);

@@ -158,10 +158,22 @@ impl Sheet {
             .map_or_else(|| Curve::ring(ring.arm, frame(&ring.normal), ring.radius), |curve| (**curve).clone())
     }
 
-    /// The core of a ring in the cell `shift` of a flat sheet, as a curve.
+    /// The core of a ring in the cell `shift`, as a curve.
     pub fn curve(&self, ring: usize, shift: [i32; 2]) -> Curve {
+        let (position, turn) = self.place(ring, shift);
+        self.own_curve(ring).moved(&turn, &position)
+    }
+
+    /// Where the element of a ring stands in the cell `shift`.
+    pub fn place(&self, ring: usize, shift: [i32; 2]) -> (Vec3, UnitQuaternion<f64>) {
         let body = &self.bodies[self.rings[ring].element];
-        self.own_curve(ring).moved(&body.turn, &(body.position + self.translation(shift)))
+        match &self.roll {
+            None => (body.position + self.translation(shift), body.turn),
+            Some(roll) => {
+                let image = roll.motions.image(self.lattice, shift);
+                ((image * nalgebra::Point3::from(body.position)).coords, image.rotation * body.turn)
+            }
+        }
     }
 
     /// The start of `design` in `cell`, with the elements in the order of `names`.

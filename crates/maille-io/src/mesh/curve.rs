@@ -55,6 +55,10 @@ pub(super) fn curve_mesh(
     if curve.is_of_frame() {
         let steps = polygon(small, share).div_ceil(4);
         let sections = 2 * (steps + 1);
+        let all = sections * curve.own_pieces().count();
+        if all > MOST_SECTIONS {
+            return Err(MeshError::TooFine { segments: all, most: MOST_SECTIONS });
+        }
         for (point, axis, u) in curve.own_pieces().flat_map(|strut| capsule(strut, steps)) {
             for j in 0..across {
                 let (sin, cos) = (TAU * j as f64 / across as f64).sin_cos();
