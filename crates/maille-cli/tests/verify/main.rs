@@ -51,6 +51,38 @@ fn limits_of_curves_are_proved() {
     assert_eq!(said(&found, "overlap", "false").len(), 6, "{found:#}");
 }
 
+/// Rolls of squares and of cages, and a cage that is thicker than that of the states.
+#[test]
+fn rolls_of_curves_are_proved() {
+    let dir = tempfile::tempdir().unwrap();
+    let verdicts = |name: &str, check: &str| {
+        let done = maille(dir.path(), &format!("verify {name} --json"));
+        let found: Value = serde_json::from_slice(&done.stdout).unwrap();
+        let of = |roll: &Value| {
+            let all = roll["findings"].as_array().unwrap();
+            let one = all.iter().find(|finding| finding["check"] == check);
+            one.map_or("none".into(), |finding| finding["verdict"].as_str().unwrap().to_owned())
+        };
+        found["rolls"][0]["rolls"].as_array().unwrap().iter().map(of).collect::<Vec<String>>()
+    };
+    for (name, rest, rolls) in [("squares", "--directions 30 --axis below", 1), ("cages", "--directions 0,45", 4)] {
+        let line = format!("roll {name} {rest} --effort low --out {name} --quiet");
+        assert_eq!(code(&maille(dir.path(), &line)), 0, "{line}");
+        for check in ["overlap", "links", "balance", "curvature"] {
+            assert_eq!(verdicts(name, check), vec!["proved"; rolls], "{name} {check}");
+        }
+    }
+    let head = dir.path().join("cages/roll.json");
+    let text = fs::read_to_string(&head).unwrap();
+    let thicker = text.replace("\"minor_radius\":0.6", "\"minor_radius\":0.601");
+    let thicker = thicker.replace("\"minor_radius\": 0.6", "\"minor_radius\": 0.601");
+    assert_ne!(thicker, text);
+    fs::write(&head, thicker).unwrap();
+    for check in ["overlap", "balance"] {
+        assert_eq!(verdicts("cages", check), vec!["false"; 4], "{check}");
+    }
+}
+
 /// What is known of rings alone says so.
 #[test]
 fn what_knows_rings_alone_refuses_curves() {
