@@ -93,7 +93,7 @@ pub(crate) struct Closed<'a> {
 
 impl<'a> Closed<'a> {
     /// A contact of which one is no circle.
-    fn of_curves(sheet: &'a Sheet, pair: Pair, contact: CurveContact) -> Self {
+    pub fn of_curves(sheet: &'a Sheet, pair: Pair, contact: CurveContact) -> Self {
         let (gap, slope) = (contact.gap(), contact.slope());
         Closed { sheet, pair, angle: 0.0, out: Vec3::zeros(), gap, slope, curve: Some(contact) }
     }

@@ -99,8 +99,14 @@ fn nearest_of(x: &Piece, y: &Piece) -> f64 {
     nearer(x, y, best)
 }
 
-/// A distance near two points, given by their arc lengths, by steps of halving size.
+/// A distance near two points, given by their arc lengths.
 fn nearer(x: &Piece, y: &Piece, from: [f64; 2]) -> f64 {
+    let [s, t] = nearer_at(x, y, from);
+    (y.position(t) - x.position(s)).norm()
+}
+
+/// Arc lengths of points that are nearer than two given ones, by steps of halving size.
+fn nearer_at(x: &Piece, y: &Piece, from: [f64; 2]) -> [f64; 2] {
     let (mut at, mut step) = (from, [0.25 * x.length, 0.25 * y.length]);
     let distance = |at: [f64; 2]| (y.position(at[1]) - x.position(at[0])).norm();
     let mut least = distance(at);
@@ -117,7 +123,7 @@ fn nearer(x: &Piece, y: &Piece, from: [f64; 2]) -> f64 {
             step = step.map(|h| 0.5 * h);
         }
     }
-    least
+    at
 }
 
 /// Points of two pieces.
@@ -159,6 +165,39 @@ impl At {
         let quadratic = (self.hessian - Matrix2::identity() * change).cholesky();
         quadratic.is_some_and(|of| value - 0.5 * self.slope.dot(&of.solve(&self.slope)) >= wanted)
     }
+}
+
+/// Points nearer than this are one, in reference radii.
+const ONE_POINT: f64 = 1e-7;
+
+/// The contacts of two curves with a gap of at most `closed`, each a point to which seeds on two pieces lead.
+pub(crate) fn closed_points(sheet: &Sheet, pair: (usize, usize, [i32; 2]), closed: f64) -> Vec<CurveContact> {
+    let (a, b) = (sheet.curve(pair.0, [0, 0]), sheet.curve(pair.1, pair.2));
+    let most = sheet.touching(pair.0, pair.1) + closed;
+    let mut out: Vec<(CurveContact, [Vec3; 2])> = Vec::new();
+    let part = |k: usize| (k as f64 + 0.5) / SEEDS as f64;
+    for (x, y) in a.pieces.iter().flat_map(|x| b.pieces.iter().map(move |y| (x, y))) {
+        let ((p, reach), (q, other)) = (x.ball(), y.ball());
+        if (q - p).norm() - reach - other > most {
+            continue;
+        }
+        for seed in 0..SEEDS * SEEDS {
+            let [s, t] = nearer_at(x, y, [part(seed / SEEDS) * x.length, part(seed % SEEDS) * y.length]);
+            let points = [x.position(s), y.position(t)];
+            let near = |known: &[Vec3; 2]| (0..2).all(|k| (known[k] - points[k]).norm() < ONE_POINT);
+            if (points[1] - points[0]).norm() > most || out.iter().any(|(_, known)| near(known)) {
+                continue;
+            }
+            let mut contact = CurveContact::new(sheet, pair, points);
+            if let Ok(s) = contact.least(&contact.poses) {
+                (0..2).for_each(|k| contact.places[k].s = s[k]);
+            }
+            if contact.gap().abs() <= closed {
+                out.push((contact, points));
+            }
+        }
+    }
+    out.into_iter().map(|(contact, _)| contact).collect()
 }
 
 /// Corners of a polygon at most.
@@ -401,6 +440,40 @@ mod tests {
             }
         }
         assert!(linked > 5, "{linked}");
+    }
+
+    /// Two squares, corner in corner, touch with each side of one at each of the other: docs/theory/curves.md has where.
+    #[test]
+    fn squares_touch_where_their_sides_cross() {
+        let (side, r) = (2.0_f64, 0.1);
+        let apart = 2.0_f64.sqrt() * side - 2.0 * 3.0_f64.sqrt() * r;
+        let element = |name: &str, x: f64, normal: [f64; 3], along: [f64; 3]| {
+            let shape = serde_json::json!({ "square": { "side": side } });
+            let curve =
+                serde_json::json!({ "shape": shape, "normal": normal, "along": along, "offset": [0.0, 0.0, 0.0] });
+            serde_json::json!({ "name": name, "center": [x, 0.0, 0.0], "rings": [], "curves": [curve] })
+        };
+        let design = serde_json::json!({
+            "name": "squares", "minor_radius": r, "reference_radius": 1.0,
+            "lattice": { "a1": [2.0 * apart, 0.0, 0.0], "a2": [0.0, 50.0, 0.0], "single": true },
+            "elements": [
+                element("flat", 0.0, [0.0, 0.0, 1.0], [1.0, 1.0, 0.0]),
+                element("up", apart, [0.0, 1.0, 0.0], [1.0, 0.0, 1.0]),
+            ],
+        });
+        let design = serde_json::from_value(design).unwrap();
+        let sheet = Sheet::start(&design, &crate::sheet::cell("1x1").unwrap(), &["flat", "up"]).unwrap();
+        for shift in [[0, 0], [-1, 0]] {
+            let found = closed_points(&sheet, (0, 1, shift), 1e-9);
+            assert_eq!(found.len(), 4, "{shift:?}");
+            for contact in found {
+                assert!(contact.gap().abs() < 1e-12 && contact.slope() < 1e-10, "{contact:?}");
+                // So far from each other, and √2/3 of the corners' distance from both.
+                let corner = [2.0_f64.sqrt() * if shift == [0, 0] { 1.0 } else { -1.0 }, 0.0];
+                let from = (contact.points()[0] - Vec3::new(corner[0], corner[1], 0.0)).norm();
+                assert!((from - 2.0 * 3.0_f64.sqrt() * r * 2.0_f64.sqrt() / 3.0).abs() < 1e-9, "{from}");
+            }
+        }
     }
 
     /// A ring as two halves, and as the program's circles are seen.

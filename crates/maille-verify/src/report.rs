@@ -89,13 +89,6 @@ impl Finding {
     }
 }
 
-/// What is known of a state of a design with curves that are no circles.
-pub(crate) fn not_of_curves() -> Vec<Finding> {
-    let open =
-        |check| Finding::new(check, Verdict::Open, None, "the design has curves; here this is verified of rings alone");
-    [Check::Deformation, Check::Overlap, Check::Links, Check::Balance, Check::Curvature, Check::Bound].map(open).into()
-}
-
 /// What is known of one row.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RowReport {

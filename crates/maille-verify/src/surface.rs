@@ -8,11 +8,12 @@ use crate::{
     apart::Arc,
     balance::{Closed, Free, RESIDUAL, balance},
     curvature::{ZERO_MODE, curvature},
+    curve_pair::closed_points,
     dual::{edges, walks},
     files::{checksum, say},
     gaps::gaps_and_links,
     record::{Design, Pose, Row, State, Unreadable, json},
-    report::{Check, Finding, Verdict, not_of_curves},
+    report::{Check, Finding, Verdict},
     sheet::{self, Sheet, Vec3},
     start::{Start, start},
     strain,
@@ -88,7 +89,6 @@ pub struct VertexReport {
 pub struct SurfaceVerifier {
     name: String,
     /// Whether the design has rings alone.
-    round: bool,
     vertices: Vec<Vertex>,
     files: Vec<Finding>,
     starts: BTreeMap<String, Result<Start, String>>,
@@ -110,8 +110,7 @@ impl SurfaceVerifier {
             (cell.clone(), parsed.and_then(|cell| start(&head.design, &cell, &names)))
         };
         let starts = head.cells.iter().map(start_of).collect();
-        let round = head.design.is_round();
-        Ok(SurfaceVerifier { name: head.design.name.clone(), round, vertices, files, starts })
+        Ok(SurfaceVerifier { name: head.design.name.clone(), vertices, files, starts })
     }
 
     /// What is known of the files.
@@ -139,9 +138,7 @@ impl SurfaceVerifier {
         let vertex = &self.vertices[k];
         let certified = matches!(vertex.status.as_str(), "global" | "local");
         let mut findings = vec![status(vertex, certified)];
-        if !self.round {
-            findings.extend(not_of_curves());
-        } else if let Some(distance) = vertex.distance {
+        if let Some(distance) = vertex.distance {
             match self.starts.get(&vertex.cell) {
                 Some(Ok(start)) => findings.extend(of_state(vertex, distance, start, certified)),
                 Some(Err(words)) => findings.push(say(Verdict::False, words.clone())),
@@ -329,6 +326,11 @@ fn forces(here: &Sheet, start: &Start, f: &Matrix2<f64>, ray: &Matrix2<f64>) -> 
 fn closed(here: &Sheet) -> Result<Vec<Closed<'_>>, String> {
     let mut out = Vec::new();
     for pair in here.pairs(|a, b| here.touching(a, b) + CLOSED)? {
+        if !here.is_round(pair) {
+            let found = closed_points(here, pair, CLOSED);
+            out.extend(found.into_iter().map(|contact| Closed::of_curves(here, pair, contact)));
+            continue;
+        }
         let (one, other) = (here.circle(pair.0, [0, 0]), here.circle(pair.1, pair.2));
         let arc = Arc::new(&one, &other);
         let step = std::f64::consts::TAU / PLACES as f64;
