@@ -137,6 +137,9 @@ fn run(args: &Common, what: impl FnOnce(&Design) -> Extreme) -> Result<ExitCode>
     } else {
         answer.print(begun.elapsed().as_secs_f64());
     }
+    if let Some(problem) = answer.too_thick() {
+        eprintln!("note: the gaps between elements allow so thick a wire, but a curve cannot have it: {problem}");
+    }
     if let (Some(file), Some(_)) = (&args.save, found.value) {
         output::write(file, write_design(&what.design(found, &input.design, answer.model())).as_bytes())?;
         eprintln!("{}", file.display());
@@ -265,6 +268,14 @@ impl Found<'_> {
             problem,
             "give a smaller --min-gap, or take thinner wire or a larger inner diameter",
         ))
+    }
+
+    /// Why a curve cannot have the wire that was found: its bends are too tight, or it runs into itself. No pair of elements says so.
+    fn too_thick(&self) -> Option<String> {
+        self.found.value.filter(|_| self.what == Extreme::ThickestWire)?;
+        let problems = self.what.design(&self.found, &self.input.design, self.model()).problems();
+        let of_curve = problems.iter().find(|problem| problem.field.contains(".curves["));
+        of_curve.map(|problem| format!("{}: {}", problem.field, problem.problem))
     }
 
     fn print(&self, wall_s: f64) {
