@@ -221,13 +221,13 @@ fn check_warns_of_what_is_odd() {
 #[test]
 fn a_wire_that_is_too_thick_for_a_bend_is_named() {
     let folder = tempfile::tempdir().unwrap();
-    let said = done(folder.path(), "tightest squares --set fillet=0.13 --starts 1");
+    let said = maille(folder.path(), "tightest squares --set fillet=0.13 --starts 1");
     assert!(
         said.err.contains("elements[0].curves[0].square") && said.err.contains("least radius 0.13"),
         "{}",
         said.err
     );
-    let said = done(folder.path(), "tightest stadium-sheet --starts 1");
+    let said = maille(folder.path(), "tightest stadium-sheet --starts 1");
     assert!(!said.err.contains("cannot have it"), "{}", said.err);
 }
 
