@@ -24,6 +24,8 @@ pub(crate) struct Piece {
 const SMOOTH: f64 = 1e-7;
 /// Arcs whose circles differ by less are of one.
 const ONE_CIRCLE: f64 = 1e-12;
+/// Least part of a span that is halved.
+const LEAST_SPAN: f64 = 1.0 / 4096.0;
 /// Pieces of a curve at most.
 const MOST_PIECES: usize = 10_000;
 
@@ -278,31 +280,42 @@ impl Curve {
         Curve::whole(pieces)
     }
 
-    /// Biarcs of equal spans, twice as many until seven points of each span are within the tolerance.
+    /// Biarcs of equal spans, of which each is halved until seven points of it are within the tolerance.
     fn smooth(spans: usize, tolerance: f64, at: impl Fn(f64) -> [Vec3; 2]) -> Result<Curve, String> {
-        let mut spans = spans;
-        while 2 * spans <= MOST_PIECES {
-            let t = |x: f64| at(TAU * x / spans as f64);
-            let mut pieces = Vec::new();
-            let mut worst = 0.0_f64;
-            for k in 0..spans {
-                let ([from, leaves], [to, arrives]) = (t(k as f64), t(((k + 1) % spans) as f64));
-                let Some(pair) = two_arcs(from, leaves.normalize(), to, arrives.normalize()) else {
+        // The point at a part of the whole, in spans.
+        let point = |x: f64| at(TAU * (x % spans as f64) / spans as f64);
+        let mut pieces = Vec::new();
+        for k in 0..spans {
+            let (mut from, mut width) = (k as f64, 1.0);
+            while from < k as f64 + 1.0 {
+                let ([p, leaves], [q, arrives]) = (point(from), point(from + width));
+                let Some(pair) = two_arcs(p, leaves.normalize(), q, arrives.normalize()) else {
                     return Err("a span of a smooth curve has no two arcs".into());
                 };
-                for part in 1..8 {
-                    let p = t(k as f64 + f64::from(part) / 8.0)[0];
+                let worst = (1..8).map(|part| {
+                    let p = point(from + width * f64::from(part) / 8.0)[0];
                     let away = pair.iter().map(|piece| (piece.position(piece.nearest(&p)) - p).norm());
-                    worst = worst.max(away.fold(f64::INFINITY, f64::min));
+                    away.fold(f64::INFINITY, f64::min)
+                });
+                if worst.fold(0.0, f64::max) > tolerance {
+                    width *= 0.5;
+                    if width < LEAST_SPAN {
+                        return Err("a smooth curve needs too many arcs".into());
+                    }
+                    continue;
                 }
                 pieces.extend(pair);
+                from += width;
+                // As wide as the span that begins here may be: what is left of the one that was halved.
+                while width < 1.0 && ((from - k as f64) / width) % 2.0 == 0.0 {
+                    width *= 2.0;
+                }
             }
-            if worst <= tolerance {
-                return Ok(Curve { pieces });
-            }
-            spans *= 2;
         }
-        Err("a smooth curve needs too many arcs".into())
+        match pieces.len() > MOST_PIECES {
+            true => Err("a smooth curve needs too many arcs".into()),
+            false => Ok(Curve { pieces }),
+        }
     }
 
     /// A circle: two halves. The vectors u and v are of length 1, in its plane and across each other.

@@ -18,7 +18,7 @@ fn a_sample_of_every_design_is_proved() {
         let name = design["name"].as_str().unwrap();
         // 5 where a limit is not found: what is certified is verified all the same.
         let pulls = if design["single"] == true { "" } else { "--directions 0,37.5 --l2=-0.125,0" };
-        // A knot of 1,024 arcs takes long.
+        // A knot of 672 arcs takes long.
         let starts = if name == "torus-knots" { "--starts 1" } else { "" };
         let line = format!("characterize {name} {pulls} {starts} --cell 1x1 --out {name} --quiet");
         assert!([0, 5].contains(&code(&maille(dir.path(), &line))), "{line}");

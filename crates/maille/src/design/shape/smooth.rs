@@ -7,31 +7,35 @@ use std::f64::consts::TAU;
 /// Points of a span at which its deviation is measured.
 const SAMPLES: usize = 8;
 
-/// A smooth closed curve, given by point and derivative at 0 ≤ t ≤ 2π, as biarcs of equal spans of t, so many that sampled points are
-/// within `tolerance`. From `spans` on, always twice as many.
+/// A smooth closed curve, given by point and derivative at 0 ≤ t ≤ 2π, as biarcs of `spans` equal spans of t, each halved until its sampled
+/// points are within `tolerance`. With how far they are at most.
 pub(super) fn smooth(spans: usize, tolerance: f64, at: impl Fn(f64) -> [Vec3; 2]) -> Option<(Vec<Piece>, f64)> {
-    let mut spans = spans.max(1);
-    while 2 * spans <= MOST_PIECES {
-        let t = |k: f64| TAU * k / spans as f64;
-        let mut pieces = Vec::with_capacity(2 * spans);
-        let mut worst: f64 = 0.0;
-        for k in 0..spans {
-            // The last point is the first one, to the last digit.
-            let ([start, leaving], [end, arriving]) = (at(t(k as f64)), at(t(((k + 1) % spans) as f64)));
-            let pair = biarc(start, leaving, end, arriving)?;
-            for sample in 1..SAMPLES {
-                let point = at(t(k as f64 + sample as f64 / SAMPLES as f64))[0];
-                let away = pair.iter().map(|piece| (piece.point(piece.nearest(&point)) - point).norm());
-                worst = worst.max(away.fold(f64::INFINITY, f64::min));
-            }
-            pieces.extend(pair);
+    let whole = spans.max(1) as f64;
+    // Places count spans, so that halves of them are exact, and the last point is the first one, to the last digit.
+    let t = |place: f64| TAU * (place % whole) / whole;
+    let mut open: Vec<[f64; 2]> = (0..spans.max(1)).rev().map(|k| [k as f64, k as f64 + 1.0]).collect();
+    let (mut pieces, mut deviation) = (Vec::new(), 0.0_f64);
+    while let Some([first, last]) = open.pop() {
+        if pieces.len() + 2 * (open.len() + 1) > MOST_PIECES {
+            return None;
         }
+        let ([start, leaving], [end, arriving]) = (at(t(first)), at(t(last)));
+        let pair = biarc(start, leaving, end, arriving)?;
+        let away = |sample: usize| {
+            let point = at(t(first + (last - first) * sample as f64 / SAMPLES as f64))[0];
+            let nearest = pair.iter().map(|piece| (piece.point(piece.nearest(&point)) - point).norm());
+            nearest.fold(f64::INFINITY, f64::min)
+        };
+        let worst = (1..SAMPLES).map(away).fold(0.0, f64::max);
         if worst <= tolerance {
-            return Some((pieces, worst));
+            deviation = deviation.max(worst);
+            pieces.extend(pair);
+        } else {
+            let middle = 0.5 * (first + last);
+            open.extend([[middle, last], [first, middle]]);
         }
-        spans *= 2;
     }
-    None
+    Some((pieces, deviation))
 }
 
 /// A closed cubic spline through points: see `Shape::Spline`.
