@@ -16,20 +16,13 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
-from scipy.optimize import linprog
+
+from roll_two_ways import W, rotation, solve
 
 R, A, WIRE, LATTICE = 5.5, 2.7, 1.5, 38.5 / 3
-W = np.array([0.0, 1.0, 0.0])
 IMAGES = [(1, 0), (0, 1), (1, 1), (1, -1), (2, 0), (0, 2), (2, 1), (1, 2), (2, -1), (1, -2), (2, 2), (2, -2)]
 # Half widths of a trust region of size 1: curvature, width, shear, height, turn.
 SIZES = np.array([0.02, 1, 1, R, 1, 1, 1.0])
-
-
-def rotation(v):
-    """The rotation matrix of a rotation vector."""
-    t = np.linalg.norm(v)
-    k = np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
-    return np.eye(3) + np.sinc(t / np.pi) * k + 0.5 * np.sinc(t / 2 / np.pi) ** 2 * k @ k
 
 
 def knot(sides):
@@ -126,33 +119,8 @@ class State:
         return [linking(self.points, self.image(sheet, u, w)[2]) for u, w in sheet.images]
 
 
-def solve(sheet, state, objective, free, steps, weight, trust=0.03):
-    """Maximises the step along `objective` less `weight` times the deepest overlap, by linear programs."""
-    widths = SIZES * [1, free, free, 1, 1, 1, 1]
-
-    def merit(value, gaps):
-        return value - weight * np.maximum(-gaps, 0).max(initial=0)
-
-    gaps, jacobian = state.rows(sheet, 6 * trust * R)
-    for _ in range(steps):
-        bounds = [(-trust * width, trust * width) for width in widths] + [(0, None)]
-        bounds[0] = (max(bounds[0][0], 0.001 - state.kappa), bounds[0][1])
-        found = linprog(np.append(-objective, weight), A_ub=np.hstack([-jacobian, -np.ones((len(gaps), 1))]), b_ub=gaps,
-                        bounds=bounds, method="highs")
-        if found.x is None:
-            return None
-        x, promise = found.x[:-1], objective @ found.x[:-1] - merit(0.0, gaps) - weight * found.x[-1]
-        after = state.moved(x)
-        rows = after.rows(sheet, 6 * trust * R)
-        gained = merit(objective @ x, rows[0]) - merit(0.0, gaps)
-        if gained > 0.1 * promise:
-            state, (gaps, jacobian) = after, rows
-            trust = min(trust * (1.5 if gained > 0.7 * promise else 1.0), 0.15)
-        else:
-            trust *= 0.4
-        if trust < 1e-9 or promise < 1e-13:
-            break
-    return state
+def climbed(sheet, state, objective, free, steps, weight):
+    return solve(sheet, state, objective, free, steps, weight, trust=0.03, sizes=SIZES, least=0.001, margin=6 * R, enough=1e-13)
 
 
 def search(sheet, polygon, free, starts, seed):
@@ -164,9 +132,9 @@ def search(sheet, polygon, free, starts, seed):
         state = State(polygon, 0.0, np.eye(3), rng.uniform(0.001, 0.006))
         if k:
             push = rng.normal(size=7) * [0, 1, 1, R, 1, 1, 1]
-            state = solve(sheet, state, push, free, int(rng.integers(2, 12)), 10.0)
+            state = climbed(sheet, state, push, free, int(rng.integers(2, 12)), 10.0)
         for weight in (0.1, 1.0, 10.0):
-            state = state and solve(sheet, state, np.eye(7)[0], free, 300, weight)
+            state = state and climbed(sheet, state, np.eye(7)[0], free, 300, weight)
         if state and state.rows(sheet, 0.1)[0].min() > -1e-6 and state.links(sheet) == linked:
             out.append(1e3 * state.kappa)
     return sorted(out, reverse=True)

@@ -214,31 +214,37 @@ class State:
         return np.array_equal(linked, p["linked"][k]) and bool(np.all(apart[asked] < np.pi))
 
 
-def solve(sheet, state, objective, free, steps, weight=10.0, trust=0.1):
-    """Maximises the step along `objective` less `weight` times the deepest overlap, by linear programs."""
+def solve(sheet, state, objective, free, steps, weight=10.0, trust=0.1, sizes=1.0, least=0.01, margin=2.5, enough=1e-12):
+    """Maximises the step along `objective` less `weight` times the deepest overlap, by linear programs.
+
+    Steps are within `trust` times `sizes`, the curvature stays above `least`, gaps below `margin` times `trust` are rows, and a step that promises
+    less than `enough` is the last.
+    """
     size = len(objective)
+    widths = np.ones(size) * sizes
+    widths[1:3] *= free
 
     def merit(value, gaps):
         return value - weight * np.maximum(-gaps, 0).max(initial=0)
 
-    gap, jacobian = state.rows(sheet, 2.5 * trust)
+    gap, jacobian = state.rows(sheet, margin * trust)
     for _ in range(steps):
-        bounds = [(-trust, trust) if i not in (1, 2) or free else (0, 0) for i in range(size)] + [(0, None)]
-        bounds[0] = (max(-trust, 0.01 - state.kappa), trust)
+        bounds = [(-trust * width, trust * width) for width in widths] + [(0, None)]
+        bounds[0] = (max(bounds[0][0], least - state.kappa), bounds[0][1])
         found = linprog(np.append(-objective, weight), A_ub=np.hstack([-jacobian, -np.ones((len(gap), 1))]), b_ub=gap,
                         bounds=bounds, method="highs")
         if found.x is None:
             return None
         promise = objective @ found.x[:-1] - merit(0.0, gap) - weight * found.x[-1]
         after = state.moved(found.x[:-1])
-        after_rows = after.rows(sheet, 2.5 * trust)
+        after_rows = after.rows(sheet, margin * trust)
         gained = merit(objective @ found.x[:-1], after_rows[0]) - merit(0.0, gap)
         if gained > 0.1 * promise:
             state, (gap, jacobian) = after, after_rows
             trust = min(trust * (1.5 if gained > 0.7 * promise else 1.0), 0.15)
         else:
             trust *= 0.4
-        if trust < 1e-9 or promise < 1e-12:
+        if trust < 1e-9 or promise < enough:
             break
     return state
 
@@ -322,4 +328,5 @@ def main():
               f"{again.kappa if again else float('nan'):10.7f}", flush=True)
 
 
-main()
+if __name__ == "__main__":
+    main()

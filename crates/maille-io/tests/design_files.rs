@@ -38,6 +38,24 @@ fn the_embedded_designs_are_all_those_of_the_folder() {
     assert_eq!(files, names);
 }
 
+/// Only smooth curves are not their own segments and arcs.
+#[test]
+fn smooth_curves_deviate_by_less_than_their_tolerance() {
+    for builtin in builtin_designs() {
+        let design = design(builtin.name);
+        match design.curve_deviation() {
+            Some(deviation) => assert!(
+                ["ellipses", "torus-knots"].contains(&builtin.name)
+                    && deviation > 0.0
+                    && deviation <= 1e-6 * design.reference_radius,
+                "{}: {deviation}",
+                builtin.name
+            ),
+            None => assert!(!["ellipses", "torus-knots"].contains(&builtin.name), "{}", builtin.name),
+        }
+    }
+}
+
 #[test]
 fn elements_and_rings_are_counted() {
     let counts = [

@@ -24,8 +24,6 @@ pub(crate) struct Piece {
 const SMOOTH: f64 = 1e-7;
 /// Arcs whose circles differ by less are of one.
 const ONE_CIRCLE: f64 = 1e-12;
-/// Least part of a span that is halved.
-const LEAST_SPAN: f64 = 1.0 / 4096.0;
 /// Pieces of a curve at most.
 const MOST_PIECES: usize = 10_000;
 
@@ -299,12 +297,12 @@ impl Curve {
                 });
                 if worst.fold(0.0, f64::max) > tolerance {
                     width *= 0.5;
-                    if width < LEAST_SPAN {
-                        return Err("a smooth curve needs too many arcs".into());
-                    }
                     continue;
                 }
                 pieces.extend(pair);
+                if pieces.len() > MOST_PIECES {
+                    return Err("a smooth curve needs too many arcs".into());
+                }
                 from += width;
                 // As wide as the span that begins here may be: what is left of the one that was halved.
                 while width < 1.0 && ((from - k as f64) / width) % 2.0 == 0.0 {
@@ -312,10 +310,7 @@ impl Curve {
                 }
             }
         }
-        match pieces.len() > MOST_PIECES {
-            true => Err("a smooth curve needs too many arcs".into()),
-            false => Ok(Curve { pieces }),
-        }
+        Ok(Curve { pieces })
     }
 
     /// A circle: two halves. The vectors u and v are of length 1, in its plane and across each other.

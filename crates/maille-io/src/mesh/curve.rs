@@ -1,4 +1,5 @@
-//! The mesh of the tube round a closed curve of segments and arcs: closed, oriented outward, within a chordal tolerance.
+//! The mesh of the tube round a closed curve of segments and arcs: closed, oriented outward, within a chordal tolerance. Of a frame each strut
+//! is meshed by itself, with round ends.
 //!
 //! Sections of the wire stand across the curve, so near to each other that their chords stay within the tolerance; straight pieces
 //! need none between their ends. From section to section the frame turns only with the tangent; what it is turned by after one
@@ -21,6 +22,8 @@ struct Section {
     along: f64,
 }
 
+/// Vertices of neighbouring sections that are nearer are one, in minor radii.
+const SHARED: f64 = 1e-9;
 /// Most sections of one curve.
 const MOST_SECTIONS: usize = 64 * MOST;
 
@@ -50,69 +53,63 @@ pub(super) fn curve_mesh(
     if across < 3 {
         return Err(MeshError::TooCoarse);
     }
-    let [mesh_major_radius, mesh_minor_radius] = [major_radius, minor_radius].map(|r| r * unit * mm);
+    let (rows, sections_of_strut) = match curve.is_of_frame() {
+        true => {
+            let steps = polygon(small, share).div_ceil(4);
+            (curve.own_pieces().flat_map(|strut| capsule(strut, steps)).collect(), Some(2 * (steps + 1)))
+        }
+        false => (tube(curve, small / unit, share / unit), None),
+    };
+    if rows.len() > MOST_SECTIONS {
+        return Err(MeshError::TooFine { segments: rows.len(), most: MOST_SECTIONS });
+    }
     let (mut vertices, mut normals) = (Vec::new(), Vec::new());
-    if curve.is_of_frame() {
-        let steps = polygon(small, share).div_ceil(4);
-        let sections = 2 * (steps + 1);
-        let all = sections * curve.own_pieces().count();
-        if all > MOST_SECTIONS {
-            return Err(MeshError::TooFine { segments: all, most: MOST_SECTIONS });
-        }
-        for (point, axis, u) in curve.own_pieces().flat_map(|strut| capsule(strut, steps)) {
-            for j in 0..across {
-                let (sin, cos) = (TAU * j as f64 / across as f64).sin_cos();
-                // u is as long as the section is wide, and what is missing points along the strut.
-                let normal = (u * cos + u.cross(&axis.0) * sin) + axis.0 * axis.1;
-                vertices.push((point + normal * minor_radius) * (unit * mm));
-                normals.push(normal);
-            }
-        }
-        let segments = Segments { around: vertices.len() / across, across };
-        return Ok(TorusMesh {
-            major_radius: mesh_major_radius,
-            minor_radius: mesh_minor_radius,
-            segments,
-            chords: Some(share * mm),
-            sections_of_strut: Some(sections),
-            vertices,
-            normals,
-        });
-    }
-    let sections = sections(curve, small / unit, share / unit);
-    if sections.len() > MOST_SECTIONS {
-        return Err(MeshError::TooFine { segments: sections.len(), most: MOST_SECTIONS });
-    }
-    for (section, [u, v]) in sections.iter().zip(frames(&sections, curve.length())) {
+    for Row { point, across: [u, v], along } in &rows {
         for j in 0..across {
             let (sin, cos) = (TAU * j as f64 / across as f64).sin_cos();
-            let normal = u * cos + v * sin;
-            vertices.push((section.point + normal * minor_radius) * (unit * mm));
+            let normal = u * cos + v * sin + along;
+            let vertex = (point + normal * minor_radius) * (unit * mm);
+            // Sections at a corner turn about vertices that they share, to the last digit.
+            let before = vertices.len().checked_sub(across).map(|k| vertices[k]);
+            let shared = before.filter(|before: &Vec3| (before - vertex).norm() < SHARED * small * mm);
+            vertices.push(shared.unwrap_or(vertex));
             normals.push(normal);
         }
     }
-    let segments = Segments { around: sections.len(), across };
-    Ok(TorusMesh {
-        major_radius: mesh_major_radius,
-        minor_radius: mesh_minor_radius,
-        segments,
-        chords: Some(share * mm),
-        sections_of_strut: None,
-        vertices,
-        normals,
-    })
+    let segments = Segments { around: rows.len(), across };
+    let [major_radius, minor_radius] = [major_radius, minor_radius].map(|r| r * unit * mm);
+    let chords = Some(share * mm);
+    Ok(TorusMesh { major_radius, minor_radius, segments, chords, sections_of_strut, vertices, normals })
 }
 
-/// Sections of a strut with round ends: the middle of each, the strut's axis with how far the section leans along it, and a vector across
-/// as long as the section is wide, in wire radii. Each end is a half ball of so many steps.
-fn capsule(strut: &Piece, steps: usize) -> Vec<(Vec3, (Vec3, f64), Vec3)> {
+/// The vertices round a place: at point + r (u cos + v sin + along).
+struct Row {
+    point: Vec3,
+    across: [Vec3; 2],
+    along: Vec3,
+}
+
+/// Rows round a closed curve.
+fn tube(curve: &Curve, small: f64, share: f64) -> Vec<Row> {
+    let sections = sections(curve, small, share);
+    let frames = frames(&sections, curve.length());
+    let rows = sections.iter().zip(frames);
+    rows.map(|(section, across)| Row { point: section.point, across, along: Vec3::zeros() }).collect()
+}
+
+/// Rows round a strut with round ends, each a half ball of so many steps, from pole to pole.
+fn capsule(strut: &Piece, steps: usize) -> Vec<Row> {
     let axis = strut.tangent(0.5);
     let u = axis.cross(&Vec3::ith(axis.iamin(), 1.0)).normalize();
-    let section = |end: f64, k: usize| {
-        let (along, wide) = (TAU / 4.0 * k as f64 / steps as f64).sin_cos();
-        (strut.point(end), (axis, if end == 0.0 { -along } else { along }), u * wide)
+    let row = |end: f64, k: usize| {
+        let (sin, cos) = (TAU / 4.0 * k as f64 / steps as f64).sin_cos();
+        Row {
+            point: strut.point(end),
+            across: [u * cos, u.cross(&axis) * cos],
+            along: axis * (sin * (2.0 * end - 1.0)),
+        }
     };
-    (0..=steps).rev().map(|k| section(0.0, k)).chain((0..=steps).map(|k| section(1.0, k))).collect()
+    (0..=steps).rev().map(|k| row(0.0, k)).chain((0..=steps).map(|k| row(1.0, k))).collect()
 }
 
 fn radius(piece: &Piece) -> Option<f64> {
@@ -140,6 +137,8 @@ fn sections(curve: &Curve, small: f64, share: f64) -> Vec<Section> {
         let next = &curve.pieces[(k + 1) % curve.pieces.len()];
         all.extend(corner(next.point(0.0), piece.tangent(1.0), next.tangent(0.0), before, small, share));
     }
+    // Where pieces meet smoothly one ends and the other begins with the same section.
+    all.dedup_by(|next, one| (next.point - one.point).norm() <= SAME && (next.tangent - one.tangent).norm() <= CORNER);
     // A run of length L that turns by τ strays from its chord by at most Lτ/4.
     let mut out: Vec<Section> = Vec::with_capacity(all.len());
     let first = (all[0].point, all[0].tangent);
@@ -164,7 +163,7 @@ fn sections(curve: &Curve, small: f64, share: f64) -> Vec<Section> {
 /// Tangents that differ by more make a corner.
 const CORNER: f64 = 1e-7;
 /// Sections that are nearer are one, in reference radii.
-const SAME: f64 = 1e-12;
+const SAME: f64 = 1e-9;
 
 /// Sections between the tangents at a corner, both left out.
 fn corner(point: Vec3, before: Vec3, after: Vec3, along: f64, small: f64, share: f64) -> Vec<Section> {
@@ -180,8 +179,9 @@ fn corner(point: Vec3, before: Vec3, after: Vec3, along: f64, small: f64, share:
 
 /// For each section two unit vectors u, v across the tangent, u × v against it: so faces look outward.
 fn frames(sections: &[Section], length: f64) -> Vec<[Vec3; 2]> {
+    // The shortest turn from one tangent to the next, of a vector across the first. An angle by its cosine fails where they nearly are one.
     let carried = |u: Vec3, from: &Vec3, to: &Vec3| {
-        let turned = Rotation3::rotation_between(from, to).map_or(u, |rotation| rotation * u);
+        let turned = u - (from + to) * (u.dot(to) / (1.0 + from.dot(to)));
         (turned - to * to.dot(&turned)).normalize()
     };
     let first = &sections[0];
@@ -205,7 +205,7 @@ fn frames(sections: &[Section], length: f64) -> Vec<[Vec3; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::read_design;
+    use crate::{Tile, mesh::Scene, read_design};
     use maille::{Cell, model::Model};
     use std::{collections::HashMap, f64::consts::PI};
 
@@ -263,6 +263,24 @@ mod tests {
         }
     }
 
+    /// As fine as the arcs of a smooth curve, and finer: no face without an area, none that is not finite. At a sharp corner sections turn about
+    /// a vertex that they share.
+    #[test]
+    fn fine_meshes_have_no_empty_faces() {
+        for form in FORMS {
+            let curve = curve(form);
+            for tolerance in [3e-3, 1e-3, 3e-4, 1e-4, 3e-5] {
+                let mesh = curve_mesh(&curve, [1.0, 0.1], Fineness::Tolerance(tolerance), 1.0, 1.0).unwrap();
+                let v = &mesh.vertices;
+                for [a, b, c] in mesh.triangles() {
+                    let area = 0.5 * (v[b] - v[a]).cross(&(v[c] - v[a])).norm();
+                    let is_shared = v[a] == v[b] || v[b] == v[c] || v[c] == v[a];
+                    assert!(area > 1e-9 || form.starts_with("square") && is_shared, "{form} {tolerance}");
+                }
+            }
+        }
+    }
+
     /// Each strut of a frame is closed by half balls, and meshed once.
     #[test]
     fn struts_are_closed_and_near_their_capsules() {
@@ -293,6 +311,24 @@ mod tests {
                 let away = struts.iter().map(|strut| (strut.point(strut.nearest(vertex)) - vertex).norm());
                 assert!(away.fold(f64::INFINITY, f64::min) < 0.1 + 1e-12 && (normal.norm() - 1.0).abs() < 1e-12);
             }
+        }
+    }
+
+    /// A knot that lies about a circle in the plane is as high as its turns about it, and the wire.
+    #[test]
+    fn the_box_of_a_scene_holds_curves() {
+        let text = format!(
+            "name = \"a\"\nminor_radius = 0.1\nreference_radius = 1.0\n[lattice]\na1 = [9.0, 0.0, 0.0]\na2 = [0.0, 9.0, 0.0]\n\
+             [[elements]]\nname = \"e\"\ncenter = [0.0, 0.0, 0.0]\ncurves = [{{ {} }}]\n",
+            FORMS[4]
+        );
+        let model = Model::compile(&read_design("a", &text).unwrap(), Cell::PRIMITIVE).unwrap();
+        let scene = Scene::new(&model, &model.start, Tile([1, 1]), Fineness::Tolerance(0.002), 1.0).unwrap();
+        assert!(scene.shapes[0].vertices.iter().flatten().all(|x| x.is_finite()));
+        let [least, largest] = scene.bounds();
+        // Across, its outermost points are those of the circles of radius 1.4 at the ends of the axes.
+        for (axis, half) in [(0, 1.5), (1, 1.5), (2, 0.5)] {
+            assert!((largest[axis] - half).abs() < 0.004 && (least[axis] + half).abs() < 0.004, "{least} {largest}");
         }
     }
 

@@ -297,8 +297,9 @@ mod tests {
         Model::compile(&serde_json::from_str(&text).unwrap(), Cell::PRIMITIVE).unwrap()
     }
 
-    /// Sheets whose flat limits have a motion that costs nothing: a little κ drives them far along it, and a short search does not end.
-    const DRIVEN: [&str; 1] = ["cages"];
+    /// Sheets whose flat limits have a motion that costs nothing, which κ drives until one more contact closes. Its force is proportional to κ, and
+    /// too small to be told from none below this κ: so much is held for a little.
+    const DRIVEN: [(&str, f64); 1] = [("cages", 1e-3)];
 
     /// With κ held at 0 the limits are those of a flat sheet, and with little κ they are near them: all built-in sheets, from the flat limit. Pairs
     /// that touch along whole circles nearly do with little κ, and then have no certificate.
@@ -315,7 +316,9 @@ mod tests {
                 let strains = RollStrains::free(free);
                 let curl = Curl { direction: Direction::of_degrees(direction_deg), sign: 1.0, strains };
                 let Some(flat) = stretch(&model, &curl, None, None) else { continue };
-                for (held, within) in [(0.0, 1e-9), (1e-12, 1e-9), (1e-7, 1e-5)] {
+                let driven = DRIVEN.iter().find(|(driven, _)| *driven == name);
+                let little = driven.map_or((1e-7, 1e-5), |(_, held)| (*held, *held));
+                for (held, within) in [(0.0, 1e-9), (1e-12, 1e-9), little] {
                     let rolled = stretch(&model, &curl, Some(held), Some(&flat)).map(|found| found.value());
                     match rolled {
                         Some(value) => assert!(
@@ -323,7 +326,7 @@ mod tests {
                             "{name} {direction_deg} {held}: {value} {}",
                             flat.value()
                         ),
-                        None if held > 1e-9 && (!flat.flat.is_empty() || DRIVEN.contains(&name)) => {}
+                        None if held > 1e-9 && !flat.flat.is_empty() => {}
                         None => lost.push((name, direction_deg, held)),
                     }
                 }
