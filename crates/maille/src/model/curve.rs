@@ -1,12 +1,13 @@
 //! Core curves: circles, and closed curves of segments and arcs.
 
+mod level;
 mod minima;
 mod tree;
 
 pub use minima::{CurveMinimum, curve_distance_minima};
 pub(crate) use minima::{curve_distance, distance_lower_bound, owned_distance_minima};
 
-use self::tree::Node;
+use self::{level::Middle, tree::Node};
 use crate::{
     design::shape::{CorePieces, Owned, SMOOTH},
     state::{Pose, images::Image},
@@ -28,6 +29,8 @@ pub struct Curve {
     lengths: Vec<f64>,
     /// Whether the tangent goes on from the piece before into each.
     smooth: Vec<bool>,
+    /// The middle of each piece.
+    middles: Vec<Middle>,
     /// Runs of pieces, with balls around them and cones of their tangents.
     nodes: Vec<Node>,
 }
@@ -48,8 +51,13 @@ impl Curve {
                 arrives.dot(&leaves) > 0.0 && arrives.cross(&leaves).norm() < SMOOTH
             })
             .collect();
+        let n = pieces.len();
+        // The one piece of a circle meets itself.
+        let joins = |k: usize| n == 1 || smooth[k % n];
+        let middles =
+            pieces.iter().enumerate().map(|(k, piece)| Middle::new(piece, joins(k) && joins(k + 1))).collect();
         let nodes = tree::nodes(&pieces);
-        Curve { pieces, owned, deviation, lengths, smooth, nodes }
+        Curve { pieces, owned, deviation, lengths, smooth, middles, nodes }
     }
 
     /// The pieces that belong to it: all, but those of a frame that lie on a curve before it, too.

@@ -120,6 +120,9 @@ impl Pair<'_> {
         if !(self.all || self.a.owned[i].any() && self.b.owned[j].any()) {
             return;
         }
+        if !self.a.middles[i].may_be_level(&self.b.middles[j].moved(&self.motion)) {
+            return;
+        }
         let (b, motion) = (self.b, self.motion);
         let of_b = |k: usize| b.pieces[k].moved(&motion.rotation, &motion.position);
         let (own, other) = (self.a.pieces[i], of_b(j));

@@ -1,0 +1,106 @@
+//! What rules out a minimum of the distance of two short pieces: a slope that keeps its sign all over them.
+//!
+//! With arc lengths s and t from the middles, W = a(s) − b(t), curvatures κ and half lengths h, the slope g = W·a' has the derivatives
+//!
+//! ```text
+//! ∂g/∂s = 1 + W·a'',   ∂g/∂t = −b'·a'.
+//! ```
+//!
+//! On an arc a''' = −κ² a', so the first differs from its value in the middle by at most κ_a² |W| h_a + κ_a h_b, the second by at most κ_a h_a +
+//! κ_b h_b. The slope in t is that of the pair with its sides changed.
+
+use crate::{design::shape::SMOOTH, state::Pose};
+use maille_geometry::{Piece, Vec3};
+
+/// The middle of a piece.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Middle {
+    point: Vec3,
+    tangent: Vec3,
+    /// Derivative of the tangent by arc length.
+    curvature: Vec3,
+    /// Length of the curvature.
+    bend: f64,
+    half_length: f64,
+    /// Whether it has no corner at its ends.
+    smooth: bool,
+}
+
+/// Slopes are rounded, and may change at a joint by as much as a smooth one may be turned.
+const SLACK: f64 = 2.0 * SMOOTH;
+
+impl Middle {
+    pub fn new(piece: &Piece, smooth: bool) -> Self {
+        let curvature = piece.curvature(0.5);
+        Middle {
+            point: piece.point(0.5),
+            tangent: piece.tangent(0.5),
+            curvature,
+            bend: curvature.norm(),
+            half_length: 0.5 * piece.length(),
+            smooth,
+        }
+    }
+
+    pub fn moved(&self, motion: &Pose) -> Self {
+        Middle {
+            point: motion.rotation * self.point + motion.position,
+            tangent: motion.rotation * self.tangent,
+            curvature: motion.rotation * self.curvature,
+            ..*self
+        }
+    }
+
+    /// Whether both slopes of the distance from this piece to the other one may vanish at a point of both.
+    pub fn may_be_level(&self, other: &Middle) -> bool {
+        !(self.smooth && other.smooth) || self.slope_may_vanish(other) && other.slope_may_vanish(self)
+    }
+
+    fn slope_may_vanish(&self, other: &Middle) -> bool {
+        let (way, [h, k]) = (self.point - other.point, [self.half_length, other.half_length]);
+        let apart = way.norm() + h + k;
+        let own = (1.0 + way.dot(&self.curvature)).abs() + self.bend * (self.bend * apart * h + k);
+        let others = self.tangent.dot(&other.tangent).abs() + self.bend * h + other.bend * k;
+        way.dot(&self.tangent).abs() <= own * h + others * k + SLACK * apart
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::search::starts::{Use, rng};
+    use maille_geometry::Arc;
+    use rand::Rng;
+
+    /// No pair that has a point where both slopes vanish is ruled out: arcs whose middles are off it by random arc lengths.
+    #[test]
+    fn what_is_level_is_not_ruled_out() {
+        let mut stream = rng(1, Use::Start, 0);
+        let mut random = |from: f64, to: f64| stream.random_range(from..to);
+        let mut ruled_out = 0;
+        for case in 0..20_000 {
+            let sweep = if case % 2 == 0 { 0.1 } else { 1.0 };
+            let mut arc = |foot: Vec3, way: Vec3| {
+                let across = |v: Vec3| (v - way * v.dot(&way)).normalize();
+                let tangent = across(Vec3::new(random(-1.0, 1.0), random(-1.0, 1.0), random(-1.0, 1.0)));
+                let aside = Vec3::new(random(-1.0, 1.0), random(-1.0, 1.0), random(-1.0, 1.0));
+                let out = (aside - tangent * aside.dot(&tangent)).normalize();
+                let (radius, turned) = (random(0.3, 3.0), random(-0.5, 0.5) * sweep);
+                let at = |angle: f64| foot - out * radius + (out * angle.cos() + tangent * angle.sin()) * radius;
+                // The foot, at the angle 0, lies on it, away from its middle.
+                let (from, to) = (turned - 0.5 * sweep, turned + 0.5 * sweep);
+                let leaves = tangent * from.cos() - out * from.sin();
+                Piece::Arc(Arc::from_tangent(at(from), leaves, at(to)).unwrap())
+            };
+            let way = Vec3::z();
+            let one = arc(Vec3::zeros(), way);
+            let other = arc(way * 2.0, way);
+            let [a, b] = [one, other].map(|piece| Middle::new(&piece, true));
+            assert!(a.may_be_level(&b), "{case}: {one:?} {other:?}");
+            let far = Pose { position: Vec3::x() * 2.0, rotation: nalgebra::UnitQuaternion::identity() };
+            ruled_out += usize::from(!a.may_be_level(&b.moved(&far)));
+        }
+        // It rules out pairs that are elsewhere.
+        assert!(ruled_out > 5_000, "{ruled_out}");
+    }
+}
