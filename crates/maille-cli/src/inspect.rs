@@ -119,6 +119,9 @@ struct CoreCurve {
     least_radius: Option<f64>,
     /// How far the form is from its segments and arcs.
     deviation: f64,
+    /// Whether it is one of the cycles of a frame: then the counts and the length are of the struts that belong to it.
+    #[serde(skip)]
+    of_frame: bool,
 }
 
 impl CoreCurve {
@@ -130,7 +133,20 @@ impl CoreCurve {
             arcs: radii.len(),
             least_radius: radii.into_iter().map(|r| r * unit).min_by(f64::total_cmp),
             deviation: curve.deviation * unit,
+            of_frame: curve.is_of_frame(),
         }
+    }
+
+    /// For people; `unit` with a space before it.
+    fn words(&self, unit: &str) -> String {
+        let CoreCurve { length, segments, arcs, least_radius, deviation, .. } = self;
+        let made = [(*segments, "segment"), (*arcs, "arc")].map(|(count, what)| output::counted(count, what));
+        let bends = least_radius.map_or(String::new(), |r| format!(" of radius {r:.4} and more"));
+        let strays = match *deviation > 0.0 {
+            true => format!(" that are within {deviation:.1e}{unit} of it"),
+            false => String::new(),
+        };
+        format!("curve of length {length:.4}{unit}, {} and {}{bends}{strays}", made[0], made[1])
     }
 }
 
@@ -316,24 +332,29 @@ impl Element {
     /// For people; `unit` with a space before it.
     fn lines(&self, unit: &str) -> Vec<String> {
         let mut lines = vec![format!("\"{}\"", self.name)];
-        for ring in &self.rings {
+        let frames = self
+            .rings
+            .iter()
+            .filter_map(|ring| ring.curve.as_ref().filter(|curve| curve.of_frame).map(|curve| (curve, ring)));
+        let (mut struts, mut length, mut cycles) = (0, 0.0, 0);
+        for (curve, _) in frames.clone() {
+            (struts, length, cycles) = (struts + curve.segments, length + curve.length, cycles + 1);
+        }
+        if let Some((_, ring)) = frames.clone().next() {
+            let (struts, cycles, r) =
+                (output::counted(struts, "strut"), output::counted(cycles, "curve"), ring.minor_radius);
+            lines.push(format!("  cage of {struts}, {length:.4}{unit} long in all, r = {r:.4}{unit}; counted as {cycles}, a basis of its cycles"));
+        }
+        for ring in self.rings.iter().filter(|ring| ring.curve.as_ref().is_none_or(|curve| !curve.of_frame)) {
             let ([x, y, z], offset) = (ring.normal, ring.offset);
             let offset = match offset == [0.0; 3] {
                 true => String::new(),
                 false => format!(", offset ({:.4}, {:.4}, {:.4})", offset[0], offset[1], offset[2]),
             };
             let (big, small) = (ring.major_radius, ring.minor_radius);
-            if let Some(CoreCurve { length, segments, arcs, least_radius, deviation }) = &ring.curve {
-                let made = [(*segments, "segment"), (*arcs, "arc")].map(|(count, what)| output::counted(count, what));
-                let bends = least_radius.map_or(String::new(), |r| format!(" of radius {r:.4} and more"));
-                let strays = match *deviation > 0.0 {
-                    true => format!(" that are within {deviation:.1e}{unit} of it"),
-                    false => String::new(),
-                };
-                lines.push(format!(
-                    "  curve of length {length:.4}{unit}, {} and {}{bends}{strays}, r = {small:.4}{unit}, within {big:.4}{unit} of its centre{offset}",
-                    made[0], made[1]
-                ));
+            if let Some(curve) = &ring.curve {
+                let what = curve.words(unit);
+                lines.push(format!("  {what}, r = {small:.4}{unit}, within {big:.4}{unit} of its centre{offset}"));
                 continue;
             }
             lines.push(format!("  ring R = {big:.4}, r = {small:.4}{unit}, normal ({x:.4}, {y:.4}, {z:.4}){offset}"));
@@ -370,7 +391,9 @@ impl Inspection {
             line(format!("cell {}: a1 = {}, a2 = {}{unit}", self.cell, vector(self.a1), vector(self.a2)));
             line(format!("area {:.4}{square}, angle {:.2}°, {radius}", self.area, self.angle_deg));
         }
-        let counts = [(self.elements.len(), "element"), (self.rings, "ring"), (self.links, "link")];
+        let all_rings = self.elements.iter().flat_map(|element| &element.rings).all(|ring| ring.curve.is_none());
+        let cores = if all_rings { "ring" } else { "core curve" };
+        let counts = [(self.elements.len(), "element"), (self.rings, cores), (self.links, "link")];
         let [elements, rings, links] = counts.map(|(count, what)| output::counted(count, what));
         line(format!("{elements}, {rings}, {links} per cell\n"));
         for element in &self.elements {

@@ -54,7 +54,8 @@ const DESIGNS: &[Builtin] = embed![
     "hexagons",
     "ellipses",
     "torus-knots",
-    "cages";
+    "cages",
+    "octahedra";
     "1.1",
     "1.2",
     "2",
