@@ -24,6 +24,8 @@ use nalgebra::{DMatrix, DVector, Point3, Unit, UnitQuaternion};
 const STEP: f64 = 1e-3;
 /// Step of differences of slopes at points of two curves, which may go along them much faster.
 const SHORT_STEP: f64 = 1e-4;
+/// Shares of that step that are tried where its rounding, or what it leaves out, hides the sign of a curvature.
+const OTHER_STEPS: [f64; 2] = [0.3, 3.0];
 /// Steps are shorter where curves run along each other, down to this share.
 const SOFTEST: f64 = 1e-2;
 /// Step of second derivatives.
@@ -268,7 +270,13 @@ pub(crate) fn roll_forces(
     let gradients: Vec<Vec<(usize, f64)>> = held.iter().map(|held| gradient(held, &unknowns)).collect();
     let bends = radius.map(|radius| radius.bends(&unknowns));
     let bends = bends.unwrap_or_else(|| DMatrix::zeros(unknowns.len(), unknowns.len()));
-    [balance(&held, &gradients, &unknowns, aim, written), curvature(&held, &gradients, &unknowns, bends, written)]
+    let judged = |share: f64| curvature(&held, &gradients, &unknowns, &bends, (written, share));
+    let first = judged(1.0);
+    let is_open = first.verdict == Verdict::Open && held.iter().any(|held| matches!(held.at, Closed::Curves(_)));
+    let shares = if is_open { &OTHER_STEPS[..] } else { &[] };
+    let proved = |finding: &Finding| finding.verdict == Verdict::Proved;
+    let curvature = shares.iter().map(|share| judged(*share)).find(proved).unwrap_or(first);
+    [balance(&held, &gradients, &unknowns, aim, written), curvature]
 }
 
 /// The mean distance of the elements from the axis, as what is maximised.
@@ -377,8 +385,8 @@ fn curvature(
     held: &[Held<'_>],
     gradients: &[Vec<(usize, f64)>],
     unknowns: &[Unknown],
-    bends: DMatrix<f64>,
-    written: Option<&Written>,
+    bends: &DMatrix<f64>,
+    (written, share): (Option<&Written>, f64),
 ) -> Finding {
     let n = unknowns.len();
     let (mut of_sum, mut gram) = (-bends, DMatrix::zeros(n, n));
@@ -389,15 +397,15 @@ fn curvature(
         let own = held.own(unknowns);
         let (bend, aside) = match held.at {
             Closed::Point(_) => {
-                let aside = own.iter().map(|&i| second(held, unknowns[i], Some(Unknown::Point)));
-                (second(held, Unknown::Point, None), aside.collect())
+                let aside = own.iter().map(|&i| second(held, unknowns[i], Some(Unknown::Point), share));
+                (second(held, Unknown::Point, None, share), aside.collect())
             }
             Closed::Curves(_) => (1.0, vec![0.0; own.len()]),
         };
         for (p, &i) in own.iter().enumerate() {
             for (q, &j) in own[..=p].iter().enumerate() {
                 let other = (i != j).then_some(unknowns[j]);
-                let term = held.force * (second(held, unknowns[i], other) - aside[p] * aside[q] / bend);
+                let term = held.force * (second(held, unknowns[i], other, share) - aside[p] * aside[q] / bend);
                 of_sum[(i, j)] -= term;
                 if i != j {
                     of_sum[(j, i)] -= term;
@@ -458,12 +466,12 @@ fn of(of_sum: &DMatrix<f64>, gram: &DMatrix<f64>) -> Curvature {
 /// The second derivative of the distance along one unknown, or mixed along two. With D(h) the usual difference of second order,
 /// (D(h) − 20 D(h/2) + 64 D(h/4))/45 has an error of sixth order.
 ///
-/// Of two curves it is a difference of fourth order of slopes.
-fn second(held: &Held<'_>, one: Unknown, other: Option<Unknown>) -> f64 {
+/// Of two curves it is a difference of fourth order of slopes, with this share of the usual step.
+fn second(held: &Held<'_>, one: Unknown, other: Option<Unknown>, share: f64) -> f64 {
     if let Closed::Curves(contact) = &held.at {
         let (g, h) = (
             |x: f64| held.slope_after(contact, one, &[(other.unwrap_or(one), x)]),
-            held.step(SHORT_STEP * contact.stiffness().clamp(SOFTEST, 1.0)),
+            held.step(share * SHORT_STEP * contact.stiffness().clamp(SOFTEST, 1.0)),
         );
         return (8.0 * (g(h) - g(-h)) - (g(2.0 * h) - g(-2.0 * h))) / (12.0 * h);
     }
