@@ -124,6 +124,13 @@ struct CoreCurve {
     of_frame: bool,
 }
 
+impl Ring {
+    /// Its curve, if that is one of the cycles of a frame.
+    fn of_frame(&self) -> Option<&CoreCurve> {
+        self.curve.as_ref().filter(|curve| curve.of_frame)
+    }
+}
+
 impl CoreCurve {
     fn new(curve: &maille::model::Curve, unit: f64) -> Self {
         let radii = curve.arc_radii();
@@ -332,26 +339,25 @@ impl Element {
     /// For people; `unit` with a space before it.
     fn lines(&self, unit: &str) -> Vec<String> {
         let mut lines = vec![format!("\"{}\"", self.name)];
-        let frames = self
-            .rings
-            .iter()
-            .filter_map(|ring| ring.curve.as_ref().filter(|curve| curve.of_frame).map(|curve| (curve, ring)));
-        let (mut struts, mut length, mut cycles) = (0, 0.0, 0);
-        for (curve, _) in frames.clone() {
-            (struts, length, cycles) = (struts + curve.segments, length + curve.length, cycles + 1);
-        }
-        if let Some((_, ring)) = frames.clone().next() {
-            let (struts, cycles, r) =
-                (output::counted(struts, "strut"), output::counted(cycles, "curve"), ring.minor_radius);
-            lines.push(format!("  cage of {struts}, {length:.4}{unit} long in all, r = {r:.4}{unit}; counted as {cycles}, a basis of its cycles"));
-        }
-        for ring in self.rings.iter().filter(|ring| ring.curve.as_ref().is_none_or(|curve| !curve.of_frame)) {
+        let wire = |ring: &Ring| ring.of_frame().map(|_| (ring.minor_radius, ring.offset));
+        for cage in self.rings.chunk_by(|one, next| wire(one).is_some() && wire(one) == wire(next)) {
+            let cycles: Vec<&CoreCurve> = cage.iter().filter_map(Ring::of_frame).collect();
+            let ring = &cage[0];
             let ([x, y, z], offset) = (ring.normal, ring.offset);
             let offset = match offset == [0.0; 3] {
                 true => String::new(),
                 false => format!(", offset ({:.4}, {:.4}, {:.4})", offset[0], offset[1], offset[2]),
             };
             let (big, small) = (ring.major_radius, ring.minor_radius);
+            if !cycles.is_empty() {
+                let struts = output::counted(cycles.iter().map(|cycle| cycle.segments).sum(), "strut");
+                let length: f64 = cycles.iter().map(|cycle| cycle.length).sum();
+                let counted = output::counted(cycles.len(), "curve");
+                lines.push(format!(
+                    "  cage of {struts}, {length:.4}{unit} long in all, r = {small:.4}{unit}{offset}; counted as {counted}, a basis of its cycles"
+                ));
+                continue;
+            }
             if let Some(curve) = &ring.curve {
                 let what = curve.words(unit);
                 lines.push(format!("  {what}, r = {small:.4}{unit}, within {big:.4}{unit} of its centre{offset}"));

@@ -65,7 +65,9 @@ fn rolls_of_curves_are_proved() {
         };
         found["rolls"][0]["rolls"].as_array().unwrap().iter().map(of).collect::<Vec<String>>()
     };
-    for (name, rest, rolls) in [("squares", "--directions 30 --axis below", 1), ("cages", "--directions 0,45", 4)] {
+    // Steps of the usual size leave the sign of a curvature of this one open.
+    const FREE: &str = "--directions 15 --axis below --free width,shear";
+    for (name, rest, rolls) in [("squares", FREE, 1), ("cages", "--directions 0,45", 4)] {
         let line = format!("roll {name} {rest} --effort low --out {name} --quiet");
         assert_eq!(code(&maille(dir.path(), &line)), 0, "{line}");
         for check in ["overlap", "links", "balance", "curvature"] {
