@@ -13,7 +13,7 @@ use crate::{
 };
 use maille::{
     bound::{ChainBound, LinkBound, best_bound},
-    design::Source,
+    design::{CurveKind, Source},
     lattice::{Cell, Direction, Shift},
     model::Model,
     topology,
@@ -119,15 +119,15 @@ struct CoreCurve {
     least_radius: Option<f64>,
     /// How far the form is from its segments and arcs.
     deviation: f64,
-    /// Whether it is one of the cycles of a frame: then the counts and the length are of the struts that belong to it.
+    /// Whether it is one of the cycles of a frame, as counts and length are of the struts that belong to it then, or open.
     #[serde(skip)]
-    of_frame: bool,
+    kind: CurveKind,
 }
 
 impl Ring {
     /// Its curve, if that is one of the cycles of a frame.
     fn of_frame(&self) -> Option<&CoreCurve> {
-        self.curve.as_ref().filter(|curve| curve.of_frame)
+        self.curve.as_ref().filter(|curve| curve.kind == CurveKind::Frame)
     }
 }
 
@@ -140,7 +140,7 @@ impl CoreCurve {
             arcs: radii.len(),
             least_radius: radii.into_iter().map(|r| r * unit).min_by(f64::total_cmp),
             deviation: curve.deviation * unit,
-            of_frame: curve.is_of_frame(),
+            kind: curve.kind,
         }
     }
 
@@ -153,7 +153,8 @@ impl CoreCurve {
             true => format!(" that are within {deviation:.1e}{unit} of it"),
             false => String::new(),
         };
-        format!("curve of length {length:.4}{unit}, {} and {}{bends}{strays}", made[0], made[1])
+        let open = if self.kind == CurveKind::Open { "open " } else { "" };
+        format!("{open}curve of length {length:.4}{unit}, {} and {}{bends}{strays}", made[0], made[1])
     }
 }
 

@@ -393,3 +393,18 @@ fn arcs_from_a_tangent_end_where_they_should() {
     assert!(Arc::from_tangent(Vec3::zeros(), Vec3::x(), Vec3::x() * 2.0).is_none());
     assert!(Segment::new(Vec3::x(), Vec3::x()).is_none());
 }
+
+#[test]
+fn a_reversed_piece_has_the_same_points() {
+    let mut rng = rng(12);
+    for _ in 0..200 {
+        let piece = any_piece(&mut rng);
+        let back = piece.reversed();
+        assert_eq!(back.length(), piece.length());
+        for t in [0.0, 0.2, 0.5, 1.0] {
+            assert!((back.point(t) - piece.point(1.0 - t)).norm() < 1e-14);
+            assert!((back.tangent(t) + piece.tangent(1.0 - t)).norm() < 1e-14);
+            assert!((back.curvature(t) - piece.curvature(1.0 - t)).norm() < 1e-13);
+        }
+    }
+}

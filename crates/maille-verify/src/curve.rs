@@ -1,4 +1,4 @@
-//! Core curves that are no circles: closed curves of segments and arcs, from the forms of a design.
+//! Core curves that are no circles: closed curves of segments and arcs, from the forms of a design. An open curve goes there and back.
 
 use crate::record::Form;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -117,6 +117,15 @@ impl Piece {
         if s > 0.0 && s < self.length { ends.max((self.position(s) - p).norm()) } else { ends }
     }
 
+    /// From its end to its start.
+    fn back(&self) -> Piece {
+        let (at, tangent) = (self.position(self.length), self.tangent(self.length));
+        match self.radius {
+            None => Piece { at, u: -self.u, ..*self },
+            Some(radius) => Piece { u: (at - self.at) / radius, v: -tangent, ..*self },
+        }
+    }
+
     fn moved(&self, turn: &UnitQuaternion<f64>, by: &Vec3) -> Piece {
         Piece { at: turn * self.at + by, u: turn * self.u, v: turn * self.v, ..*self }
     }
@@ -143,9 +152,16 @@ pub(crate) struct Place {
 }
 
 impl Curve {
-    /// The closed curves of a form in its own frame: one, or those of a frame's cycles.
+    /// The closed curves of a form in its own frame: one, that of an open curve there and back, or those of a frame's cycles.
     pub fn all_of(form: &Form, unit: f64, tolerance: f64) -> Result<Vec<Curve>, String> {
-        let Form::Frame { vertices, edges } = form else { return Ok(vec![Curve::of(form, unit, tolerance)?]) };
+        let Form::Frame { vertices, edges } = form else {
+            let mut curve = Curve::of(form, unit, tolerance)?;
+            if is_open(form) {
+                let back: Vec<Piece> = curve.pieces.iter().rev().map(Piece::back).collect();
+                curve.pieces.extend(back);
+            }
+            return Ok(vec![curve]);
+        };
         let at = |v: usize| vertices.get(v).map(|p| Vec3::from(*p) / unit).ok_or("a strut to no vertex".to_owned());
         let of = |walk: Vec<usize>| {
             let corners: Vec<Vec3> = walk.into_iter().map(at).collect::<Result<_, String>>()?;
@@ -189,14 +205,15 @@ impl Curve {
                 corners = (0..6).map(corner).collect();
                 rounding = fillet / unit;
             }
-            Form::Polyline { points, fillet } => {
+            Form::Polyline { points, fillet, .. } => {
                 corners = points.iter().map(|p| Vec3::from(*p) / unit).collect();
                 rounding = fillet / unit;
             }
-            Form::Path { parts } => {
+            Form::Path { from: start, parts } => {
                 let at = |k: usize| Vec3::from(parts[k % parts.len()].to) / unit;
                 let pieces = (0..parts.len()).map(|k| {
-                    let (from, to) = (at(k + parts.len() - 1), at(k));
+                    let before = start.filter(|_| k == 0).map(|p| Vec3::from(p) / unit);
+                    let (from, to) = (before.unwrap_or_else(|| at(k + parts.len() - 1)), at(k));
                     let Some(via) = parts[k].through else { return Some(Piece::segment(from, to)) };
                     // The centre of the circle through three points, from the first.
                     let (a, b) = (Vec3::from(via) / unit - from, to - from);
@@ -206,21 +223,26 @@ impl Curve {
                 });
                 return Curve::whole(pieces.collect());
             }
-            Form::Spline { points } => {
+            Form::Spline { points, closed } => {
                 let n = points.len();
                 let at = |k: usize| Vec3::from(points[k % n]) / unit;
                 let span = |k: usize| (at(k + 1) - at(k)).norm();
-                // The slope at point k of the parabola through it and its neighbours.
-                let slope = |k: usize| {
+                // The slope, at point k and from there on a way x, of the parabola through it and its neighbours.
+                let parabola = |k: usize, x: f64| {
                     let (h, g) = (span(k + n - 1), span(k));
                     let rise = (at(k + 1) - at(k)) / g - (at(k) - at(k + n - 1)) / h;
-                    (at(k + 1) - at(k)) / g - rise * (g / (g + h))
+                    (at(k + 1) - at(k)) / g + rise * ((2.0 * x - g) / (g + h))
                 };
-                return Curve::smooth(n, tolerance, |t| {
-                    // Rounding may leave the end of a span just before it.
-                    let x = t / TAU * n as f64 + 1e-12;
-                    let (k, u) = (x.floor() as usize % n, x.fract());
-                    let h = span(k);
+                let slope = |k: usize| match k {
+                    0 if !closed => parabola(1, -span(0)),
+                    _ if !closed && k == n - 1 => parabola(n - 2, span(n - 2)),
+                    _ => parabola(k, 0.0),
+                };
+                let spans = n - usize::from(!closed);
+                return Curve::biarcs(spans, tolerance, |x| {
+                    let x = if *closed { x % spans as f64 } else { x };
+                    let k = (x.floor() as usize).min(spans - 1);
+                    let (h, u) = (span(k), x - k as f64);
                     // The four cubics of Hermite.
                     let (p, q, v, w) = (at(k), at(k + 1), slope(k) * h, slope((k + 1) % n) * h);
                     let (u2, u3) = (u * u, u * u * u);
@@ -251,7 +273,7 @@ impl Curve {
                 });
             }
         }
-        Curve::rounded(&corners, rounding)
+        Curve::rounded(&corners, rounding, !is_open(form))
     }
 
     fn whole(pieces: Vec<Option<Piece>>) -> Result<Curve, String> {
@@ -259,14 +281,17 @@ impl Curve {
         pieces.map(|pieces| Curve { pieces }).ok_or_else(|| "a curve's form makes no curve".into())
     }
 
-    fn rounded(corners: &[Vec3], radius: f64) -> Result<Curve, String> {
+    fn rounded(corners: &[Vec3], radius: f64, closed: bool) -> Result<Curve, String> {
         let n = corners.len();
         let at = |k: usize| corners[k % n];
         let way = |k: usize| (at(k + 1) - at(k)).normalize();
-        // What the arc at a corner takes of both edges: ϱ tan τ/2.
-        let taken = |k: usize| radius * (0.5 * way(k + n - 1).angle(&way(k))).tan();
+        // What the arc at a corner takes of both edges: ϱ tan τ/2. There is none at an end.
+        let taken = |k: usize| match closed || k > 0 && k < n - 1 {
+            true => radius * (0.5 * way(k + n - 1).angle(&way(k))).tan(),
+            false => 0.0,
+        };
         let mut pieces = Vec::new();
-        for k in 0..n {
+        for k in 0..n - usize::from(!closed) {
             let (from, to) = (at(k) + way(k) * taken(k), at(k + 1) - way(k) * taken(k + 1));
             if (to - from).norm() > SMOOTH * (at(k + 1) - at(k)).norm() {
                 pieces.push(Some(Piece::segment(from, to)));
@@ -278,10 +303,13 @@ impl Curve {
         Curve::whole(pieces)
     }
 
-    /// Biarcs of equal spans, of which each is halved until seven points of it are within the tolerance.
+    /// A closed curve, given by point and derivative at 0 ≤ t ≤ 2π, as [`Self::biarcs`] of equal spans.
     fn smooth(spans: usize, tolerance: f64, at: impl Fn(f64) -> [Vec3; 2]) -> Result<Curve, String> {
-        // The point at a part of the whole, in spans.
-        let point = |x: f64| at(TAU * (x % spans as f64) / spans as f64);
+        Curve::biarcs(spans, tolerance, |x| at(TAU * (x % spans as f64) / spans as f64))
+    }
+
+    /// Biarcs of spans, of which each is halved until seven points of it are within the tolerance. `point` counts spans.
+    fn biarcs(spans: usize, tolerance: f64, point: impl Fn(f64) -> [Vec3; 2]) -> Result<Curve, String> {
         let mut pieces = Vec::new();
         for k in 0..spans {
             let (mut from, mut width) = (k as f64, 1.0);
@@ -385,6 +413,15 @@ impl Curve {
 const JOINT: f64 = 1e-13;
 /// A point this near to a corner is at it, in reference radii.
 const CORNER: f64 = 1e-9;
+
+/// Whether a form is a curve with two ends.
+fn is_open(form: &Form) -> bool {
+    match form {
+        Form::Polyline { closed, .. } | Form::Spline { closed, .. } => !closed,
+        Form::Path { from, .. } => from.is_some(),
+        _ => false,
+    }
+}
 
 /// The closed walks of a frame, as `docs/theory/curves.md` has them: those of each strut beside the tree, back through it; then each strut that
 /// is on none, there and back.

@@ -27,6 +27,12 @@ type Local = SVector<f64, 13>;
 const BOXES: usize = 4_000_000;
 /// The same where some distance will do.
 const FEW_BOXES: usize = 20_000;
+/// Step of the differences of slopes, in core distances: points may go along the curves much faster than the elements.
+const STEP: f64 = 1e-4;
+/// The step is shorter where curves run along each other, down to this share.
+const SOFTEST: f64 = 1e-2;
+/// Shares of the step that are tried where its rounding, or what it leaves out, hides the sign of a curvature.
+pub(crate) const OTHER_STEPS: [f64; 2] = [0.3, 3.0];
 /// Points of each piece from which a nearer point is sought.
 const SEEDS: usize = 4;
 
@@ -321,7 +327,7 @@ impl CurveContact {
 
     /// How fast the distance grows along the curves, as they slide most easily: 1 for straight ones across each other, little where they run along
     /// each other, and the points move fast with the elements.
-    pub fn stiffness(&self) -> f64 {
+    fn stiffness(&self) -> f64 {
         let [[pa, ta, ka], [pb, tb, kb]] = self.at(&self.poses, self.arc_lengths());
         let (way, across) = (pb - pa, -ta.dot(&tb));
         let along = [1.0 - way.dot(&ka), 1.0 + way.dot(&kb)];
@@ -330,6 +336,11 @@ impl CurveContact {
             [true, true] => 1.0,
             [one, _] => along[usize::from(one)],
         }
+    }
+
+    /// The step of differences of slopes.
+    pub fn step(&self) -> f64 {
+        STEP * self.stiffness().clamp(SOFTEST, 1.0) * self.touching
     }
 
     /// The arc lengths of the points.
@@ -372,9 +383,10 @@ impl CurveContact {
         ])
     }
 
-    /// Second derivatives of the least distance, symmetric, by differences of fourth order; `step` is that of a translation.
-    pub fn hessian(&self, step: f64) -> Result<SMatrix<f64, 13, 13>, String> {
+    /// Second derivatives of the least distance, symmetric, by differences of fourth order with this share of the usual step.
+    pub fn hessian(&self, share: f64) -> Result<SMatrix<f64, 13, 13>, String> {
         let mut out = SMatrix::<f64, 13, 13>::zeros();
+        let step = share * self.step();
         let size = self.own.iter().map(|curve| curve.reach(&Vec3::zeros())).fold(1.0, f64::max);
         for along in 0..12 {
             let h = if along % 6 < 3 { step } else { step / size };

@@ -117,12 +117,17 @@ pub(crate) enum Form {
         points: Vec<[f64; 3]>,
         #[serde(default)]
         fillet: f64,
+        #[serde(default = "closed")]
+        closed: bool,
     },
     Path {
+        from: Option<[f64; 3]>,
         parts: Vec<Part>,
     },
     Spline {
         points: Vec<[f64; 3]>,
+        #[serde(default = "closed")]
+        closed: bool,
     },
     Frame {
         vertices: Vec<[f64; 3]>,
@@ -139,6 +144,10 @@ pub(crate) enum Form {
         circle_radius: f64,
         a: f64,
     },
+}
+
+fn closed() -> bool {
+    true
 }
 
 /// A part of a path.

@@ -11,7 +11,7 @@ use crate::{
     apart::Arc,
     balance::{COMPLEMENTARITY, RESIDUAL, least, placed, placed_on_curves},
     curvature::{CURVATURE, Curvature, FLATTEST, ZERO_MODE, kept, turns},
-    curve_pair::CurveContact,
+    curve_pair::{CurveContact, OTHER_STEPS},
     record::Contact,
     report::{Check, Finding, Verdict},
     rolled::Motions,
@@ -22,12 +22,6 @@ use nalgebra::{DMatrix, DVector, Point3, Unit, UnitQuaternion};
 
 /// Step of first derivatives, in core distances and radians.
 const STEP: f64 = 1e-3;
-/// Step of differences of slopes at points of two curves, which may go along them much faster.
-const SHORT_STEP: f64 = 1e-4;
-/// Shares of that step that are tried where its rounding, or what it leaves out, hides the sign of a curvature.
-const OTHER_STEPS: [f64; 2] = [0.3, 3.0];
-/// Steps are shorter where curves run along each other, down to this share.
-const SOFTEST: f64 = 1e-2;
 /// Step of second derivatives.
 const LONG_STEP: f64 = 1e-2;
 /// Contacts that carry more are kept.
@@ -469,10 +463,7 @@ fn of(of_sum: &DMatrix<f64>, gram: &DMatrix<f64>) -> Curvature {
 /// Of two curves it is a difference of fourth order of slopes, with this share of the usual step.
 fn second(held: &Held<'_>, one: Unknown, other: Option<Unknown>, share: f64) -> f64 {
     if let Closed::Curves(contact) = &held.at {
-        let (g, h) = (
-            |x: f64| held.slope_after(contact, one, &[(other.unwrap_or(one), x)]),
-            held.step(share * SHORT_STEP * contact.stiffness().clamp(SOFTEST, 1.0)),
-        );
+        let (g, h) = (|x: f64| held.slope_after(contact, one, &[(other.unwrap_or(one), x)]), share * contact.step());
         return (8.0 * (g(h) - g(-h)) - (g(2.0 * h) - g(-2.0 * h))) / (12.0 * h);
     }
     let at = |h: f64| match other {

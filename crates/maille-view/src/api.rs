@@ -213,9 +213,11 @@ pub struct Ring {
     pub major_radius: f64,
     /// Radius of the wire.
     pub minor_radius: f64,
-    /// Of another curve, points around it, from the centre.
+    /// Of another curve, points along it, from the centre.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub curve: Option<Vec<[f64; 3]>>,
+    /// Whether that curve has two ends.
+    pub open: bool,
 }
 
 /// Two rings that are linked or near each other.

@@ -3,7 +3,7 @@
 use crate::api::{Limit, Pair, Ring, Sheet, ShownMap, Subject};
 use crate::refusal::Refusal;
 use maille::{
-    design::Design,
+    design::{CurveKind, Design},
     lattice::Cell,
     model::Model,
     record::{LimitRow, StateRecord, pose_records},
@@ -120,7 +120,7 @@ fn small_enough(design: &Design, cell: Cell) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// Points around a curve: so many on each arc that its chords turn by a quarter of a radian or less.
+/// Points along a curve: so many on each arc that its chords turn by a quarter of a radian or less.
 fn shown(curve: &maille::model::Curve) -> impl Iterator<Item = maille_geometry::Vec3> {
     let points = |piece: &maille_geometry::Piece| {
         let n = match piece {
@@ -130,7 +130,15 @@ fn shown(curve: &maille::model::Curve) -> impl Iterator<Item = maille_geometry::
         };
         (0..n as usize).map(|k| piece.point(k as f64 / n)).collect()
     };
-    curve.pieces.iter().flat_map(points).collect::<Vec<_>>().into_iter()
+    let (shown, end) = match curve.kind {
+        CurveKind::Open => {
+            let own: Vec<_> = curve.own_pieces().collect();
+            let end = own.last().map(|piece| piece.point(1.0));
+            (own, end)
+        }
+        CurveKind::Closed | CurveKind::Frame => (curve.pieces.iter().collect(), None),
+    };
+    shown.into_iter().flat_map(points).chain(end).collect::<Vec<_>>().into_iter()
 }
 
 /// The model as the page shows it.
@@ -143,6 +151,7 @@ pub fn sheet(model: &Model, design: &Design) -> Sheet {
         major_radius: ring.major_radius * model.unit,
         minor_radius: ring.minor_radius * model.unit,
         curve: ring.curve.as_ref().map(|curve| shown(curve).map(|p| length(p - ring.offset)).collect()),
+        open: ring.curve.as_ref().is_some_and(|curve| curve.kind == CurveKind::Open),
     };
     Sheet {
         name: design.name.clone(),

@@ -70,7 +70,7 @@ fn absent(registry: &Registry) -> BTreeMap<String, Vec<String>> {
     (design.minor_radius, design.unit) = (None, None);
     let parameter = Parameter { name: "wire".into(), value: 1.0, formula: None, min: None, max: None };
     let (offset, normal) = ([0.0; 3], [0.0, 0.0, 1.0]);
-    let ring = Ring { element: 0, offset, normal, major_radius: 1.0, minor_radius: 0.1, curve: None };
+    let ring = Ring { element: 0, offset, normal, major_radius: 1.0, minor_radius: 0.1, curve: None, open: false };
     let bare = [
         ("StateRecord", serde_json::to_value(StateRecord::default()).unwrap()),
         ("RingSpec", serde_json::to_value(&design.elements[0].rings[0]).unwrap()),

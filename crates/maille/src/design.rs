@@ -12,7 +12,7 @@ mod repeat;
 pub(crate) mod shape;
 
 pub use parameters::{Parameter, TAKEN};
-pub use shape::{PathPart, Shape};
+pub use shape::{CurveKind, PathPart, Shape};
 
 /// Name in [`Design::varied`] of the factor by which distances between elements were multiplied.
 pub const SPACING: &str = "spacing";
@@ -407,11 +407,7 @@ impl Design {
             out.add(field, problem, "a wire cannot bend more sharply than that: take a thinner one, or a wider curve");
             return;
         }
-        let overlap = match &curve.shape {
-            Shape::Frame { edges, .. } => shape::frame_overlap(&pieces, edges, r),
-            _ => shape::self_overlap(&pieces, r),
-        };
-        if let Some(gap) = overlap {
+        if let Some(gap) = curve.shape.overlap(&pieces, r) {
             let problem = format!(
                 "the tube runs into itself: its core comes as near to itself as {gap:.6}, the wire is {} thick",
                 2.0 * r

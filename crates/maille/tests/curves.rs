@@ -70,7 +70,7 @@ fn polygon_knot(n: usize) -> Design {
         let out = 5.5 + 2.7 * (4.0 * t).cos();
         [out * t.cos(), out * t.sin(), -2.7 * (4.0 * t).sin()]
     };
-    let shape = Shape::Polyline { points: (0..n).map(corner).collect(), fillet: 0.0 };
+    let shape = Shape::Polyline { points: (0..n).map(corner).collect(), fillet: 0.0, closed: true };
     design.elements.truncate(1);
     design.elements[0].center = [0.0; 3];
     design.elements[0].curves = vec![CurveSpec::of(shape)];
@@ -95,8 +95,26 @@ fn forms() -> Vec<Shape> {
         knot(1.0, 4.0),
         knot(2.0, 3.0),
         path_of_stadium(1.0, 0.7),
-        Shape::Spline { points: vec![[1.4, 0.0, 0.2], [0.0, 1.0, -0.2], [-1.2, 0.1, 0.3], [0.1, -0.9, 0.0]] },
+        Shape::Spline {
+            points: vec![[1.4, 0.0, 0.2], [0.0, 1.0, -0.2], [-1.2, 0.1, 0.3], [0.1, -0.9, 0.0]],
+            closed: true,
+        },
+        hook(),
+        Shape::Spline {
+            points: vec![[1.4, 0.0, 0.2], [0.0, 1.0, -0.2], [-1.2, 0.1, 0.3], [0.1, -0.9, 0.0]],
+            closed: false,
+        },
     ]
+}
+
+/// An S-hook: half circles of radius 1 about (±1, 0), and the straight piece between them. Both ends are open.
+fn hook() -> Shape {
+    let part = |to: [f64; 2], through: Option<f64>| PathPart {
+        to: [to[0], to[1], 0.0],
+        through: through.map(|x| [x, 0.0, 0.0]),
+    };
+    let parts = vec![part([-1.0, 1.0], Some(-2.0)), part([1.0, -1.0], None), part([1.0, 1.0], Some(2.0))];
+    Shape::Path { from: Some([-1.0, -1.0, 0.0]), parts }
 }
 
 fn path_of_stadium(straight: f64, radius: f64) -> Shape {
@@ -106,6 +124,7 @@ fn path_of_stadium(straight: f64, radius: f64) -> Shape {
     };
     let h = 0.5 * straight;
     Shape::Path {
+        from: None,
         parts: vec![
             part([h, -radius], None),
             part([h, radius], Some([h + radius, 0.0])),
@@ -338,6 +357,23 @@ fn paths_and_frames_lock_as_the_forms_that_they_are() {
         let found = limit(&design, 0.0);
         assert!((found.0 - sharp.0).abs() < 1e-9 && found.1 == sharp.1, "{found:?} {sharp:?}");
     }
+}
+
+/// Hook in hook the cores are 4 long, and the pitch of two is 2 (4 − 2r). A ring that is cut open aside of the pull locks as the whole ring. No bound is
+/// known of what is not linked, so both are local.
+#[test]
+fn open_curves_hold_where_closed_ones_do() {
+    for r in [0.1, 0.2] {
+        let (l1, status) = limit(&chain(hook(), r, 7.0), 0.0);
+        assert!((7.0 * (1.0 + l1) - 2.0 * (4.0 - 2.0 * r)).abs() < 1e-10 && status == Status::Local, "{l1}");
+    }
+    let on_circle = |turn: f64| [(TAU * turn).cos(), (TAU * turn).sin(), 0.0];
+    let arc = |to: f64, through: f64| PathPart { to: on_circle(to), through: Some(on_circle(through)) };
+    let cut = Shape::Path { from: Some(on_circle(0.3)), parts: vec![arc(0.7, 0.5), arc(1.2, 0.9)] };
+    let (whole, cut) = (Shape::Ellipse { a: 1.0, b: 1.0 }, cut);
+    let [whole, cut] = [whole, cut].map(|shape| limit(&chain(shape, 0.15, 3.0), 0.0));
+    assert!((whole.0 - cut.0).abs() < 1e-10, "{whole:?} {cut:?}");
+    assert_eq!([whole.1, cut.1], [Status::Global, Status::Local]);
 }
 
 /// The published knot as a polygon: an independent prototype found 0.01589 for the Green strain along x, and the gap at rest is 0.119 mm.

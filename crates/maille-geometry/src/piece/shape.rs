@@ -239,6 +239,19 @@ impl Piece {
         }
     }
 
+    /// The same points, run through the other way.
+    pub fn reversed(&self) -> Self {
+        match self {
+            Piece::Segment(segment) => Piece::Segment(Segment {
+                start: segment.end,
+                end: segment.start,
+                along: -segment.along,
+                length: segment.length,
+            }),
+            Piece::Arc(arc) => Piece::Arc(Arc { circle: Circle { normal: -arc.circle.normal, ..arc.circle }, ..*arc }),
+        }
+    }
+
     /// Its unit tangent at an end, into the piece.
     pub fn inward(&self, end: Place) -> Option<Vec3> {
         self.ends()?.into_iter().find(|(place, ..)| *place == end).map(|(.., inward)| inward)

@@ -244,14 +244,19 @@ impl Reader<'_> {
             let (value, path) = reader.required(&at, key, &help)?;
             reader.list(value, &path, &format!("write {help}"), Self::vector)
         };
+        let closed = match keys.contains(&"closed") {
+            true => self.optional(&at, "closed", Self::boolean)?.unwrap_or(true),
+            false => true,
+        };
         match name {
-            "polyline" => return points(self, "points").map(|points| Shape::Polyline { points, fillet }),
-            "spline" => return points(self, "points").map(|points| Shape::Spline { points }),
+            "polyline" => return points(self, "points").map(|points| Shape::Polyline { points, fillet, closed }),
+            "spline" => return points(self, "points").map(|points| Shape::Spline { points, closed }),
             "path" => {
+                let from = self.optional(&at, "from", Self::vector);
                 let help = "parts = [{ to = [1.0, 0.0, 0.0] }, { to = [-1.0, 0.0, 0.0], through = [0.0, 1.0, 0.0] }]";
                 let (value, path) = self.required(&at, "parts", help)?;
                 let parts = self.list(value, &path, &format!("write {help}"), Self::part)?;
-                return Some(Shape::Path { parts });
+                return Some(Shape::Path { from: from?, parts });
             }
             "frame" => {
                 let vertices = points(self, "vertices");

@@ -108,18 +108,22 @@ impl Numbers<'_> {
             format!("{key} = [{}]", all.join(", "))
         };
         match &curve.shape {
-            Shape::Polyline { .. } | Shape::Spline { .. } => numbers.push(listed("points")),
+            Shape::Polyline { closed, .. } | Shape::Spline { closed, .. } => {
+                numbers.push(listed("points"));
+                numbers.extend((!closed).then(|| "closed = false".to_owned()));
+            }
             Shape::Frame { edges, .. } => {
                 numbers.push(listed("vertices"));
                 let edges: Vec<String> = edges.iter().map(|[a, b]| format!("[{a}, {b}]")).collect();
                 numbers.push(format!("edges = [{}]", edges.join(", ")));
             }
-            Shape::Path { parts } => {
+            Shape::Path { parts, .. } => {
+                let known = |name: &str, key: &str| {
+                    points.iter().find(|(_, known)| known == name).map(|(vector, _)| format!("{key} = {vector}"))
+                };
+                numbers.extend(known("from", "from"));
                 let written = |k: usize| {
-                    let of = |key: &str| {
-                        let name = format!("parts[{k}].{key}");
-                        points.iter().find(|(_, known)| *known == name).map(|(vector, _)| format!("{key} = {vector}"))
-                    };
+                    let of = |key: &str| known(&format!("parts[{k}].{key}"), key);
                     format!("{{ {} }}", [of("to"), of("through")].into_iter().flatten().collect::<Vec<_>>().join(", "))
                 };
                 let parts: Vec<String> = (0..parts.len()).map(written).collect();

@@ -1,16 +1,16 @@
-//! The mesh of the tube round a closed curve of segments and arcs: closed, oriented outward, within a chordal tolerance. Of a frame each strut
-//! is meshed by itself, with round ends.
+//! The mesh of the tube round a curve of segments and arcs: closed, oriented outward, within a chordal tolerance. Of a frame each strut
+//! is meshed by itself, with round ends, as an open curve has them.
 //!
 //! Sections of the wire stand across the curve, so near to each other that their chords stay within the tolerance; straight pieces
 //! need none between their ends. From section to section the frame turns only with the tangent; what it is turned by after one
-//! round is spread over the whole length. Round a corner the section turns about it, so that the outside is a part of a ball; inside
+//! round of a closed curve is spread over the whole length. Round a corner the section turns about it, so that the outside is a part of a ball; inside
 //! the bend its two straight tubes run into each other.
 
 use super::{
     error::MeshError,
     torus::{Fineness, MOST, Segments, TorusMesh, polygon, sagitta},
 };
-use maille::model::Curve;
+use maille::{design::CurveKind, model::Curve};
 use maille_geometry::{Piece, Vec3};
 use nalgebra::{Rotation3, Unit};
 use std::f64::consts::TAU;
@@ -53,12 +53,20 @@ pub(super) fn curve_mesh(
     if across < 3 {
         return Err(MeshError::TooCoarse);
     }
-    let (rows, sections_of_strut) = match curve.is_of_frame() {
-        true => {
-            let steps = polygon(small, share).div_ceil(4);
-            (curve.own_pieces().flat_map(|strut| capsule(strut, steps)).collect(), Some(2 * (steps + 1)))
+    let [near, thin] = [share / unit, small / unit];
+    let steps = polygon(small, share).div_ceil(4);
+    let (rows, sections_of_rod) = match curve.kind {
+        CurveKind::Closed => (tube(&curve.pieces, thin, near), None),
+        CurveKind::Open => {
+            let own: Vec<Piece> = curve.own_pieces().copied().collect();
+            let rows = rod(&own, thin, near, steps);
+            let sections = rows.len();
+            (rows, Some(sections))
         }
-        false => (tube(curve, small / unit, share / unit), None),
+        CurveKind::Frame => {
+            let rods = curve.own_pieces().flat_map(|strut| rod(&[*strut], thin, near, steps));
+            (rods.collect::<Vec<_>>(), Some(2 * (steps + 1)))
+        }
     };
     if rows.len() > MOST_SECTIONS {
         return Err(MeshError::TooFine { segments: rows.len(), most: MOST_SECTIONS });
@@ -79,7 +87,7 @@ pub(super) fn curve_mesh(
     let segments = Segments { around: rows.len(), across };
     let [major_radius, minor_radius] = [major_radius, minor_radius].map(|r| r * unit * mm);
     let chords = Some(share * mm);
-    Ok(TorusMesh { major_radius, minor_radius, segments, chords, sections_of_strut, vertices, normals })
+    Ok(TorusMesh { major_radius, minor_radius, segments, chords, sections_of_rod, vertices, normals })
 }
 
 /// The vertices round a place: at point + r (u cos + v sin + along).
@@ -90,26 +98,25 @@ struct Row {
 }
 
 /// Rows round a closed curve.
-fn tube(curve: &Curve, small: f64, share: f64) -> Vec<Row> {
-    let sections = sections(curve, small, share);
-    let frames = frames(&sections, curve.length());
+fn tube(pieces: &[Piece], small: f64, share: f64) -> Vec<Row> {
+    let sections = sections(pieces, true, small, share);
+    let frames = frames(&sections, Some(pieces.iter().map(Piece::length).sum()));
     let rows = sections.iter().zip(frames);
     rows.map(|(section, across)| Row { point: section.point, across, along: Vec3::zeros() }).collect()
 }
 
-/// Rows round a strut with round ends, each a half ball of so many steps, from pole to pole.
-fn capsule(strut: &Piece, steps: usize) -> Vec<Row> {
-    let axis = strut.tangent(0.5);
-    let u = axis.cross(&Vec3::ith(axis.iamin(), 1.0)).normalize();
-    let row = |end: f64, k: usize| {
+/// Rows round an open curve with round ends, each a half ball of so many steps, from pole to pole.
+fn rod(pieces: &[Piece], small: f64, share: f64, steps: usize) -> Vec<Row> {
+    let sections = sections(pieces, false, small, share);
+    let frames = frames(&sections, None);
+    let row = |at: usize, k: usize, way: f64| {
         let (sin, cos) = (TAU / 4.0 * k as f64 / steps as f64).sin_cos();
-        Row {
-            point: strut.point(end),
-            across: [u * cos, u.cross(&axis) * cos],
-            along: axis * (sin * (2.0 * end - 1.0)),
-        }
+        let Section { point, tangent, .. } = sections[at];
+        Row { point, across: frames[at].map(|across| across * cos), along: tangent * (way * sin) }
     };
-    (0..=steps).rev().map(|k| row(0.0, k)).chain((0..=steps).map(|k| row(1.0, k))).collect()
+    let last = sections.len() - 1;
+    let start = (0..=steps).rev().map(|k| row(0, k, -1.0));
+    start.chain((1..last).map(|at| row(at, 0, 0.0))).chain((0..=steps).map(|k| row(last, k, 1.0))).collect()
 }
 
 fn radius(piece: &Piece) -> Option<f64> {
@@ -117,10 +124,10 @@ fn radius(piece: &Piece) -> Option<f64> {
 }
 
 /// Places of sections whose chords are within `share` of the tube of radius `small`, counted at its outside.
-fn sections(curve: &Curve, small: f64, share: f64) -> Vec<Section> {
+fn sections(pieces: &[Piece], closed: bool, small: f64, share: f64) -> Vec<Section> {
     let mut all: Vec<Section> = Vec::new();
     let mut before: f64 = 0.0;
-    for (k, piece) in curve.pieces.iter().enumerate() {
+    for (k, piece) in pieces.iter().enumerate() {
         let steps = match piece {
             Piece::Segment(_) => 1,
             Piece::Arc(arc) => {
@@ -134,8 +141,10 @@ fn sections(curve: &Curve, small: f64, share: f64) -> Vec<Section> {
             Section { point: piece.point(t), tangent: piece.tangent(t), along: before + length * t }
         }));
         before += length;
-        let next = &curve.pieces[(k + 1) % curve.pieces.len()];
-        all.extend(corner(next.point(0.0), piece.tangent(1.0), next.tangent(0.0), before, small, share));
+        if closed || k + 1 < pieces.len() {
+            let next = &pieces[(k + 1) % pieces.len()];
+            all.extend(corner(next.point(0.0), piece.tangent(1.0), next.tangent(0.0), before, small, share));
+        }
     }
     // Where pieces meet smoothly one ends and the other begins with the same section.
     all.dedup_by(|next, one| (next.point - one.point).norm() <= SAME && (next.tangent - one.tangent).norm() <= CORNER);
@@ -155,8 +164,11 @@ fn sections(curve: &Curve, small: f64, share: f64) -> Vec<Section> {
         }
         turn_rad += turn;
     }
-    // The last section is the first one.
-    out.extend(waiting.filter(|last| (last.point - first.0).norm() > SAME || (last.tangent - first.1).norm() > CORNER));
+    // The last section of a closed curve is the first one.
+    out.extend(
+        waiting
+            .filter(|last| !closed || (last.point - first.0).norm() > SAME || (last.tangent - first.1).norm() > CORNER),
+    );
     out
 }
 
@@ -177,8 +189,8 @@ fn corner(point: Vec3, before: Vec3, after: Vec3, along: f64, small: f64, share:
     (1..steps).map(|k| Section { point, tangent: tangent(k), along }).collect()
 }
 
-/// For each section two unit vectors u, v across the tangent, u × v against it: so faces look outward.
-fn frames(sections: &[Section], length: f64) -> Vec<[Vec3; 2]> {
+/// For each section two unit vectors u, v across the tangent, u × v against it: so faces look outward. A closed curve has a length.
+fn frames(sections: &[Section], length: Option<f64>) -> Vec<[Vec3; 2]> {
     // The shortest turn from one tangent to the next, of a vector across the first. An angle by its cosine fails where they nearly are one.
     let carried = |u: Vec3, from: &Vec3, to: &Vec3| {
         let turned = u - (from + to) * (u.dot(to) / (1.0 + from.dot(to)));
@@ -192,11 +204,10 @@ fn frames(sections: &[Section], length: f64) -> Vec<[Vec3; 2]> {
     }
     let last = &sections[sections.len() - 1];
     let round = carried(u[u.len() - 1], &last.tangent, &first.tangent);
-    let missed_rad = round.dot(&first.tangent.cross(&u[0])).atan2(round.dot(&u[0]));
+    let missed_rad: f64 = round.dot(&first.tangent.cross(&u[0])).atan2(round.dot(&u[0]));
     let turned = |(section, u): (&Section, &Vec3)| {
-        let back =
-            Rotation3::from_axis_angle(&Unit::new_normalize(section.tangent), -missed_rad * section.along / length);
-        let u = back * u;
+        let back_rad = length.map_or(0.0, |length| -missed_rad * section.along / length);
+        let u = Rotation3::from_axis_angle(&Unit::new_normalize(section.tangent), back_rad) * u;
         [u, u.cross(&section.tangent)]
     };
     sections.iter().zip(&u).map(turned).collect()
@@ -207,7 +218,10 @@ mod tests {
     use super::*;
     use crate::{Tile, mesh::Scene, read_design};
     use maille::{Cell, model::Model};
-    use std::{collections::HashMap, f64::consts::PI};
+    use std::{
+        collections::{BTreeSet, HashMap},
+        f64::consts::PI,
+    };
 
     fn curve(form: &str) -> Curve {
         let text = format!(
@@ -218,12 +232,14 @@ mod tests {
         model.rings[0].curve.as_deref().unwrap().clone()
     }
 
-    const FORMS: [&str; 5] = [
+    const OPEN: &str = "path = { from = [-1.0, -1.0, 0.0], parts = [{ to = [-1.0, 1.0, 0.0], through = [-2.0, 0.0, 0.0] }, { to = [1.0, -1.0, 0.0] }] }";
+    const FORMS: [&str; 6] = [
         "stadium = { straight = 2.0, radius = 0.5 }",
         "square = { side = 1.6 }",
         "hexagon = { side = 1.0, fillet = 0.3 }",
         "ellipse = { a = 1.4, b = 0.8 }",
         "torus_knot = { p = 1, q = 4, R = 1.0, a = 0.4 }",
+        OPEN,
     ];
 
     /// Closed, outward, within what it says of the tube, and not farther outside than it says.
@@ -239,18 +255,23 @@ mod tests {
                 }
                 let twice = |(&(a, b), &count): (&(usize, usize), &usize)| count == 1 && edges.contains_key(&(b, a));
                 assert!(edges.iter().all(twice), "{form}");
-                assert_eq!(mesh.vertices.len() + mesh.triangle_count(), edges.len() / 2, "{form}");
+                // A torus has no more corners and faces than edges; what has two poles has two more.
+                let used: BTreeSet<usize> = mesh.triangles().flatten().collect();
+                let more = if form == OPEN { 2 } else { 0 };
+                assert_eq!(used.len() + mesh.triangle_count(), edges.len() / 2 + more, "{form}");
                 // By Pappus a section sweeps its area times the length; round a corner it turns about its middle, and sweeps nothing.
                 let v = &mesh.vertices;
                 let volume: f64 = mesh.triangles().map(|[a, b, c]| v[a].dot(&v[b].cross(&v[c])) / 6.0).sum();
-                let (tube, skin) = (PI * 0.01 * curve.length(), 2.0 * PI * 0.1 * curve.length());
+                let balls = if form == OPEN { 1.0 } else { 0.0 };
+                let tube = PI * 0.01 * (curve.own_length() + balls * 4.0 / 3.0 * 0.1);
+                let skin = 2.0 * PI * 0.1 * (curve.own_length() + balls * 2.0 * 0.1);
                 assert!((volume - tube).abs() < skin * mesh.chordal_error(), "{form}: {volume} of {tube}");
                 let away = |p: &Vec3| {
                     let points = curve.pieces.iter().map(|piece| (piece.point(piece.nearest(p)) - p).norm());
                     points.fold(f64::INFINITY, f64::min) - 0.1
                 };
                 // Inside a sharp bend the two straight tubes run into each other.
-                let sharp = form.starts_with("square");
+                let sharp = form.starts_with("square") || form == OPEN;
                 for corners in mesh.triangles() {
                     let [a, b, c] = corners.map(|k| v[k]);
                     for p in [a, (a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5, (a + b + c) / 3.0] {
@@ -275,7 +296,10 @@ mod tests {
                 for [a, b, c] in mesh.triangles() {
                     let area = 0.5 * (v[b] - v[a]).cross(&(v[c] - v[a])).norm();
                     let is_shared = v[a] == v[b] || v[b] == v[c] || v[c] == v[a];
-                    assert!(area > 1e-9 || form.starts_with("square") && is_shared, "{form} {tolerance}");
+                    assert!(
+                        area > 1e-9 || (form.starts_with("square") || form == OPEN) && is_shared,
+                        "{form} {tolerance}"
+                    );
                 }
             }
         }

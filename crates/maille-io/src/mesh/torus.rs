@@ -93,8 +93,8 @@ pub struct TorusMesh {
     pub segments: Segments,
     /// Of another curve, how far its chords may stray; of a torus it follows from the radii.
     pub chords: Option<f64>,
-    /// Of the struts of a frame, sections of each: the first and the last are its poles, and no faces join two struts.
-    pub sections_of_strut: Option<usize>,
+    /// Of rods with round ends, struts of a frame or an open curve, sections of each: the first and the last are its poles, and no faces join two rods.
+    pub sections_of_rod: Option<usize>,
     /// Vertices.
     pub vertices: Vec<Vec3>,
     /// Outward unit normals of the torus at the vertices.
@@ -115,25 +115,25 @@ impl TorusMesh {
                 normals.push(Vec3::new(cos_v * cos_u, cos_v * sin_u, sin_v));
             }
         }
-        TorusMesh { major_radius, minor_radius, segments, chords: None, sections_of_strut: None, vertices, normals }
+        TorusMesh { major_radius, minor_radius, segments, chords: None, sections_of_rod: None, vertices, normals }
     }
 
-    /// Number of quadrilaterals: as many as vertices, but for those that would join two struts.
+    /// Number of quadrilaterals: as many as vertices, but for those that would join two rods.
     pub fn quad_count(&self) -> usize {
         let Segments { around, across } = self.segments;
-        (around - self.sections_of_strut.map_or(0, |sections| around / sections)) * across
+        (around - self.sections_of_rod.map_or(0, |sections| around / sections)) * across
     }
 
     /// Number of triangles.
     pub fn triangle_count(&self) -> usize {
         let Segments { around, across } = self.segments;
-        2 * self.quad_count() - self.sections_of_strut.map_or(0, |sections| 2 * around / sections) * across
+        2 * self.quad_count() - self.sections_of_rod.map_or(0, |sections| 2 * around / sections) * across
     }
 
-    /// The quadrilaterals, counter-clockwise seen from outside; at the pole of a strut two corners are one.
+    /// The quadrilaterals, counter-clockwise seen from outside; at the pole of a rod two corners are one.
     pub fn quads(&self) -> impl Iterator<Item = [usize; 4]> + use<> {
         let Segments { around, across } = self.segments;
-        let sections = self.sections_of_strut;
+        let sections = self.sections_of_rod;
         let is_last = move |i: usize| sections.is_some_and(|n| i % n == n - 1);
         let is_pole = move |i: usize| sections.is_some_and(|n| i.is_multiple_of(n) || i % n == n - 1);
         let at = move |i: usize, j: usize| i * across + if is_pole(i) { 0 } else { j };

@@ -3,6 +3,7 @@
 import {
   CatmullRomCurve3,
   AmbientLight,
+  type BufferGeometry,
   DirectionalLight,
   DynamicDrawUsage,
   Group,
@@ -13,12 +14,14 @@ import {
   Quaternion,
   Raycaster,
   Scene,
+  SphereGeometry,
   TorusGeometry,
   TubeGeometry,
   Vector2,
   Vector3,
   WebGLRenderer,
 } from "three";
+import { mergeGeometries } from "three/examples/jsm/utils/BufferGeometryUtils.js";
 import { paint } from "./colors";
 import type { Drawing, Shape } from "./drawing";
 import { Overlays } from "./overlays";
@@ -30,14 +33,15 @@ const Z = new Vector3(0, 0, 1);
 /** Pixels that the pointer may move in a click. */
 const CLICK = 4;
 
-/** The tube round a closed curve through points. */
-function tube(points: readonly (readonly number[])[], radius: number, across: number): TubeGeometry {
-  const line = new CatmullRomCurve3(
-    points.map((p) => new Vector3(...(p as [number, number, number]))),
-    true,
-    "centripetal",
-  );
-  return new TubeGeometry(line, 2 * points.length, radius, across, true);
+/** The tube round a curve through points; an open one has balls at its ends. */
+function tube(points: readonly (readonly number[])[], open: boolean, radius: number, across: number): BufferGeometry {
+  const along = points.map((p) => new Vector3(...(p as [number, number, number])));
+  const line = new CatmullRomCurve3(along, !open, "centripetal");
+  const parts: BufferGeometry[] = [new TubeGeometry(line, 2 * points.length, radius, across, !open)];
+  for (const end of open ? [along[0]!, along[along.length - 1]!] : []) {
+    parts.push(new SphereGeometry(radius, across, across).translate(end.x, end.y, end.z));
+  }
+  return mergeGeometries(parts);
 }
 
 export class Stage {
@@ -104,7 +108,7 @@ export class Stage {
     if (old && alike(shown, old)) return;
     const [columns, rows] = copies(shown.sheet.cell);
     this.cells = [Math.ceil(shown.tile[0] / columns), Math.ceil(shown.tile[1] / rows)];
-    const radii = shown.sheet.rings.map((r) => `${r.major_radius},${r.minor_radius},${r.curve?.join() ?? ""}`);
+    const radii = shown.sheet.rings.map((r) => `${r.major_radius},${r.minor_radius},${r.curve?.join() ?? ""},${r.open}`);
     const key = `${radii.join(";")}|${this.cells}`;
     if (key !== this.key) this.build(shown, radii);
     this.key = key;
@@ -133,9 +137,9 @@ export class Stage {
     const [around, across] = count > 2500 ? [20, 5] : count > 800 ? [30, 7] : count > 100 ? [44, 9] : [72, 14];
     this.shapes = [...new Set(radii)].map((pair) => {
       const rings = radii.flatMap((other, ring) => (other === pair ? [ring] : []));
-      const { major_radius, minor_radius, curve } = shown.sheet.rings[rings[0]!]!;
+      const { major_radius, minor_radius, curve, open } = shown.sheet.rings[rings[0]!]!;
       const geometry = curve
-        ? tube(curve, minor_radius, across)
+        ? tube(curve, open, minor_radius, across)
         : new TorusGeometry(major_radius, minor_radius, across, around);
       const material = new MeshPhongMaterial({ shininess: 55, specular: "#4a4a4a" });
       const mesh = new InstancedMesh(geometry, material, rings.length * cells);

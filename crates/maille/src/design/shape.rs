@@ -6,19 +6,20 @@ mod frame;
 mod overlap;
 mod smooth;
 
-pub use self::core::PathPart;
 pub(crate) use self::core::{CorePieces, MOST_PIECES, Owned, SMOOTH, ball};
-pub(super) use overlap::{frame_overlap, self_overlap, tightest};
+pub use self::core::{CurveKind, PathPart};
+pub(super) use overlap::tightest;
 
 use self::{
-    corners::{problem_of_parts, rounded, setback, stadium, through_parts},
+    corners::{Polygon, Problem, are_one, problem_of_parts, stadium, through_parts},
+    overlap::{frame_overlap, self_overlap},
     smooth::{smooth, through_points},
 };
 use maille_geometry::{Circle, Piece, Vec3};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
-/// The form of a core curve in its own frame: about the origin, plane forms in z = 0. All are closed curves but frames.
+/// The form of a core curve in its own frame: about the origin, plane forms in z = 0.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Shape {
@@ -45,24 +46,33 @@ pub enum Shape {
         #[serde(default)]
         fillet: f64,
     },
-    /// A closed polygon in space.
+    /// A polygon in space.
     Polyline {
-        /// Its corners.
+        /// Its corners; of an open one the first and the last are its ends.
         points: Vec<[f64; 3]>,
         /// Radius that rounds the corners; 0 leaves them sharp.
         #[serde(default)]
         fillet: f64,
+        /// Whether the last point is joined to the first.
+        #[serde(default = "yes", skip_serializing_if = "is_true")]
+        closed: bool,
     },
-    /// A closed path of segments and arcs in space.
+    /// A path of segments and arcs in space.
     Path {
-        /// Its parts; each begins where the one before it ends, and the first where the last ends.
+        /// Where it starts, of an open one.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        from: Option<[f64; 3]>,
+        /// Its parts; each begins where the one before it ends, and the first where the path starts or, of a closed one, where the last ends.
         parts: Vec<PathPart>,
     },
-    /// A closed smooth curve through points in space: between two of them a cubic, which leaves each point as the parabola through it
-    /// and its two neighbours does, with the lengths of the chords as parameter.
+    /// A smooth curve through points in space: between two of them a cubic, which leaves each point as the parabola through it
+    /// and its two neighbours does, with the lengths of the chords as parameter; an end of an open one, as that through the three points there.
     Spline {
         /// The points.
         points: Vec<[f64; 3]>,
+        /// Whether the last point is joined to the first.
+        #[serde(default = "yes", skip_serializing_if = "is_true")]
+        closed: bool,
     },
     /// A cage: straight struts between vertices.
     Frame {
@@ -93,6 +103,15 @@ pub enum Shape {
     },
 }
 
+fn yes() -> bool {
+    true
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+fn is_true(x: &bool) -> bool {
+    *x
+}
+
 impl Shape {
     /// Its key in a design file.
     pub fn name(&self) -> &'static str {
@@ -118,16 +137,17 @@ impl Shape {
     fn points_mut(&mut self) -> Vec<(String, &mut [f64; 3])> {
         let numbered = |name: &'static str| move |(k, p): (usize, _)| (format!("{name}[{k}]"), p);
         match self {
-            Shape::Polyline { points, .. } | Shape::Spline { points } => {
+            Shape::Polyline { points, .. } | Shape::Spline { points, .. } => {
                 points.iter_mut().enumerate().map(numbered("points")).collect()
             }
             Shape::Frame { vertices, .. } => vertices.iter_mut().enumerate().map(numbered("vertices")).collect(),
-            Shape::Path { parts } => {
+            Shape::Path { from, parts } => {
+                let start = from.as_mut().map(|p| ("from".to_owned(), p));
                 let named = parts.iter_mut().enumerate().flat_map(|(k, PathPart { to, through })| {
                     let through = through.as_mut().map(|p| (format!("parts[{k}].through"), p));
                     std::iter::once((format!("parts[{k}].to"), to)).chain(through)
                 });
-                named.collect()
+                start.into_iter().chain(named).collect()
             }
             _ => Vec::new(),
         }
@@ -182,7 +202,7 @@ impl Shape {
     }
 
     /// What is wrong with its numbers: the name of one, what is wrong, and what would be right.
-    pub(super) fn problem(&self) -> Option<(String, String, &'static str)> {
+    pub(super) fn problem(&self) -> Option<Problem> {
         for (name, x) in self.numbers() {
             let (least, what) = match (name, self) {
                 ("straight" | "fillet", _) | ("a", Shape::TorusKnot { .. }) => (0.0, "a length of 0 or more"),
@@ -213,64 +233,56 @@ impl Shape {
                 let problem = format!("a = {a} is not smaller than R = {circle_radius}: the curve meets the axis");
                 Some(("a".into(), problem, "take a < R"))
             }
-            Shape::Polyline { points, .. } | Shape::Spline { points }
+            Shape::Polyline { points, closed: false, .. } if points.len() < 2 || points.len() > MOST_PIECES / 2 => {
+                let problem = format!("{} points", points.len());
+                Some(("points".into(), problem, "an open polyline has 2 points or more, at most 5000"))
+            }
+            Shape::Polyline { points, closed: true, .. } | Shape::Spline { points, .. }
                 if points.len() < 3 || points.len() > MOST_PIECES / 2 =>
             {
                 let problem = format!("{} points", points.len());
-                Some(("points".into(), problem, "a closed curve has 3 points or more, at most 5000"))
+                Some(("points".into(), problem, "the curve has 3 points or more, at most 5000"))
             }
-            Shape::Path { parts } => problem_of_parts(parts),
+            Shape::Path { from, parts } => problem_of_parts(*from, parts),
             Shape::Frame { vertices, edges } => frame::problem(vertices, edges),
-            Shape::Spline { points } => same_points(points),
-            Shape::Polyline { .. } | Shape::Square { .. } | Shape::Hexagon { .. } => self.problem_of_corners(),
-            _ => None,
+            Shape::Spline { points, closed } => same_points(points, *closed),
+            _ => self.polygon()?.problem(),
         }
     }
 
-    /// What is wrong with a polygon: edges without length, spikes, and fillets for which an edge is too short.
-    fn problem_of_corners(&self) -> Option<(String, String, &'static str)> {
-        let (corners, fillet) = self.polygon()?;
-        let n = corners.len();
-        let edge = |k: usize| corners[(k + 1) % n] - corners[k % n];
-        for k in 0..n {
-            if edge(k).norm() == 0.0 {
-                return Some(are_one(k, n));
-            }
-            let turn_rad = edge(k).angle(&edge(k + 1));
-            if PI - turn_rad < 1e-3 {
-                let problem = format!("the polygon turns back on itself at point {}", (k + 1) % n);
-                return Some(("points".into(), problem, "spread the two edges: a wire cannot lie in itself"));
-            }
-        }
-        let short = (0..n).find(|&k| {
-            setback(&corners, k, fillet) + setback(&corners, k + 1, fillet) > edge(k).norm() * (1.0 + 1e-12)
-        })?;
-        let needs = setback(&corners, short, fillet) + setback(&corners, short + 1, fillet);
-        let problem = format!("{fillet} takes {needs:.4} of an edge of length {:.4}", edge(short).norm());
-        Some(("fillet".into(), problem, "take a smaller fillet, or a longer edge"))
-    }
-
-    /// Corners and fillet of a form with corners.
-    fn polygon(&self) -> Option<(Vec<Vec3>, f64)> {
-        match self {
+    /// The polygon of a form with corners.
+    fn polygon(&self) -> Option<Polygon> {
+        let (corners, fillet, closed) = match self {
             Shape::Square { side, fillet } => {
                 let h = 0.5 * side;
                 let corners = [[h, -h], [h, h], [-h, h], [-h, -h]];
-                Some((corners.map(|[x, y]| Vec3::new(x, y, 0.0)).to_vec(), *fillet))
+                (corners.map(|[x, y]| Vec3::new(x, y, 0.0)).to_vec(), *fillet, true)
             }
             Shape::Hexagon { side, fillet } => {
                 let corner = |k: usize| {
                     let (sin, cos) = (PI / 3.0 * k as f64).sin_cos();
                     Vec3::new(cos, sin, 0.0) * *side
                 };
-                Some(((0..6).map(corner).collect(), *fillet))
+                ((0..6).map(corner).collect(), *fillet, true)
             }
-            Shape::Polyline { points, fillet } => Some((points.iter().map(|p| Vec3::from(*p)).collect(), *fillet)),
-            _ => None,
+            Shape::Polyline { points, fillet, closed } => {
+                (points.iter().map(|p| Vec3::from(*p)).collect(), *fillet, *closed)
+            }
+            _ => return None,
+        };
+        Some(Polygon { corners, fillet, closed })
+    }
+
+    /// Whether it is a curve with two ends.
+    pub fn is_open(&self) -> bool {
+        match self {
+            Shape::Polyline { closed, .. } | Shape::Spline { closed, .. } => !closed,
+            Shape::Path { from, .. } => from.is_some(),
+            _ => false,
         }
     }
 
-    /// The segments and arcs of a closed curve, in order, and the struts of a frame. Smooth forms become biarcs, spans halved until no sampled point
+    /// The segments and arcs of a curve, in order, and the struts of a frame. Smooth forms become biarcs, spans halved until no sampled point
     /// is farther than `tolerance` from them. None where the numbers make no curve.
     pub fn pieces(&self, tolerance: f64) -> Option<Vec<Piece>> {
         self.approximation(tolerance).map(|(pieces, _)| pieces)
@@ -281,13 +293,22 @@ impl Shape {
         self.approximation(tolerance).map(|(_, deviation)| deviation)
     }
 
-    /// Its closed curves: one, or those of a frame (`docs/theory/curves.md`).
+    /// How near the core comes to itself where the tube of radius `r` round its pieces runs into itself; none where it does not.
+    pub(super) fn overlap(&self, pieces: &[Piece], r: f64) -> Option<f64> {
+        match self {
+            Shape::Frame { edges, .. } => frame_overlap(pieces, edges, r),
+            _ => self_overlap(pieces, !self.is_open(), r),
+        }
+    }
+
+    /// Its closed curves: one, that of an open curve there and back, or those of a frame (`docs/theory/curves.md`).
     pub(crate) fn cores(&self, tolerance: f64) -> Option<Vec<CorePieces>> {
         if let Shape::Frame { vertices, edges } = self {
             return frame::cores(vertices, edges);
         }
         let (pieces, deviation) = self.approximation(tolerance)?;
-        Some(vec![CorePieces { owned: vec![Owned::ALL; pieces.len()], pieces, deviation }])
+        let of = if self.is_open() { CorePieces::open } else { CorePieces::closed };
+        Some(vec![of(pieces, deviation)])
     }
 
     /// As [`Self::pieces`], and how far the form is from its pieces at most, at sampled points.
@@ -295,8 +316,8 @@ impl Shape {
         let exact = |pieces: Vec<Piece>| Some((pieces, 0.0));
         match self {
             Shape::Stadium { straight, radius } => exact(stadium(*straight, *radius)),
-            Shape::Path { parts } => through_parts(parts).and_then(exact),
-            Shape::Spline { points } => through_points(points, tolerance),
+            Shape::Path { from, parts } => through_parts(*from, parts).and_then(exact),
+            Shape::Spline { points, closed } => through_points(points, *closed, tolerance),
             Shape::Frame { vertices, edges } => frame::struts(vertices, edges).and_then(exact),
             Shape::Ellipse { a, b } if a == b => {
                 exact(vec![Piece::circle(Circle::new(Vec3::zeros(), Vec3::z_axis(), *a))])
@@ -317,10 +338,7 @@ impl Shape {
                 };
                 smooth(8 * (p.max(*q) as usize), tolerance, at)
             }
-            _ => {
-                let (corners, fillet) = self.polygon()?;
-                rounded(&corners, fillet).and_then(exact)
-            }
+            _ => self.polygon()?.pieces().and_then(exact),
         }
     }
 }
@@ -345,15 +363,9 @@ impl Shape {
     }
 }
 
-/// Two points that follow each other, of `n`, and are one.
-fn are_one(k: usize, n: usize) -> (String, String, &'static str) {
-    let problem = format!("points {k} and {} are one", (k + 1) % n);
-    ("points".into(), problem, "leave one of them out; the last is joined to the first")
-}
-
-fn same_points(points: &[[f64; 3]]) -> Option<(String, String, &'static str)> {
+fn same_points(points: &[[f64; 3]], closed: bool) -> Option<Problem> {
     let n = points.len();
-    (0..n).find(|&k| points[k] == points[(k + 1) % n]).map(|k| are_one(k, n))
+    (0..n - usize::from(!closed)).find(|&k| points[k] == points[(k + 1) % n]).map(|k| are_one(k, n))
 }
 
 fn greatest_divisor(a: u32, b: u32) -> u32 {
@@ -394,13 +406,25 @@ mod tests {
         let part = |to: [f64; 3], through: Option<[f64; 3]>| PathPart { to, through };
         let third = [(-0.5f64), 0.75_f64.sqrt(), 0.0];
         let parts = vec![part([-1.0, 0.0, 0.0], Some(third)), part([1.0, 0.0, 0.0], None)];
-        close(of(Shape::Path { parts }, 1e-6), PI + 2.0);
+        close(of(Shape::Path { from: None, parts }, 1e-6), PI + 2.0);
         let parts = vec![part([-0.5, -third[1], 0.0], Some(third)), part([1.0, 0.0, 0.0], None)];
-        close(of(Shape::Path { parts }, 1e-6), 2.0 / 3.0 * TAU + 3.0_f64.sqrt());
+        close(of(Shape::Path { from: None, parts }, 1e-6), 2.0 / 3.0 * TAU + 3.0_f64.sqrt());
         // Cubics through so many points of a circle are as long as it is, to the fourth power of their distance.
         let on_circle = |k: usize| [(TAU * k as f64 / 64.0).cos(), (TAU * k as f64 / 64.0).sin(), 0.0];
-        let spline = of(Shape::Spline { points: (0..64).map(on_circle).collect() }, 1e-9);
+        let spline = of(Shape::Spline { points: (0..64).map(on_circle).collect(), closed: true }, 1e-9);
         assert!((spline - TAU).abs() < 1e-5, "{spline}");
+        // The same points without the last chord, and a half circle with a straight end.
+        let open = |shape: Shape| {
+            assert!(shape.problem().is_none() && shape.is_open());
+            length(&shape.pieces(1e-9).unwrap())
+        };
+        let spline = open(Shape::Spline { points: (0..64).map(on_circle).collect(), closed: false });
+        assert!((spline - TAU * 63.0 / 64.0).abs() < 1e-4, "{spline}");
+        let parts = vec![part([-1.0, 0.0, 0.0], Some(third)), part([-1.0, -2.0, 0.0], None)];
+        close(open(Shape::Path { from: Some([1.0, 0.0, 0.0]), parts }), PI + 2.0);
+        let points = vec![[0.0; 3], [2.0, 0.0, 0.0], [2.0, 3.0, 0.0]];
+        close(open(Shape::Polyline { points: points.clone(), fillet: 0.0, closed: false }), 5.0);
+        close(open(Shape::Polyline { points, fillet: 0.5, closed: false }), 4.0 + 0.25 * PI);
         // Ramanujan's second formula, exact to 1e-8 here.
         let (a, b): (f64, f64) = (1.2, 1.0);
         let h = ((a - b) / (a + b)).powi(2);
@@ -438,11 +462,12 @@ mod tests {
         wrong(knot(2.0, 4.0, 0.3), "p", "common divisor");
         wrong(knot(1.5, 4.0, 0.3), "p", "whole numbers");
         wrong(knot(1.0, 4.0, 1.0), "a", "meets the axis");
-        let polygon = |points: &[[f64; 3]]| Shape::Polyline { points: points.to_vec(), fillet: 0.0 };
+        let polygon = |points: &[[f64; 3]]| Shape::Polyline { points: points.to_vec(), fillet: 0.0, closed: true };
         wrong(polygon(&[[0.0; 3], [1.0, 0.0, 0.0]]), "points", "2 points");
         wrong(polygon(&[[0.0; 3], [1.0, 0.0, 0.0], [1.0, 0.0, 0.0]]), "points", "are one");
         wrong(polygon(&[[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]]), "points", "turns back");
         let path = |parts: &[([f64; 3], Option<[f64; 3]>)]| Shape::Path {
+            from: None,
             parts: parts.iter().map(|(to, through)| PathPart { to: *to, through: *through }).collect(),
         };
         let (a, b) = ([1.0, 0.0, 0.0], [0.0; 3]);
@@ -450,6 +475,17 @@ mod tests {
         wrong(path(&[(a, None), (a, None)]), "parts[0].to", "ends where it begins");
         wrong(path(&[(a, Some([0.5, 0.0, 0.0])), (b, Some([0.5, 1.0, 0.0]))]), "parts[0].through", "on the line");
         wrong(path(&[(a, None), (b, None)]), "parts[0].to", "turns back");
-        wrong(Shape::Spline { points: vec![a, b, b] }, "points", "points 1 and 2 are one");
+        wrong(Shape::Spline { points: vec![a, b, b], closed: true }, "points", "points 1 and 2 are one");
+        let open =
+            |points: &[[f64; 3]], fillet: f64| Shape::Polyline { points: points.to_vec(), fillet, closed: false };
+        wrong(open(&[a], 0.0), "points", "1 points");
+        wrong(open(&[a, b, a], 0.0), "points", "turns back on itself at point 1");
+        // A fillet may take all of an edge that has none at its other end.
+        let corner = [b, a, [1.0, 2.0, 0.0]];
+        assert_eq!(open(&corner, 1.0).problem(), None);
+        wrong(open(&corner, 1.1), "fillet", "takes 1.1000 of an edge of length 1.0000");
+        let start = |parts: Vec<PathPart>| Shape::Path { from: Some(b), parts };
+        wrong(start(vec![]), "parts", "0 parts");
+        wrong(start(vec![PathPart { to: b, through: None }]), "parts[0].to", "ends where it begins");
     }
 }

@@ -9,7 +9,10 @@ pub(crate) use minima::{curve_distance, distance_lower_bound, owned_distance_min
 
 use self::{level::Middle, tree::Node};
 use crate::{
-    design::shape::{CorePieces, Owned, SMOOTH},
+    design::{
+        CurveKind,
+        shape::{CorePieces, Owned, SMOOTH},
+    },
     state::{Pose, images::Image},
 };
 use maille_geometry::{Circle, Piece, Place, Vec3};
@@ -19,9 +22,11 @@ use std::{borrow::Cow, f64::consts::TAU, sync::Arc};
 /// A closed curve of segments and arcs, in its element's frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
+    /// What it stands for.
+    pub kind: CurveKind,
     /// The pieces, each from where the one before ends.
     pub pieces: Vec<Piece>,
-    /// What of each belongs to this curve: the struts of a frame lie on several, and count on one.
+    /// What of each belongs to this curve: the struts of a frame lie on several, and count on one; an open curve is there and back, and counts there.
     pub(crate) owned: Vec<Owned>,
     /// How far the form that they stand for is from them, at sampled points.
     pub deviation: f64,
@@ -37,7 +42,7 @@ pub struct Curve {
 
 impl Curve {
     /// The curve of these pieces.
-    pub(crate) fn new(CorePieces { pieces, owned, deviation }: CorePieces) -> Self {
+    pub(crate) fn new(CorePieces { kind, pieces, owned, deviation }: CorePieces) -> Self {
         let mut lengths = vec![0.0];
         for piece in &pieces {
             lengths.push(lengths[lengths.len() - 1] + piece.length());
@@ -57,10 +62,10 @@ impl Curve {
         let middles =
             pieces.iter().enumerate().map(|(k, piece)| Middle::new(piece, joins(k) && joins(k + 1))).collect();
         let nodes = tree::nodes(&pieces);
-        Curve { pieces, owned, deviation, lengths, smooth, middles, nodes }
+        Curve { kind, pieces, owned, deviation, lengths, smooth, middles, nodes }
     }
 
-    /// The pieces that belong to it: all, but those of a frame that lie on a curve before it, too.
+    /// The pieces that belong to it: all, but those of a frame that lie on a curve before it, too, and those of an open curve's way back.
     pub fn own_pieces(&self) -> impl Iterator<Item = &Piece> {
         self.pieces.iter().zip(&self.owned).filter(|(_, owned)| owned.inside).map(|(piece, _)| piece)
     }
@@ -70,14 +75,9 @@ impl Curve {
         self.own_pieces().map(Piece::length).sum()
     }
 
-    /// Whether a strut with this point belongs to it.
+    /// Whether the piece with this point belongs to it.
     pub(crate) fn owns(&self, point: &CurvePoint) -> bool {
         self.owned[point.piece].inside
-    }
-
-    /// Whether it is one of a frame's.
-    pub fn is_of_frame(&self) -> bool {
-        self.owned.iter().any(|owned| *owned != Owned::ALL)
     }
 
     /// Length of the curve.
@@ -234,8 +234,7 @@ impl Core {
             Core::Circle(circle) => {
                 let pose = Pose { position: circle.center, rotation: UnitQuaternion::identity() };
                 let circle = Circle { center: Vec3::zeros(), ..*circle };
-                let pieces = vec![Piece::circle(circle)];
-                (Cow::Owned(Curve::new(CorePieces { pieces, owned: vec![Owned::ALL], deviation: 0.0 })), pose)
+                (Cow::Owned(Curve::new(CorePieces::closed(vec![Piece::circle(circle)], 0.0))), pose)
             }
             Core::Curve(curve, pose) => (Cow::Borrowed(&**curve), *pose),
         }

@@ -8,15 +8,44 @@ pub(crate) const MOST_PIECES: usize = 10_000;
 /// Sine of the angle below which two tangents are one.
 pub(crate) const SMOOTH: f64 = 1e-7;
 
+/// What a closed curve of pieces stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CurveKind {
+    /// A closed curve.
+    Closed,
+    /// An open one: it goes there, and back the same way. What lies on the way back belongs to none.
+    Open,
+    /// A cycle of a frame, or a strut there and back.
+    Frame,
+}
+
 /// The pieces of one closed core curve.
 #[derive(Clone, Debug)]
 pub(crate) struct CorePieces {
+    /// What it stands for.
+    pub kind: CurveKind,
     /// Segments and arcs, in order.
     pub pieces: Vec<Piece>,
     /// What of each belongs to this curve alone: see [`Owned`].
     pub owned: Vec<Owned>,
     /// How far the form is from its pieces at most, at sampled points.
     pub deviation: f64,
+}
+
+impl CorePieces {
+    /// A closed curve.
+    pub fn closed(pieces: Vec<Piece>, deviation: f64) -> Self {
+        CorePieces { kind: CurveKind::Closed, owned: vec![Owned::ALL; pieces.len()], pieces, deviation }
+    }
+
+    /// An open curve of these pieces, there and back.
+    pub fn open(mut pieces: Vec<Piece>, deviation: f64) -> Self {
+        let mut owned = vec![Owned::ALL; pieces.len()];
+        let back: Vec<Piece> = pieces.iter().rev().map(Piece::reversed).collect();
+        owned.resize(2 * pieces.len(), Owned::NONE);
+        pieces.extend(back);
+        CorePieces { kind: CurveKind::Open, pieces, owned, deviation }
+    }
 }
 
 /// What of a piece belongs to its curve. A strut of a frame lies on several cycles, and belongs to the first; so does a vertex.
@@ -33,6 +62,8 @@ pub(crate) struct Owned {
 impl Owned {
     /// All of it.
     pub const ALL: Owned = Owned { inside: true, start: true, end: true };
+    /// Nothing.
+    pub const NONE: Owned = Owned { inside: false, start: false, end: false };
 
     /// Whether anything of it does.
     pub fn any(self) -> bool {

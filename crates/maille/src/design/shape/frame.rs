@@ -4,7 +4,7 @@
 //! written, and for each strut that is not in it, in order, the strut with the way back through the tree. What is linked with the
 //! frame is linked with one of these. Struts that are on no cycle follow, each as a curve there and back.
 
-use super::core::{CorePieces, MOST_PIECES, Owned};
+use super::core::{CorePieces, CurveKind, MOST_PIECES, Owned};
 use maille_geometry::{Piece, Segment, Vec3};
 use std::collections::{BTreeSet, VecDeque};
 
@@ -127,7 +127,7 @@ pub(super) fn cores(vertices: &[[f64; 3]], edges: &[[u32; 2]]) -> Option<Vec<Cor
             let mut first = |v: u32| inside && vertices_taken.insert(v);
             owned.push(Owned { inside, start: first(from), end: first(to) });
         }
-        Some(CorePieces { pieces, owned, deviation: 0.0 })
+        Some(CorePieces { kind: CurveKind::Frame, pieces, owned, deviation: 0.0 })
     };
     walks.into_iter().map(&mut core).collect()
 }

@@ -17,19 +17,19 @@ pub(in super::super) fn tightest(pieces: &[Piece]) -> Option<f64> {
 ///
 /// Points count that are a local minimum of their distance, or, at corners, pieces that are no neighbours. Those that are nearer along the curve than
 /// half of the circle with the wire's radius, π r, are parts of one bend.
-pub(in super::super) fn self_overlap(pieces: &[Piece], r: f64) -> Option<f64> {
+pub(super) fn self_overlap(pieces: &[Piece], closed: bool, r: f64) -> Option<f64> {
     let mut at = vec![0.0];
     pieces.iter().for_each(|piece| at.push(at[at.len() - 1] + piece.length()));
     let total = at[pieces.len()];
     least_below(pieces, 2.0 * r, |i, j, m| {
         let place = |k: usize, p: &Vec3| at[k] + pieces[k].length() * pieces[k].nearest(p);
         let way = (place(j, &m.point_b) - place(i, &m.point_a)).abs();
-        way.min(total - way) > PI * r
+        (if closed { way.min(total - way) } else { way }) > PI * r
     })
 }
 
 /// The same for the struts of a frame; those that share a vertex do not count.
-pub(in super::super) fn frame_overlap(struts: &[Piece], edges: &[[u32; 2]], r: f64) -> Option<f64> {
+pub(super) fn frame_overlap(struts: &[Piece], edges: &[[u32; 2]], r: f64) -> Option<f64> {
     least_below(struts, 2.0 * r, |i, j, _| !edges[i].iter().any(|vertex| edges[j].contains(vertex)))
 }
 

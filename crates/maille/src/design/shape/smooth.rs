@@ -7,22 +7,26 @@ use std::f64::consts::TAU;
 /// Points of a span at which its deviation is measured.
 const SAMPLES: usize = 8;
 
-/// A smooth closed curve, given by point and derivative at 0 ≤ t ≤ 2π, as biarcs of `spans` equal spans of t, each halved until its sampled
-/// points are within `tolerance`. With how far they are at most.
+/// A smooth closed curve, given by point and derivative at 0 ≤ t ≤ 2π, as biarcs of `spans` equal spans of t: see [`biarcs`].
 pub(super) fn smooth(spans: usize, tolerance: f64, at: impl Fn(f64) -> [Vec3; 2]) -> Option<(Vec<Piece>, f64)> {
-    let whole = spans.max(1) as f64;
-    // Places count spans, so that halves of them are exact, and the last point is the first one, to the last digit.
-    let t = |place: f64| TAU * (place % whole) / whole;
-    let mut open: Vec<[f64; 2]> = (0..spans.max(1)).rev().map(|k| [k as f64, k as f64 + 1.0]).collect();
+    let spans = spans.max(1);
+    // The last point is the first one, to the last digit.
+    biarcs(spans, tolerance, |place| at(TAU * (place % spans as f64) / spans as f64))
+}
+
+/// A smooth curve, given by point and derivative at places that count spans, as biarcs: each span is halved until its sampled
+/// points are within `tolerance`. With how far they are at most.
+fn biarcs(spans: usize, tolerance: f64, at: impl Fn(f64) -> [Vec3; 2]) -> Option<(Vec<Piece>, f64)> {
+    let mut open: Vec<[f64; 2]> = (0..spans).rev().map(|k| [k as f64, k as f64 + 1.0]).collect();
     let (mut pieces, mut deviation) = (Vec::new(), 0.0_f64);
     while let Some([first, last]) = open.pop() {
         if pieces.len() + 2 * (open.len() + 1) > MOST_PIECES {
             return None;
         }
-        let ([start, leaving], [end, arriving]) = (at(t(first)), at(t(last)));
+        let ([start, leaving], [end, arriving]) = (at(first), at(last));
         let pair = biarc(start, leaving, end, arriving)?;
         let away = |sample: usize| {
-            let point = at(t(first + (last - first) * sample as f64 / SAMPLES as f64))[0];
+            let point = at(first + (last - first) * sample as f64 / SAMPLES as f64)[0];
             let nearest = pair.iter().map(|piece| (piece.point(piece.nearest(&point)) - point).norm());
             nearest.fold(f64::INFINITY, f64::min)
         };
@@ -38,23 +42,30 @@ pub(super) fn smooth(spans: usize, tolerance: f64, at: impl Fn(f64) -> [Vec3; 2]
     Some((pieces, deviation))
 }
 
-/// A closed cubic spline through points: see `Shape::Spline`.
-pub(super) fn through_points(points: &[[f64; 3]], tolerance: f64) -> Option<(Vec<Piece>, f64)> {
+/// A cubic spline through points: see `Shape::Spline`.
+pub(super) fn through_points(points: &[[f64; 3]], closed: bool, tolerance: f64) -> Option<(Vec<Piece>, f64)> {
     let n = points.len();
+    let spans = n - usize::from(!closed);
     let at = |k: usize| Vec3::from(points[k % n]);
     let chord = |k: usize| (at(k + 1) - at(k)).norm();
-    // The derivative by chord length, at each point, of the parabola through it and its neighbours.
+    // The derivative by chord length of the parabola through three points: at the middle one, point k, or at one end of the curve.
     let slope = |k: usize| {
-        let (before, after) = (chord(k + n - 1), chord(k));
-        let (arrives, leaves) = ((at(k) - at(k + n - 1)) / before, (at(k + 1) - at(k)) / after);
-        (arrives * after + leaves * before) / (before + after)
+        let middle = if closed { k + n } else { k.clamp(1, n - 2) };
+        let (before, after) = (chord(middle - 1), chord(middle));
+        let (arrives, leaves) = ((at(middle) - at(middle - 1)) / before, (at(middle + 1) - at(middle)) / after);
+        let bend = (leaves - arrives) / (before + after);
+        match k {
+            0 if !closed => arrives - bend * before,
+            _ if !closed && k == n - 1 => leaves + bend * after,
+            _ => arrives + bend * before,
+        }
     };
     let slopes: Vec<Vec3> = (0..n).map(slope).collect();
-    smooth(n, tolerance, |t| {
-        let place = t / TAU * n as f64;
-        // A whole number that rounding lowered stays that number.
-        let k = ((place + 1e-9).floor() as usize) % n;
-        let (u, h) = ((place - k as f64).max(0.0), chord(k));
+    biarcs(spans, tolerance, |place| {
+        // The end of a closed curve is its start, to the last digit.
+        let place = if closed { place % spans as f64 } else { place };
+        let k = (place.floor() as usize).min(spans - 1);
+        let (u, h) = (place - k as f64, chord(k));
         let (p, q, v, w) = (at(k), at(k + 1), slopes[k] * h, slopes[(k + 1) % n] * h);
         let (rise, bend) = (q - p, v + w - (q - p) * 2.0);
         let cubic = rise - v - bend;
