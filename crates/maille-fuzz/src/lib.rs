@@ -5,20 +5,25 @@
 
 mod circles;
 pub mod mutate;
+mod pieces;
 mod text;
 
 pub use circles::circles;
+pub use pieces::pieces;
 pub use text::{design, forces, frames, limits, run, simulation, states, study, surface};
 
 use std::path::Path;
 
-/// Sound inputs of a target: files of the repository. Circles need none.
+/// Distances of sound pairs are right to this part of the size.
+const CLOSE: f64 = 1e-9;
+
+/// Sound inputs of a target: files of the repository. Pairs of circles and of pieces need none.
 ///
 /// Panics if they cannot be read.
 pub fn sound(target: &str) -> Vec<Vec<u8>> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let folder = match target {
-        "circles" => return Vec::new(),
+        "circles" | "pieces" => return Vec::new(),
         "design" => root.join("../maille-io/designs"),
         _ => root.join("corpus").join(target),
     };
@@ -38,8 +43,9 @@ pub fn sound(target: &str) -> Vec<Vec<u8>> {
 pub type Target = (&'static str, fn(&[u8]));
 
 /// All of them.
-pub const TARGETS: [Target; 10] = [
+pub const TARGETS: [Target; 11] = [
     ("circles", circles),
+    ("pieces", pieces),
     ("design", design),
     ("limits", limits),
     ("states", states),

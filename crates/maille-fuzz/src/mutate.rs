@@ -50,7 +50,15 @@ const WORDS: [&str; 36] = [
 pub fn input(target: &str, sound: &[Vec<u8>], seed: u64) -> Vec<u8> {
     let mut rng = Rng::seed_from_u64(seed);
     match target {
-        "circles" => floats(&mut rng),
+        "circles" => floats(&mut rng, 14),
+        "pieces" => {
+            let mut out = floats(&mut rng, 9);
+            let other = floats(&mut rng, 9);
+            out.insert(0, rng.random());
+            out.push(rng.random());
+            out.extend(other);
+            out
+        }
         _ => {
             let mut any = || sound.choose(&mut rng).expect("there are sound inputs").as_slice();
             let (input, other) = (any(), any());
@@ -89,8 +97,8 @@ fn text(rng: &mut Rng, sound: &[u8], other: &[u8]) -> Vec<u8> {
     out
 }
 
-/// Fourteen floats: any bits, hard ones, or those of an ordinary pair.
-fn floats(rng: &mut Rng) -> Vec<u8> {
+/// So many floats: any bits, hard ones, or those of an ordinary pair.
+fn floats(rng: &mut Rng, count: usize) -> Vec<u8> {
     const HARD: [f64; 16] = [
         0.0,
         -0.0,
@@ -118,5 +126,5 @@ fn floats(rng: &mut Rng) -> Vec<u8> {
         3 => f64::from(rng.random_range(-4..=4)) * 0.5,
         _ => rng.random_range(-2.0..2.0),
     };
-    (0..14).flat_map(|_| one(rng).to_le_bytes()).collect()
+    (0..count).flat_map(|_| one(rng).to_le_bytes()).collect()
 }

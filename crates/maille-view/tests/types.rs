@@ -55,11 +55,12 @@ fn name(format: &Format) -> String {
     }
 }
 
-fn fields(of: &str, fields: &[Named<Format>], absent: &BTreeMap<String, Vec<String>>) -> String {
+/// Fields of a struct, or of a variant, as `name: type`.
+fn fields(of: &str, fields: &[Named<Format>], absent: &BTreeMap<String, Vec<String>>) -> Vec<String> {
     let may_be_absent = |field: &str| absent.get(of).is_some_and(|names| names.iter().any(|name| name == field));
     let line = |field: &Named<Format>| {
         let mark = if may_be_absent(&field.name) { "?" } else { "" };
-        format!("  {}{mark}: {};\n", field.name, name(&field.value))
+        format!("{}{mark}: {}", field.name, name(&field.value))
     };
     fields.iter().map(line).collect()
 }
@@ -83,10 +84,26 @@ fn absent(registry: &Registry) -> BTreeMap<String, Vec<String>> {
     ];
     let of = |(name, value): (&str, serde_json::Value)| {
         let Some(ContainerFormat::Struct(fields)) = registry.get(name) else { panic!("{name} is no struct") };
-        let missing = fields.iter().map(|f| f.name.clone()).filter(|field| value.get(field).is_none());
-        (name.to_owned(), missing.collect())
+        (name.to_owned(), missing(fields, &value))
     };
-    bare.into_iter().map(of).collect()
+    let points = vec![[0.0; 3]];
+    let shapes = [
+        Shape::Polyline { points: points.clone(), fillet: 0.0, closed: true },
+        Shape::Spline { points, closed: true },
+        Shape::Path { from: None, parts: Vec::new() },
+    ];
+    let Some(ContainerFormat::Enum(variants)) = registry.get("Shape") else { panic!("Shape is no enum") };
+    let of_shape = |shape: &Shape| {
+        let variant = variants.values().find(|variant| variant.name == shape.name()).unwrap();
+        let VariantFormat::Struct(fields) = &variant.value else { panic!("{} has no fields", variant.name) };
+        let value = serde_json::to_value(shape).unwrap();
+        (variant.name.clone(), missing(fields, &value[shape.name()]))
+    };
+    bare.into_iter().map(of).chain(shapes.iter().map(of_shape)).collect()
+}
+
+fn missing(fields: &[Named<Format>], value: &serde_json::Value) -> Vec<String> {
+    fields.iter().map(|f| f.name.clone()).filter(|field| value.get(field).is_none()).collect()
 }
 
 fn typescript(registry: &Registry) -> String {
@@ -97,15 +114,15 @@ fn typescript(registry: &Registry) -> String {
         out.push('\n');
         match format {
             ContainerFormat::Struct(all) => {
-                write!(out, "export interface {of} {{\n{}}}\n", fields(of, all, &absent)).unwrap();
+                let lines: String = fields(of, all, &absent).iter().map(|field| format!("  {field};\n")).collect();
+                write!(out, "export interface {of} {{\n{lines}}}\n").unwrap();
             }
             ContainerFormat::Enum(variants) => {
                 let one = |variant: &Named<VariantFormat>| match &variant.value {
                     VariantFormat::Unit => format!("\"{}\"", variant.name),
                     VariantFormat::NewType(inner) => format!("{{ \"{}\": {} }}", variant.name, name(inner)),
                     VariantFormat::Struct(all) => {
-                        let all: Vec<String> = all.iter().map(|f| format!("{}: {}", f.name, name(&f.value))).collect();
-                        format!("{{ \"{}\": {{ {} }} }}", variant.name, all.join("; "))
+                        format!("{{ \"{}\": {{ {} }} }}", variant.name, fields(&variant.name, all, &absent).join("; "))
                     }
                     other => panic!("{of}: {other:?}"),
                 };

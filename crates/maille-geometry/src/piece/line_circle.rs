@@ -13,7 +13,10 @@
 //! if f'(t₊) < 0, and at most one to the left of t₋. As `|q·v| ≤ |v| |q|`, both lie within `|t| ≤ R |v|`. To the right
 //! of t₊ f' is convex, so Newton's method comes down from `R |v|` to the root without passing it; likewise on the left.
 
-use crate::circle::{Circle, Vec3};
+use crate::{
+    circle::{Circle, Vec3},
+    tolerance::ROUNDING,
+};
 use arrayvec::ArrayVec;
 
 /// Newton's method doubles the digits, but for two minima that merge.
@@ -34,11 +37,12 @@ pub(super) fn line_circle_minima(p: &Vec3, u: &Vec3, circle: &Circle) -> ArrayVe
         out.push(foot); // parallel to the axis
         return out;
     }
-    // The slope; on the axis that to the side `side`.
+    // The slope; on the axis, to rounding, that to the side `side`.
+    let noise = ROUNDING * (p - circle.center).norm();
     let slope = |t: f64, side: f64| {
         let q = q0 + v * t;
         let length = q.norm();
-        t - r * if length == 0.0 { side * speed } else { q.dot(&v) / length }
+        t - r * if length <= noise { side * speed } else { q.dot(&v) / length }
     };
     let lowest = -q0.dot(&v) / speed_sq;
     let bend_sq = (r * cross * cross).cbrt().powi(2);

@@ -13,7 +13,7 @@
 //! so both ends of the common stretch are found, and nothing between them.
 
 use super::line_circle::line_circle_minima;
-use super::shape::{Piece, Place};
+use super::shape::{Arc, Piece, Place};
 use crate::{circle::Vec3, circle_circle::one_pair::circle_distance_minima, tolerance::ROUNDING};
 use arrayvec::ArrayVec;
 
@@ -23,6 +23,9 @@ pub const MAX_PIECE_MINIMA: usize = 12;
 
 /// Points that are nearer to each other than this, relative to the pair's size, on both pieces, are one minimum.
 const SAME: f64 = 1e-9;
+
+/// A piece that is smaller than this part of the pair's size is no more than a point in it.
+const POINT: f64 = 1e-7;
 
 /// A local minimum of the distance between pieces A and B.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,6 +57,19 @@ impl PieceMinima {
     /// The one with the smallest distance, which is the distance of the pieces.
     pub fn closest(&self) -> &PieceMinimum {
         &self.found[0]
+    }
+
+    /// Adds the nearest of the ends and middles with their nearest points, if it is nearer than all: where rounding hides one piece beside the
+    /// other, no minimum is told from its neighbours. NaN of pieces that are not finite.
+    fn add_nearest(&mut self, size: f64, a: &Piece, b: &Piece) {
+        const PARTS: [f64; 3] = [0.0, 0.5, 1.0];
+        let from_a = PARTS.map(|t| (a.point(t), b.point(b.nearest(&a.point(t)))));
+        let from_b = PARTS.map(|t| (a.point(a.nearest(&b.point(t))), b.point(t)));
+        let all = from_a.into_iter().chain(from_b).map(|(x, y)| ((x - y).norm(), x, y));
+        let (distance, x, y) = all.min_by(|m, n| m.0.total_cmp(&n.0)).expect("a piece has a middle");
+        if self.found.iter().all(|m| distance < m.distance - SAME * size) {
+            self.add(size, (Place::Inside, x), (Place::Inside, y));
+        }
     }
 
     fn add(&mut self, size: f64, (place_a, point_a): (Place, Vec3), (place_b, point_b): (Place, Vec3)) {
@@ -127,21 +143,36 @@ pub fn piece_distance_minima(a: &Piece, b: &Piece) -> PieceMinima {
         }
         (Piece::Arc(arc_a), Piece::Arc(arc_b)) => {
             let minima = circle_distance_minima(arc_a.circle(), arc_b.circle());
-            if !minima.continuum || out.found.is_empty() {
-                for m in minima.as_slice() {
-                    if let (Some(x), Some(y)) = (a.foot(&m.point_a), b.foot(&m.point_b)) {
-                        out.add(size, (Place::Inside, x), (Place::Inside, y));
-                    }
-                }
+            // Ends of a stretch along which the distance is constant stand for it, if it has any.
+            let ended = |distance: f64| {
+                minima.continuum && out.found.iter().any(|m| (m.distance - distance).abs() <= SAME * size)
+            };
+            let new: ArrayVec<(Vec3, Vec3), { crate::MAX_MINIMA }> = minima
+                .as_slice()
+                .iter()
+                .filter_map(|m| Some((a.foot(&m.point_a)?, b.foot(&m.point_b)?)))
+                .filter(|(x, y)| {
+                    let runs = !stays(size, [arc_a, arc_b], [*x, *y]) && !stays(size, [arc_b, arc_a], [*y, *x]);
+                    !(ended((x - y).norm()) && runs)
+                })
+                .collect();
+            for (x, y) in new {
+                out.add(size, (Place::Inside, x), (Place::Inside, y));
             }
         }
     }
-    if out.found.is_empty() {
-        let nothing = (Place::Inside, Vec3::repeat(f64::NAN));
-        out.add(size, nothing, nothing);
+    if out.found.is_empty() || size_a.min(size_b) < POINT * size {
+        out.add_nearest(size, a, b);
     }
     out.found.sort_by(|m, n| m.distance.total_cmp(&n.distance));
     out
+}
+
+/// Whether a point runs round a whole circle at the same distance from one point of another arc, in its middle or far away for its size: such a stretch
+/// has no end.
+fn stays(size: f64, [round, other]: [&Arc; 2], [x, y]: [Vec3; 2]) -> bool {
+    let across = round.circle().center * 2.0 - x;
+    round.is_closed() && Piece::Arc(*other).foot(&across).is_some_and(|foot| (foot - y).norm() <= SAME * size)
 }
 
 /// Adds the point of the first piece's line at `x` and the nearest one of the other piece, if both lie inside.

@@ -4,6 +4,9 @@ use crate::circle::{Circle, Vec3};
 use nalgebra::{UnitQuaternion, UnitVector3};
 use std::f64::consts::PI;
 
+/// Points are on the axis of a circle if they are nearer to it than this part of the radius and their distance from the centre.
+const ON_AXIS: f64 = 1e-15;
+
 /// A straight segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segment {
@@ -60,7 +63,8 @@ impl Arc {
     /// The arc from `start` to `end` that leaves `start` along `tangent`. None if the points are one, if `tangent` is
     /// zero, or if it points along the line through them: then no circle does this.
     pub fn from_tangent(start: Vec3, tangent: Vec3, end: Vec3) -> Option<Self> {
-        let (chord, tangent) = (end - start, tangent.try_normalize(0.0)?);
+        // Squares of tiny numbers have few digits: the largest is made 1 first.
+        let (chord, tangent) = (end - start, (tangent / tangent.amax()).try_normalize(0.0)?);
         // The chord makes half of the arc's angle with the tangent.
         let normal = UnitVector3::try_new(tangent.cross(&chord), 0.0)?;
         let inward = normal.cross(&tangent);
@@ -284,10 +288,15 @@ impl Piece {
                 (t > 0.0 && t < segment.length).then(|| segment.start + *segment.along * t)
             }
             Piece::Arc(arc) => {
-                let delta = p - arc.circle.center;
-                let flat = delta - *arc.circle.normal * arc.circle.normal.dot(&delta);
-                let direction = flat.try_normalize(0.0).unwrap_or(arc.middle);
-                let inside = arc.is_closed() || direction.dot(&arc.middle) > arc.half_cos;
+                let (delta, normal) = (p - arc.circle.center, *arc.circle.normal);
+                let flat = delta - normal * normal.dot(&delta);
+                // Near the axis what rounding leaves across the plane counts: once more.
+                let flat = flat - normal * normal.dot(&flat);
+                let near = ON_AXIS * (delta.norm() + arc.circle.radius);
+                let direction = flat.try_normalize(near).unwrap_or(arc.middle);
+                // sin(half angle − angle): a cosine does not tell small angles.
+                let (ahead, aside) = (direction.dot(&arc.middle), direction.dot(&arc.aside()));
+                let inside = arc.is_closed() || arc.half_sin * ahead > arc.half_cos * aside.abs();
                 inside.then(|| arc.circle.center + direction * arc.circle.radius)
             }
         }

@@ -68,6 +68,9 @@ const TABLES: [(&[&str], &str); 7] = [
 
 /// What would be right instead of the unknown `key` in the table that knows `known`.
 pub(super) fn unknown_key_help(key: &str, known: &[&str]) -> String {
+    if key == "closed" && known.contains(&"from") {
+        return "a path that has `from`, where it starts, is open".into();
+    }
     if let Some(near) = nearest(key, known) {
         return format!("did you mean `{near}`?");
     }

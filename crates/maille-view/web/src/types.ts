@@ -244,6 +244,7 @@ export interface Ring {
   major_radius: number;
   minor_radius: number;
   curve?: [number, number, number][] | null;
+  open: boolean;
 }
 
 export interface RingSpec {
@@ -268,9 +269,9 @@ export type Shape =
   | { "stadium": { straight: number; radius: number } }
   | { "square": { side: number; fillet: number } }
   | { "hexagon": { side: number; fillet: number } }
-  | { "polyline": { points: [number, number, number][]; fillet: number } }
-  | { "path": { parts: PathPart[] } }
-  | { "spline": { points: [number, number, number][] } }
+  | { "polyline": { points: [number, number, number][]; fillet: number; closed?: boolean } }
+  | { "path": { from?: [number, number, number] | null; parts: PathPart[] } }
+  | { "spline": { points: [number, number, number][]; closed?: boolean } }
   | { "frame": { vertices: [number, number, number][]; edges: [number, number][] } }
   | { "ellipse": { a: number; b: number } }
   | { "torus_knot": { p: number; q: number; R: number; a: number } };

@@ -243,6 +243,12 @@ impl Shape {
                 let problem = format!("{} points", points.len());
                 Some(("points".into(), problem, "the curve has 3 points or more, at most 5000"))
             }
+            Shape::Polyline { points, closed: false, .. } | Shape::Spline { points, closed: false }
+                if points.first() == points.last() =>
+            {
+                let help = "leave the last point out, and closed = false, too";
+                Some(("points".into(), "the curve ends where it starts".into(), help))
+            }
             Shape::Path { from, parts } => problem_of_parts(*from, parts),
             Shape::Frame { vertices, edges } => frame::problem(vertices, edges),
             Shape::Spline { points, closed } => same_points(points, *closed),

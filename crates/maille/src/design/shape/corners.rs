@@ -121,6 +121,9 @@ pub(super) fn problem_of_parts(start: Option<[f64; 3]>, parts: &[PathPart]) -> O
         let problem = format!("{} part{}", parts.len(), if parts.len() == 1 { "" } else { "s" });
         return Some(("parts".into(), problem, help));
     }
+    if start.is_some_and(|start| start == parts[parts.len() - 1].to) {
+        return Some(("from".into(), "the path ends where it starts".into(), "leave it out: the path is closed then"));
+    }
     for k in 0..parts.len() {
         let (from, to, through) = ends(start, parts, k);
         if from == to {

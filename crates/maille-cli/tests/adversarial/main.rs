@@ -1,5 +1,7 @@
 //! Designs at the edge of what a design can be: each has a stated answer, and what is certified is verified.
 
+mod curves;
+
 use serde_json::Value;
 use std::{fmt::Write as _, fs, path::Path, process::Command};
 
