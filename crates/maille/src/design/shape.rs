@@ -241,7 +241,7 @@ impl Shape {
                 if points.len() < 3 || points.len() > MOST_PIECES / 2 =>
             {
                 let problem = format!("{} points", points.len());
-                Some(("points".into(), problem, "the curve has 3 points or more, at most 5000"))
+                Some(("points".into(), problem, "such a curve has 3 points or more, at most 5000"))
             }
             Shape::Polyline { points, closed: false, .. } | Shape::Spline { points, closed: false }
                 if points.first() == points.last() =>
