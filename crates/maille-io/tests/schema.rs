@@ -43,16 +43,41 @@ fn examples_with_curves_fit_the_schema() {
     let (validator, mut count) = (validator(), 0);
     for entry in fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/curves")).unwrap() {
         let path = entry.unwrap().path();
-        let text = fs::read_to_string(&path).unwrap();
-        assert!(validator.is_valid(&parsed(&text).unwrap()), "{path:?}");
-        // What is written reads back the same.
-        let design = maille_io::read_design("example", &text).unwrap();
-        let written = maille_io::write_design(&design);
-        assert!(validator.is_valid(&parsed(&written).unwrap()), "{written}");
-        assert_eq!(maille_io::read_design("written", &written).unwrap(), design);
+        fits_and_reads_back(&validator, &fs::read_to_string(&path).unwrap());
         count += 1;
     }
-    assert_eq!(count, 1);
+    assert_eq!(count, 2);
+}
+
+/// What is written reads back the same.
+fn fits_and_reads_back(validator: &jsonschema::Validator, text: &str) {
+    assert!(validator.is_valid(&parsed(text).unwrap()), "{text}");
+    let design = maille_io::read_design("example", text).unwrap();
+    let written = maille_io::write_design(&design);
+    assert!(validator.is_valid(&parsed(&written).unwrap()), "{written}");
+    assert_eq!(maille_io::read_design("written", &written).unwrap(), design);
+}
+
+#[test]
+fn open_curves_fit_the_schema() {
+    let of = |form: &str| {
+        format!(
+            "name = \"a\"\nminor_radius = 0.1\nreference_radius = 1.0\n[lattice]\na1 = [9.0, 0.0, 0.0]\na2 = [0.0, 9.0, 0.0]\n\
+             [[elements]]\nname = \"e\"\ncenter = [0.0, 0.0, 0.0]\ncurves = [{{ {form} }}]\n"
+        )
+    };
+    let (validator, points) = (validator(), "[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]");
+    fits_and_reads_back(&validator, &of(&format!("polyline = {{ points = [{points}], closed = false }}")));
+    fits_and_reads_back(
+        &validator,
+        &of(&format!("spline = {{ points = [{points}, [1.0, 2.0, 0.0]], closed = false }}")),
+    );
+    fits_and_reads_back(&validator, &of("path = { from = [0.0, 0.0, 0.0], parts = [{ to = [1.0, 0.0, 0.0] }] }"));
+    for closed in
+        [format!("polyline = {{ points = [{points}] }}"), "path = { parts = [{ to = [1.0, 0.0, 0.0] }] }".into()]
+    {
+        assert!(!validator.is_valid(&parsed(&of(&closed)).unwrap()), "{closed}");
+    }
 }
 
 /// What a schema cannot say: relations between two fields, and what formulas mean.

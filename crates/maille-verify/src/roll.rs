@@ -417,8 +417,10 @@ fn status(roll: &Roll, certified: bool, unit: f64) -> Finding {
     if !STATUSES.contains(&roll.status.as_str()) {
         return of(Verdict::Open, "nothing is derived of this status");
     }
-    let figures = [roll.neutral_radius, roll.neutral_stretch, roll.l2, roll.min_gap];
-    if figures.iter().any(|figure| figure.is_some() != roll.curvature.is_some()) {
+    let figures = [roll.neutral_radius, roll.neutral_stretch, roll.l2];
+    // Elements that came apart have no gap.
+    let lacks_gap = certified && roll.min_gap.is_none() || roll.min_gap.is_some() && roll.curvature.is_none();
+    if lacks_gap || figures.iter().any(|figure| figure.is_some() != roll.curvature.is_some()) {
         return of(Verdict::False, "some of curvature, radius, stretch, l2 and min_gap are there, and others are not");
     }
     if !certified {

@@ -234,7 +234,7 @@ impl Shape {
                 Some(("a".into(), problem, "take a < R"))
             }
             Shape::Polyline { points, closed: false, .. } if points.len() < 2 || points.len() > MOST_PIECES / 2 => {
-                let problem = format!("{} points", points.len());
+                let problem = format!("{} point{}", points.len(), if points.len() == 1 { "" } else { "s" });
                 Some(("points".into(), problem, "an open polyline has 2 points or more, at most 5000"))
             }
             Shape::Polyline { points, closed: true, .. } | Shape::Spline { points, .. }
@@ -484,7 +484,7 @@ mod tests {
         wrong(Shape::Spline { points: vec![a, b, b], closed: true }, "points", "points 1 and 2 are one");
         let open =
             |points: &[[f64; 3]], fillet: f64| Shape::Polyline { points: points.to_vec(), fillet, closed: false };
-        wrong(open(&[a], 0.0), "points", "1 points");
+        wrong(open(&[a], 0.0), "points", "1 point");
         wrong(open(&[a, b, a], 0.0), "points", "turns back on itself at point 1");
         // A fillet may take all of an edge that has none at its other end.
         let corner = [b, a, [1.0, 2.0, 0.0]];

@@ -1,7 +1,7 @@
 //! What is odd about a design that can be solved: most often a slip of the pen.
 
 use super::{binding_vectors, close_pairs, core_distance, linked_parts, neighbours};
-use crate::{error::InvalidInput, model::Model};
+use crate::{design::CurveKind, error::InvalidInput, model::Model};
 
 /// A ring that is linked to nothing is called far from this gap on, in reference radii.
 const FAR_GAP: f64 = 2.0;
@@ -36,7 +36,14 @@ fn unlinked(model: &Model, counts: &[usize]) -> Vec<InvalidInput> {
         let help = "check its center, and the normals and radii of its rings";
         InvalidInput::new(format!("elements[{e}].center"), problem, help)
     };
-    counts.iter().enumerate().filter(|(_, count)| **count == 0).map(warning).collect()
+    let alone = counts.iter().enumerate().filter(|(e, count)| **count == 0 && !is_open(model, *e));
+    alone.map(warning).collect()
+}
+
+/// Whether an element is made of open curves alone, which nothing can be linked to.
+fn is_open(model: &Model, element: usize) -> bool {
+    let mut rings = model.elements[element].rings.clone();
+    rings.all(|ring| model.rings[ring].curve.as_ref().is_some_and(|curve| curve.kind == CurveKind::Open))
 }
 
 /// Gap between an element and the nearest other one; `None` where there is none within reach.
@@ -95,6 +102,9 @@ fn loose(model: &Model) -> Option<InvalidInput> {
     let independent =
         |v: &[i32; 2], w: &[i32; 2]| i64::from(v[0]) * i64::from(w[1]) != i64::from(v[1]) * i64::from(w[0]);
     let problem = match vectors.first() {
+        None if (0..model.elements.len()).any(|e| is_open(model, e)) => {
+            "no chain of links joins the cells: what open curves hold has no bound, and may come apart".to_owned()
+        }
         None => "no chain of links joins the cells: no pull has a limit".to_owned(),
         Some(first) if !model.single && !vectors.iter().any(|v| independent(first, v)) => {
             let along = model.start.translation(*first);
