@@ -99,7 +99,7 @@ def test_points_in_front_of_a_surface_and_behind_it():
 
 def test_the_surface_of_a_design_is_closed_and_holds_its_limits():
     calls = []
-    surface = maille.boundary("1.1", vertices=162, progress=lambda done, total: calls.append((done, total)))
+    surface = maille.boundary("1.1", vertices=162, effort="low", progress=lambda done, total: calls.append((done, total)))
     assert len(surface.vertices) == 162 and calls[-1] == (162, 162)
     edges = np.sort(surface.triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
     assert np.all(np.unique(edges, axis=0, return_counts=True)[1] == 2)
