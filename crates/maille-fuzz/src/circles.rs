@@ -1,11 +1,13 @@
 //! Pairs of circles of any 14 floats.
 
-use crate::CLOSE;
 use maille_geometry::{
     Approaches, Circle, MAX_MINIMA, Vec3, circle_distance_approaches, circle_distance_lower_bound,
     circle_distance_minima, linking_number, point_circle_distance,
 };
 use nalgebra::UnitVector3;
+
+/// Distances of sound pairs are right to this part of the size.
+pub(crate) const CLOSE: f64 = 1e-9;
 
 /// Bytes as two circles: centre, normal, radius of each, little-endian; missing bytes are 0. Normals are made unit vectors as
 /// a caller would, which leaves 0 or NaN of some.

@@ -14,9 +14,6 @@ pub use text::{design, forces, frames, limits, run, simulation, states, study, s
 
 use std::path::Path;
 
-/// Distances of sound pairs are right to this part of the size.
-const CLOSE: f64 = 1e-9;
-
 /// Sound inputs of a target: files of the repository. Pairs of circles and of pieces need none.
 ///
 /// Panics if they cannot be read.

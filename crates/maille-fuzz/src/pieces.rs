@@ -1,6 +1,6 @@
 //! Pairs of pieces, segments and arcs, of any 18 floats.
 
-use crate::CLOSE;
+use crate::circles::CLOSE;
 use maille_geometry::{Arc, Circle, MAX_PIECE_MINIMA, Piece, Segment, Vec3, piece_distance_minima};
 use nalgebra::UnitVector3;
 
