@@ -1,4 +1,4 @@
-//! Core curves: circles, and closed curves of segments and arcs.
+//! Core curves: circles, and closed curves of segments and arcs; an open curve is there and back.
 
 mod level;
 mod minima;

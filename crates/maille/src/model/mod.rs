@@ -19,7 +19,7 @@ use std::{
 
 pub use curve::{Core, Curve};
 
-/// A tube of an element round a circle or another closed curve, in the element's frame at the starting state.
+/// A tube of an element round a circle or another curve, in the element's frame at the starting state.
 #[derive(Clone, Debug)]
 pub struct Ring {
     /// Index of the element that it belongs to.

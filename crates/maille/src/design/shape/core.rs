@@ -1,4 +1,4 @@
-//! What all forms become: the pieces of closed curves.
+//! What all forms become: the pieces of closed curves; those of open ones go there and back.
 
 use maille_geometry::{Piece, Place, Vec3};
 use serde::{Deserialize, Serialize};
