@@ -11,14 +11,25 @@ use std::{
 
 /// Builds the program with a profile of cargo and says where it lies.
 pub fn build(root: &Path, profile: &str) -> Result<PathBuf, String> {
-    let arguments = ["build", "--profile", profile, "--package", "maille-cli", "--message-format"];
+    built(root, &["--profile", profile, "--package", "maille-cli"])
+}
+
+/// Builds an example. Of its package alone the libraries would have other features than in all other builds, and be compiled once more.
+pub fn example(root: &Path, name: &str) -> Result<PathBuf, String> {
+    built(root, &["--workspace", "--example", name])
+}
+
+fn built(root: &Path, what: &[&str]) -> Result<PathBuf, String> {
     let mut command = Command::new(cargo());
-    command.args(arguments).arg("json-render-diagnostics").current_dir(root).stderr(Stdio::inherit());
+    command.arg("build").args(what).args(["--message-format", "json-render-diagnostics"]);
+    command.current_dir(root).stderr(Stdio::inherit());
     let output = command.output().map_err(|e| format!("cargo did not start: {e}"))?;
     let messages = String::from_utf8_lossy(&output.stdout);
     let executables = messages.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
     let executable = executables.filter_map(|message| message["executable"].as_str().map(PathBuf::from)).next_back();
-    executable.filter(|_| output.status.success()).ok_or_else(|| "the program was not built".to_string())
+    executable
+        .filter(|_| output.status.success())
+        .ok_or_else(|| format!("`cargo build {}` has built no program", what.join(" ")))
 }
 
 /// The cargo that started this, or the one in the path.

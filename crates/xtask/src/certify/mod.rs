@@ -221,14 +221,10 @@ impl House {
         }
         let folder = self.scratch.join("designs");
         let [count, doubled] = if quick { QUICK_COUNTS } else { COUNTS };
-        let mut make = Command::new(program::cargo());
-        make.args(["run", "--quiet", "-p", "maille-io", "--example", "random_designs", "--", "--seed", SEED]);
-        make.args(["--count", count, "--doubled", doubled]).arg(&folder).current_dir(root);
         println!("making {count} random designs and {doubled} doubled ones");
-        let made = make.status().map_err(|e| format!("cargo did not start: {e}"))?;
-        if !made.success() {
-            return Err(format!("the random designs were not made: {made}"));
-        }
+        let mut make = Command::new(program::example(root, "random_designs")?);
+        make.args(["--seed", SEED, "--count", count, "--doubled", doubled]).arg(&folder).current_dir(root);
+        program::done(&mut make, "make the random designs")?;
         let unread = |e: std::io::Error| format!("{} cannot be read: {e}", folder.display());
         let mut files = fs::read_dir(&folder)
             .map_err(unread)?
