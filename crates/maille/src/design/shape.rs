@@ -485,13 +485,14 @@ mod tests {
         let open =
             |points: &[[f64; 3]], fillet: f64| Shape::Polyline { points: points.to_vec(), fillet, closed: false };
         wrong(open(&[a], 0.0), "points", "1 point");
-        wrong(open(&[a, b, a], 0.0), "points", "turns back on itself at point 1");
+        wrong(open(&[b, a, [0.5, 0.0, 0.0]], 0.0), "points", "turns back on itself at point 1");
+        wrong(open(&[b, a, [1.0, 1.0, 0.0], b], 0.0), "points", "ends where it starts");
         // A fillet may take all of an edge that has none at its other end.
         let corner = [b, a, [1.0, 2.0, 0.0]];
         assert_eq!(open(&corner, 1.0).problem(), None);
         wrong(open(&corner, 1.1), "fillet", "takes 1.1000 of an edge of length 1.0000");
         let start = |parts: Vec<PathPart>| Shape::Path { from: Some(b), parts };
         wrong(start(vec![]), "parts", "0 parts");
-        wrong(start(vec![PathPart { to: b, through: None }]), "parts[0].to", "ends where it begins");
+        wrong(start(vec![PathPart { to: b, through: None }]), "from", "ends where it starts");
     }
 }
