@@ -354,3 +354,19 @@ fn states_of_a_tube_help_each_other() {
 fn sum(text: &str) -> String {
     Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect()
 }
+
+/// Rings that are not linked come apart as they are rolled: no certificate, and no gap where none is near. That is not false.
+#[test]
+fn what_comes_apart_has_no_gap() {
+    let dir = tempfile::tempdir().unwrap();
+    let ring = "[[elements]]\nname = \"a\"\ncenter = [0.0, 0.0, 0.0]\nrings = [{ major_radius = 1.0, normal = [0.0, 0.0, 1.0] }]\n";
+    let head = "name = \"far\"\nminor_radius = 0.1\nreference_radius = 1.0\n[lattice]\na1 = [6.0, 0.0, 0.0]\n";
+    fs::write(dir.path().join("far.toml"), format!("{head}{ring}")).unwrap();
+    let line = "roll far.toml --axis above --effort low --allow-incomplete --out r --quiet";
+    assert_eq!(maille(dir.path(), line).0, 0);
+    let rolls: Vec<Value> =
+        read(dir.path(), "r/rolls.jsonl").lines().skip(1).map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert!(rolls[0]["status"] == "uncertified" && rolls[0]["certificate"]["min_gap"].is_null());
+    assert!(rolls[0]["min_gap"].is_null(), "{}", rolls[0]);
+    assert_eq!(refuted(dir.path()), Vec::<String>::new());
+}

@@ -229,9 +229,8 @@ pub(crate) struct Term {
     pub rows: Vec<Local>,
 }
 
-/// The terms of `points` with their forces, and whether a pair lies flat; or why they cannot be told. Derivatives at points of curves are taken
-/// with this share of their usual step.
-pub(crate) fn terms(sheet: &Sheet, points: &[(Closed<'_>, f64)], share: f64) -> Result<(Vec<Term>, bool), String> {
+/// The terms of `points` with their forces, and whether a pair lies flat; or why they cannot be told.
+pub(crate) fn terms(sheet: &Sheet, points: &[(Closed<'_>, f64)]) -> Result<(Vec<Term>, bool), String> {
     let mut out = Vec::new();
     let mut flat: BTreeMap<Pair, FlatPair> = BTreeMap::new();
     let round = |point: &Closed<'_>| point.curve.is_none();
@@ -243,7 +242,7 @@ pub(crate) fn terms(sheet: &Sheet, points: &[(Closed<'_>, f64)], share: f64) -> 
     for (point, force) in points {
         if let Some(contact) = &point.curve {
             let (a, b, shift) = point.pair;
-            let found = contact.hessian(share);
+            let found = contact.hessian();
             let h = found.map_err(|words| format!("rings {a} and {b} at {shift:?}: {words}"))?;
             let rows = if *force > LOADED { vec![contact.gradient()] } else { Vec::new() };
             out.push(Term { pair: point.pair, hessian: h * -*force, rows });
@@ -313,20 +312,20 @@ impl Sum {
 }
 
 /// The curvature at `points` with their forces, or why it cannot be told. `rates` are those of the lattice with l1 and what is free; element `still`
-/// does not move; `share` is that of [`terms`].
+/// does not move.
 pub(crate) fn curvature(
     sheet: &Sheet,
     points: &[(Closed<'_>, f64)],
     rates: &[[Vec3; 2]],
     anchors: Vec<[f64; 2]>,
-    (still, share): (usize, f64),
+    still: usize,
 ) -> Result<Curvature, String> {
     let unknowns = Unknowns::new(sheet, anchors, rates, still);
     let n = unknowns.count();
     if n > MOST_UNKNOWNS {
         return Err(format!("{n} unknowns; the curvature is derived of up to {MOST_UNKNOWNS}"));
     }
-    let (terms, flat) = terms(sheet, points, share)?;
+    let (terms, flat) = terms(sheet, points)?;
     let mut sum = Sum::new(n);
     terms.iter().for_each(|term| sum.add(term, &unknowns.of_pair(sheet, term.pair)));
     sum.curvature(flat)

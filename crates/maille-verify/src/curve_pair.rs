@@ -31,8 +31,6 @@ const FEW_BOXES: usize = 20_000;
 const STEP: f64 = 1e-4;
 /// The step is shorter where curves run along each other, down to this share.
 const SOFTEST: f64 = 1e-2;
-/// Shares of the step that are tried where its rounding, or what it leaves out, hides the sign of a curvature.
-pub(crate) const OTHER_STEPS: [f64; 2] = [0.3, 3.0];
 /// Points of each piece from which a nearer point is sought.
 const SEEDS: usize = 4;
 
@@ -383,10 +381,10 @@ impl CurveContact {
         ])
     }
 
-    /// Second derivatives of the least distance, symmetric, by differences of fourth order with this share of the usual step.
-    pub fn hessian(&self, share: f64) -> Result<SMatrix<f64, 13, 13>, String> {
+    /// Second derivatives of the least distance, symmetric, by differences of fourth order.
+    pub fn hessian(&self) -> Result<SMatrix<f64, 13, 13>, String> {
         let mut out = SMatrix::<f64, 13, 13>::zeros();
-        let step = share * self.step();
+        let step = self.step();
         let size = self.own.iter().map(|curve| curve.reach(&Vec3::zeros())).fold(1.0, f64::max);
         for along in 0..12 {
             let h = if along % 6 < 3 { step } else { step / size };

@@ -3,7 +3,6 @@
 use crate::{
     balance::{Balance, COMPLEMENTARITY, Free, RESIDUAL, balance, points},
     curvature::{CURVATURE, Curvature, ZERO_MODE, curvature},
-    curve_pair::OTHER_STEPS,
     record::{Row, State},
     report::{Check, Finding, Verdict},
     sheet::{Sheet, Vec3},
@@ -44,18 +43,17 @@ pub(crate) fn forces(
     };
     let balance = balance_finding(row, &balance(here, &points, &free));
     let anchors = start.sheet.carried();
-    let judged = |how: (usize, f64)| match curvature(here, &points, &free.0, anchors.clone(), how) {
+    let judged = |still: usize| match curvature(here, &points, &free.0, anchors.clone(), still) {
         Ok(found) => curvature_finding(row, &found, free.0.len() > 1),
         Err(words) => Finding::new(Check::Curvature, Verdict::Open, None, words),
     };
-    let first = judged((0, 1.0));
-    // The figure depends on which element's translation is no unknown: in an image of another direction it need not be the first. And another step
-    // may show a sign that the usual one leaves open.
-    let of_curves = first.verdict == Verdict::Open && points.iter().any(|(point, _)| point.curve.is_some());
-    let other_steps = OTHER_STEPS.iter().filter(|_| of_curves).map(|share| (0, *share));
+    // The figure depends on which element's translation is no unknown. In an image of another direction it need not be the first.
+    let first = judged(0);
     let proved = |finding: &Finding| finding.verdict == Verdict::Proved;
-    let others = (1..here.bodies.len()).map(|still| (still, 1.0)).chain(other_steps);
-    let curvature = if proved(&first) { first } else { others.map(judged).find(proved).unwrap_or(first) };
+    let curvature = match proved(&first) {
+        true => first,
+        false => (1..here.bodies.len()).map(judged).find(proved).unwrap_or(first),
+    };
     let told = columns.contains(waves::COLUMNS[0]);
     [balance, curvature].into_iter().chain(waves::finding(row, here, &points, told)).collect()
 }

@@ -11,7 +11,7 @@ use crate::{
     apart::Arc,
     balance::{COMPLEMENTARITY, RESIDUAL, least, placed, placed_on_curves},
     curvature::{CURVATURE, Curvature, FLATTEST, ZERO_MODE, kept, turns},
-    curve_pair::{CurveContact, OTHER_STEPS},
+    curve_pair::CurveContact,
     record::Contact,
     report::{Check, Finding, Verdict},
     rolled::Motions,
@@ -22,6 +22,8 @@ use nalgebra::{DMatrix, DVector, Point3, Unit, UnitQuaternion};
 
 /// Step of first derivatives, in core distances and radians.
 const STEP: f64 = 1e-3;
+/// Shares of the step of slopes of curves that are tried where its rounding, or what it leaves out, hides the sign of a curvature.
+const OTHER_STEPS: [f64; 2] = [0.3, 3.0];
 /// Step of second derivatives.
 const LONG_STEP: f64 = 1e-2;
 /// Contacts that carry more are kept.

@@ -307,7 +307,7 @@ fn forces(here: &Sheet, start: &Start, f: &Matrix2<f64>, ray: &Matrix2<f64>) -> 
     let words = format!("forces that push at closed points balance the pull to {residual:.1e}");
     let balanced = Finding::new(Check::Balance, Verdict::Proved, Some(residual), words);
     let anchors = start.sheet.carried();
-    let judged = (0..here.bodies.len()).map(|still| curvature(here, &loaded, &free.0, anchors.clone(), (still, 1.0)));
+    let judged = (0..here.bodies.len()).map(|still| curvature(here, &loaded, &free.0, anchors.clone(), still));
     let mut worst = "no element could be held".to_owned();
     for found in judged {
         match found {

@@ -50,7 +50,7 @@ fn of_wave(sheet: &Sheet, points: &[(Closed<'_>, f64)], q: [f64; 2]) -> Result<C
         }
         out.into_iter().collect::<Vec<_>>()
     };
-    let (terms, flat) = terms(sheet, points, 1.0)?;
+    let (terms, flat) = terms(sheet, points)?;
     let mut sum = Sum::new(2 * n);
     for term in &terms {
         [false, true].into_iter().for_each(|imaginary| sum.add(term, &columns(term.pair, imaginary)));

@@ -141,6 +141,13 @@ fn a_design_is_judged_as_the_program_does() {
         assert_eq!((judged.problems[0].field.as_deref(), judged.problems[0].line), (Some("minor_radius"), Some(9)));
         assert!(judged.sheet.is_none());
 
+        // A curve with two ends is drawn from one to the other, and not back.
+        let hooks = include_str!("../../../examples/curves/hooks.toml");
+        let (_, judged): (_, Judged) = post(&router, "/api/judge", &subject(hooks)).await;
+        let ring = &judged.sheet.unwrap().rings[0];
+        let points = ring.curve.as_ref().unwrap();
+        assert!(ring.open && points[0] == [-1.0, -1.0, 0.0] && points.last() == Some(&[1.0, 1.0, 0.0]), "{points:?}");
+
         // Overlaps are wrong, and shown.
         let thick = Subject { minor_radius: Some(0.3), ..subject(text) };
         let (_, judged): (_, Judged) = post(&router, "/api/judge", &thick).await;

@@ -367,6 +367,9 @@ fn open_curves_hold_where_closed_ones_do() {
         let (l1, status) = limit(&chain(hook(), r, 7.0), 0.0);
         assert!((7.0 * (1.0 + l1) - 2.0 * (4.0 - 2.0 * r)).abs() < 1e-10 && status == Status::Local, "{l1}");
     }
+    // Not that each hook is linked to nothing: it cannot be.
+    let warnings = maille::topology::warnings(&compiled(&chain(hook(), 0.1, 7.0)));
+    assert!(warnings.len() == 1 && warnings[0].problem.contains("may come apart"), "{warnings:?}");
     let on_circle = |turn: f64| [(TAU * turn).cos(), (TAU * turn).sin(), 0.0];
     let arc = |to: f64, through: f64| PathPart { to: on_circle(to), through: Some(on_circle(through)) };
     let cut = Shape::Path { from: Some(on_circle(0.3)), parts: vec![arc(0.7, 0.5), arc(1.2, 0.9)] };

@@ -1,7 +1,6 @@
 //! Curves at the edge of what a curve can be: spikes, hairpins, fillets of zero, thousands of pieces, knots, hooks.
 
-use super::maille;
-use serde_json::Value;
+use super::{maille, rows};
 use std::{f64::consts::TAU, fmt::Write as _, fs};
 
 /// A chain with this repeat of elements along x, each with the form and minor radius of its curve and the direction of its normal.
@@ -32,8 +31,7 @@ fn locked(design: &str, repeat: f64) -> (String, f64) {
     let (code, _, said) =
         maille(folder.path(), "characterize design.toml --cell 1x1 --effort low --out record --quiet");
     assert_eq!(code, 0, "{said}");
-    let table: Value = serde_json::from_str(&maille(folder.path(), "table record --format json").1).unwrap();
-    let row = &table["rows"][0];
+    let row = &rows(folder.path())[0];
     let (verified, out, _) = maille(folder.path(), "verify record");
     assert_eq!(verified, 0, "{out}");
     assert!(out.contains("1 of 1 certified ones proved"), "{out}");

@@ -20,6 +20,12 @@ fn maille(folder: &Path, line: &str) -> (i32, String, String) {
     (output.status.code().unwrap(), text(&output.stdout), text(&output.stderr))
 }
 
+/// The rows of the record in a folder.
+fn rows(folder: &Path) -> Vec<Value> {
+    let table: Value = serde_json::from_str(&maille(folder, "table record --format json").1).unwrap();
+    table["rows"].as_array().unwrap().clone()
+}
+
 fn answer(design: &str, l2: &str) -> Answer {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("design.toml"), design).unwrap();
@@ -28,13 +34,12 @@ fn answer(design: &str, l2: &str) -> Answer {
     if !folder.path().join("record/limits.csv").exists() {
         return Answer { rows: Vec::new(), codes: (code, None), said };
     }
-    let table: Value = serde_json::from_str(&maille(folder.path(), "table record --format json").1).unwrap();
     let number = |row: &Value, name: &str| row[name].as_f64();
     let row = |row: &Value| {
         let at = |name: &str| number(row, name).unwrap();
         (at("direction_deg"), at("l2"), row["status"].as_str().unwrap().to_owned(), number(row, "l1"))
     };
-    let rows = table["rows"].as_array().unwrap().iter().map(row).collect();
+    let rows = rows(folder.path()).iter().map(row).collect();
     let (verified, said, _) = maille(folder.path(), "verify record --quiet");
     Answer { rows, codes: (code, Some(verified)), said }
 }
@@ -278,16 +283,15 @@ fn what_is_neither_held_nor_apart_has_no_number() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("stack.toml"), stack).unwrap();
     let (code, _, said) =
-        maille(folder.path(), "characterize stack.toml --directions 90.01 --l2 0 --cell 1x1 --out out --quiet");
+        maille(folder.path(), "characterize stack.toml --directions 90.01 --l2 0 --cell 1x1 --out record --quiet");
     assert_eq!(code, 5, "{said}");
-    let table: Value = serde_json::from_str(&maille(folder.path(), "table out --format json").1).unwrap();
-    let row = &table["rows"][0];
+    let row = &rows(folder.path())[0];
     assert_eq!(
         (&row["status"], &row["l1"], &row["l1_uncertified"]),
         (&"uncertified".into(), &Value::Null, &Value::Null)
     );
-    assert_eq!(maille(folder.path(), "verify out --quiet").0, 0);
-    assert!(fs::read_to_string(folder.path().join("out/states.jsonl")).unwrap().contains("no contact held it"));
+    assert_eq!(maille(folder.path(), "verify record --quiet").0, 0);
+    assert!(fs::read_to_string(folder.path().join("record/states.jsonl")).unwrap().contains("no contact held it"));
 }
 
 /// The least and the largest of what nothing holds are no numbers: the search was only stopped there.
