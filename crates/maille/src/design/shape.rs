@@ -317,17 +317,28 @@ impl Shape {
         Some(vec![of(pieces, deviation)])
     }
 
+    /// The radius of the circle about the origin, in z = 0, that it is in other words.
+    pub(crate) fn circle(&self) -> Option<f64> {
+        match self {
+            Shape::Stadium { straight, radius } if *straight == 0.0 => Some(*radius),
+            Shape::Square { side, fillet } if *side == 2.0 * fillet => Some(*fillet),
+            Shape::Ellipse { a, b } if a == b => Some(*a),
+            Shape::TorusKnot { p, circle_radius, a, .. } if *p == 1.0 && *a == 0.0 => Some(*circle_radius),
+            _ => None,
+        }
+    }
+
     /// As [`Self::pieces`], and how far the form is from its pieces at most, at sampled points.
     fn approximation(&self, tolerance: f64) -> Option<(Vec<Piece>, f64)> {
         let exact = |pieces: Vec<Piece>| Some((pieces, 0.0));
+        if let Some(radius) = self.circle() {
+            return exact(vec![Piece::circle(Circle::new(Vec3::zeros(), Vec3::z_axis(), radius))]);
+        }
         match self {
             Shape::Stadium { straight, radius } => exact(stadium(*straight, *radius)),
             Shape::Path { from, parts } => through_parts(*from, parts).and_then(exact),
             Shape::Spline { points, closed } => through_points(points, *closed, tolerance),
             Shape::Frame { vertices, edges } => frame::struts(vertices, edges).and_then(exact),
-            Shape::Ellipse { a, b } if a == b => {
-                exact(vec![Piece::circle(Circle::new(Vec3::zeros(), Vec3::z_axis(), *a))])
-            }
             Shape::Ellipse { a, b } => smooth(4, tolerance, |t| {
                 let (sin, cos) = t.sin_cos();
                 [Vec3::new(a * cos, b * sin, 0.0), Vec3::new(-a * sin, b * cos, 0.0)]

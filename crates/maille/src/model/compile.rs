@@ -69,13 +69,24 @@ fn center(pieces: &[Piece]) -> Vec3 {
     best.1
 }
 
+/// Squares of tiny numbers have few digits: the largest is made 1 first.
+fn unit_normal(normal: [f64; 3]) -> Unit<Vec3> {
+    let normal = Vec3::from(normal);
+    Unit::new_normalize(normal / normal.amax())
+}
+
 /// The tubes of a curve, in units of the reference radius: one, or those of a frame. Where one is a torus it is a ring like any other.
 fn rings_of(design: &Design, element: usize, spec: &CurveSpec) -> Vec<Ring> {
     let unit = design.reference_radius;
     let offset = Vec3::from(spec.offset) / unit;
     let rotation = spec.rotation().unwrap_or_default();
     let minor_radius = spec.minor_radius.or(design.minor_radius).unwrap_or(f64::NAN) / unit;
-    let normal = Unit::new_normalize(rotation * Vec3::z());
+    let normal = unit_normal(spec.normal);
+    // A circle in other words is that ring, to the last digit.
+    if let Some(radius) = spec.shape.circle() {
+        let major_radius = radius / unit;
+        return vec![Ring { element, offset, normal, major_radius, minor_radius, curve: None }];
+    }
     // The design has been checked.
     let cores = spec.shape.scaled(1.0 / unit).cores(design.tolerance_of_curves() / unit).unwrap_or_default();
     let moved = |piece: &Piece| piece.moved(&rotation, &offset);
@@ -139,7 +150,7 @@ impl Model {
                 rings.push(Ring {
                     element: elements.len(),
                     offset: vector(ring.offset),
-                    normal: Unit::new_normalize(Vec3::from(ring.normal) / Vec3::from(ring.normal).amax()),
+                    normal: unit_normal(ring.normal),
                     major_radius: ring.major_radius / unit,
                     minor_radius: ring.minor_radius.or(design.minor_radius).unwrap_or(f64::NAN) / unit,
                     curve: None,

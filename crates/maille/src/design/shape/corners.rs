@@ -7,9 +7,6 @@ use std::f64::consts::PI;
 
 pub(super) fn stadium(straight: f64, radius: f64) -> Vec<Piece> {
     let half = 0.5 * straight;
-    if straight == 0.0 {
-        return vec![Piece::circle(Circle::new(Vec3::zeros(), Vec3::z_axis(), radius))];
-    }
     let corner = |x: f64, y: f64| Vec3::new(x * half, y * radius, 0.0);
     let side = |from, to| Segment::new(from, to).map(Piece::Segment);
     let cap = |x: f64| {
