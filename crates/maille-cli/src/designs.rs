@@ -35,6 +35,7 @@ pub fn run(args: &Args) -> Result<()> {
                     "single": d.lattice.single,
                     "elements": d.elements.len(),
                     "rings": rings(d),
+                    "curves": d.elements.iter().map(|e| e.curves.len()).sum::<usize>(),
                     "minor_radius": d.minor_radius,
                     "reference_radius": d.reference_radius,
                 })

@@ -37,6 +37,7 @@ Examples:
 A study:
   directions = \"0:180:15\"       # or [0, 45]; so with l2, minor_radius and spacing
   l2 = [-0.125, 0]
+  keep_links = true             # leave values out with which rings are linked otherwise
   cell = \"auto\"                 # as in `maille characterize`; also effort, starts, seed
   [[designs]]
   design = \"1.1\"                # built in, or a file beside the study

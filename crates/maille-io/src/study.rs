@@ -13,6 +13,7 @@ use maille::{
     lattice::Across,
     question::Effort,
     search::ExactOptions,
+    sheet::Sheet,
     survey::{CellChoice, MapQuestion, Method},
 };
 use serde::Deserialize;
@@ -41,6 +42,8 @@ pub struct StudyDesign {
     pub spacing: Vec<f64>,
     /// Other numbers of the design, by their places, with the values that they take.
     pub vary: Vec<(NumberPath, Vec<f64>)>,
+    /// Whether values with which the links are not those of the design are left out.
+    pub keep_links: bool,
 }
 
 /// A design of a study at one value of each parameter.
@@ -54,13 +57,31 @@ pub struct Variant {
     pub spacing: Option<f64>,
     /// Other numbers of the design, in the order in which they are set, before the spacing.
     pub numbers: Vec<(NumberPath, f64)>,
+    /// Whether it must have the links of the design.
+    pub keep_links: bool,
 }
 
 impl Variant {
-    /// The design with its parameters. Refused where it has no such number.
-    ///
-    /// Its parameters are set first and at once: what the others set is no longer given by a formula.
+    /// The design with its parameters. Refused where it has no such number, or other links than it must have.
     pub fn of(&self, design: &Design) -> Result<Design, Vec<InvalidInput>> {
+        let varied = self.varied(design)?;
+        if self.keep_links {
+            let links = |design: &Design| Ok::<_, Vec<InvalidInput>>(Sheet::compile(design)?.model().links.clone());
+            let (own, wanted) = (links(&varied)?, links(design)?);
+            if own != wanted {
+                let problem = match (own.len(), wanted.len()) {
+                    (own, wanted) if own == wanted => "rings are linked otherwise than in the file".to_owned(),
+                    (own, wanted) => format!("there are {own} links per cell, {wanted} in the file"),
+                };
+                let help = "leave the value out, or leave out keep_links: the limits are then those of another weave";
+                return Err(vec![InvalidInput::new("elements", problem, help)]);
+            }
+        }
+        Ok(varied)
+    }
+
+    /// Its parameters are set first and at once: what the others set is no longer given by a formula.
+    fn varied(&self, design: &Design) -> Result<Design, Vec<InvalidInput>> {
         let parameters = self.numbers.iter().filter_map(|(path, value)| Some((path.parameter()?, *value)));
         let parameters: Vec<_> = parameters.collect();
         let mut out = if parameters.is_empty() { design.clone() } else { set_parameters(design, &parameters)? };
@@ -101,7 +122,8 @@ impl StudyDesign {
                     let mut suffix = minor_radius.map(|r| format!("-r{r}")).unwrap_or_default();
                     suffix.extend(numbers.iter().map(|(path, value)| format!("-{}{value}", path.label())));
                     suffix.extend(spacing.map(|s| format!("-s{s}")));
-                    out.push(Variant { suffix, minor_radius, spacing, numbers: numbers.clone() });
+                    let numbers = numbers.clone();
+                    out.push(Variant { suffix, minor_radius, spacing, numbers, keep_links: self.keep_links });
                 }
             }
         }
@@ -130,6 +152,7 @@ struct RawStudy {
     lateral: Option<Spanned<Held>>,
     shear: Option<Spanned<Held>>,
     compression: Option<Spanned<bool>>,
+    keep_links: Option<bool>,
     cell: Option<Spanned<String>>,
     effort: Option<Spanned<String>>,
     starts: Option<Spanned<i64>>,
@@ -147,6 +170,7 @@ struct RawDesign {
     lateral: Option<Spanned<Held>>,
     shear: Option<Spanned<Held>>,
     compression: Option<Spanned<bool>>,
+    keep_links: Option<bool>,
     minor_radius: Option<Spanned<List>>,
     spacing: Option<Spanned<List>>,
     #[serde(default)]
@@ -184,7 +208,7 @@ impl List {
 }
 
 const HELP: &str = "a study has cell, effort, starts, seed, and [[designs]] with design, name, minor_radius, spacing, vary; directions, l2, \
-                    lateral, shear and compression stand in either; `maille sweep --example` prints one";
+                    lateral, shear, compression and keep_links stand in either; `maille sweep --example` prints one";
 
 impl Study {
     /// Reads a study; `source_name` is what errors show.
@@ -261,6 +285,7 @@ impl RawDesign {
             minor_radius: self.minor_radius.as_ref().map(positive).transpose()?.unwrap_or_default(),
             spacing: self.spacing.as_ref().map(positive).transpose()?.unwrap_or_default(),
             vary,
+            keep_links: self.keep_links.or(study.keep_links).unwrap_or(false),
         })
     }
 
@@ -372,6 +397,20 @@ mod tests {
         assert_eq!(varied.lattice.a1[0], 5.0);
         let words = "elements.flat.center.z = 0.1, elements.standing-*.rings.major_radius = 0.75, spacing = 2";
         assert_eq!(variants[4].words().as_deref(), Some(words));
+    }
+
+    /// Closer rings of 1.1 go through their neighbours' images: 8 links a cell, not 4.
+    #[test]
+    fn values_with_other_links_can_be_left_out() {
+        let text = "keep_links = true\n[[designs]]\ndesign = \"1.1\"\nspacing = [0.9, 0.7]\n";
+        let study = Study::read("s", text).unwrap();
+        let design = crate::read_design("1.1", crate::builtin("1.1").unwrap()).unwrap();
+        let variants = study.designs[0].variants();
+        assert!(variants[0].of(&design).is_ok());
+        let problem = &variants[1].of(&design).unwrap_err()[0].problem;
+        assert!(problem.ends_with("links per cell, 4 in the file"), "{problem}");
+        let free = Study::read("s", &text.replace("keep_links = true", "")).unwrap();
+        assert!(free.designs[0].variants()[1].of(&design).is_ok());
     }
 
     #[test]

@@ -110,10 +110,16 @@ impl Design {
     }
 
     /// A variant of a study.
-    fn varied(&self, minor_radius: Option<f64>, numbers: Vec<(String, f64)>, spacing: Option<f64>) -> PyResult<Self> {
+    fn varied(
+        &self,
+        minor_radius: Option<f64>,
+        numbers: Vec<(String, f64)>,
+        spacing: Option<f64>,
+        keep_links: bool,
+    ) -> PyResult<Self> {
         let path = |(path, value): &(String, f64)| Ok((path.parse::<NumberPath>()?, *value));
         let numbers = numbers.iter().map(path).collect::<Result<Vec<_>, _>>().map_err(|e| error::invalid(&e))?;
-        let variant = Variant { suffix: String::new(), minor_radius, spacing, numbers };
+        let variant = Variant { suffix: String::new(), minor_radius, spacing, numbers, keep_links };
         Self::changed(variant.of(&self.design).map_err(|problems| error::design(&problems))?)
     }
 

@@ -13,7 +13,7 @@ pub fn study(name: &str, text: &str) -> PyResult<String> {
         let variants = design.variants();
         let variants = variants.iter().map(|v| {
             let numbers: Vec<_> = v.numbers.iter().map(|(path, value)| json!([path.to_string(), value])).collect();
-            json!([v.suffix, v.minor_radius, numbers, v.spacing])
+            json!([v.suffix, v.minor_radius, numbers, v.spacing, v.keep_links])
         });
         json!({
             "design": design.design,

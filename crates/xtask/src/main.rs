@@ -2,15 +2,18 @@
 //!
 //! It depends on little, so that the first command after a clone starts soon.
 
+mod atlas;
 mod bench;
 mod certify;
 mod circles;
 mod features;
 mod gallery;
 mod layers;
+mod package;
 mod paths;
 mod program;
 mod repository;
+mod site;
 mod steps;
 mod uses;
 mod view;
@@ -37,6 +40,16 @@ cargo xtask COMMAND
            --program PATH  this program; otherwise it is built
            --limit-s N     time for one map and for its verification, each [default: 1800]
            --threads N     threads of the program [default: all cores]
+  atlas    limits of every built-in weave with 31 wires and 19 spacings, as site/atlas.parquet; goes on where it was
+           stopped
+           --quick         few of them, into maille-out/atlas-quick.parquet
+           --program PATH  this program; otherwise it is built
+  site     write target/site/book: documents, viewers of all designs, notebooks and reference as static pages, and check
+           them in a browser; installs mdBook below target
+           --program PATH  this program, with the viewer; otherwise it is built
+  package  build what a release consists of, into target/dist: archive, wheel, source, installer, checksums
+           --try           install that into a Debian without Rust, and run it there; needs root
+  publish  try to publish every crate, in order, without doing so
   bench    every bench, and docs/performance.md from it; close other programs first
            --from FILE     from what `cargo bench` has printed to FILE
 ";
@@ -63,6 +76,15 @@ fn main() -> ExitCode {
         ["gallery", "--quick"] => steps::failed(gallery::write(&root, true, None)),
         ["gallery", "--program", program] => steps::failed(gallery::write(&root, false, Some(program))),
         ["gallery", "--quick", "--program", program] => steps::failed(gallery::write(&root, true, Some(program))),
+        ["atlas"] => steps::failed(atlas::write(&root, false, None)),
+        ["atlas", "--quick"] => steps::failed(atlas::write(&root, true, None)),
+        ["atlas", "--program", program] => steps::failed(atlas::write(&root, false, Some(program))),
+        ["atlas", "--quick", "--program", program] => steps::failed(atlas::write(&root, true, Some(program))),
+        ["site"] => steps::site(&root, None),
+        ["site", "--program", program] => steps::site(&root, Some(program)),
+        ["package"] => steps::failed(package::write(&root)),
+        ["package", "--try"] => steps::failed(package::try_clean(&root)),
+        ["publish"] => steps::failed(package::publish(&root)),
         ["bench"] => steps::failed(bench::write(&root, None)),
         ["bench", "--from", file] => steps::failed(bench::write(&root, Some(file))),
         ["certify", ref options @ ..] => steps::failed(certify::run(&root, options)),

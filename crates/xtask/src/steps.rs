@@ -1,6 +1,6 @@
 //! The steps of `ci`, each announced and timed.
 
-use crate::{certify, circles, features, layers, paths, program, repository::Finding, view, wheel::Environment};
+use crate::{certify, circles, features, layers, paths, program, repository::Finding, site, view, wheel::Environment};
 use std::{
     path::Path,
     process::{Command, Stdio},
@@ -54,12 +54,17 @@ fn rust_tests(root: &Path) -> Result<(), Failed> {
 
 /// The viewer's page, and the program with it.
 pub fn view(root: &Path) -> Result<(), Failed> {
-    timed("viewer", || failed(view::build(root)))
+    timed("viewer", || failed(view::build(root).map(|program| println!("   {}", program.display()))))
 }
 
 /// The Python package from its wheel, in a new environment.
 pub fn wheel(root: &Path) -> Result<(), Failed> {
     timed("wheel and examples", || failed(Environment::new(root, true).and_then(|python| python.examples())))
+}
+
+/// The site.
+pub fn site(root: &Path, program: Option<&str>) -> Result<(), Failed> {
+    timed("site", || failed(site::write(root, program)))
 }
 
 /// Says what went wrong.
@@ -82,9 +87,9 @@ pub fn features(root: &Path) -> Result<(), Failed> {
     report(features::check(root))
 }
 
-/// The check of the paths named in the documents.
+/// The checks of the paths named in the documents, and of the site's table of contents.
 pub fn paths(root: &Path) -> Result<(), Failed> {
-    report(paths::check(root))
+    report([paths::check(root), site::check(root)].concat())
 }
 
 fn report(findings: Vec<Finding>) -> Result<(), Failed> {

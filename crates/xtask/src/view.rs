@@ -12,12 +12,11 @@ const PAGE: &str = "crates/maille-view/web";
 /// Programs that may be the browser of the tests.
 const BROWSERS: &[&str] = &["chromium", "chromium-browser", "google-chrome-stable", "google-chrome"];
 
-/// Builds the page and the program.
-pub fn build(root: &Path) -> Result<(), String> {
+/// Builds the page and the program; says where the program lies.
+pub fn build(root: &Path) -> Result<PathBuf, String> {
     page(root)?;
     program(root, &["--release"])?;
-    println!("   {}", target(root).join("release").join(name()).display());
-    Ok(())
+    Ok(target(root).join("release").join(name()))
 }
 
 /// Builds both with the profile of the tests, checks the page's types, and runs its tests in a browser.
@@ -35,8 +34,23 @@ pub fn test(root: &Path) -> Result<(), String> {
     done(&mut command, "test the viewer")
 }
 
+/// Builds the script of the atlas's page.
+pub fn atlas(root: &Path, folder: &Path) -> Result<(), String> {
+    let mut command = Command::new("npm");
+    command.args(["--silent", "run", "atlas"]).current_dir(root.join(PAGE)).env("OUT", folder);
+    done(&mut command, "build the atlas's page")
+}
+
+/// Reads the static site in a browser: its links, its looks, its viewers.
+pub fn check_site(root: &Path, site: &Path) -> Result<(), String> {
+    let browser = browser()?;
+    let mut command = Command::new("npm");
+    command.args(["run", "site"]).current_dir(root.join(PAGE)).env("SITE", site).env("CHROMIUM", browser);
+    done(&mut command, "check the site")
+}
+
 /// Installs what the page is built with, as its lockfile says, and builds it.
-fn page(root: &Path) -> Result<(), String> {
+pub fn page(root: &Path) -> Result<(), String> {
     let node = Command::new("node").args(["-p", "process.versions.node"]).stderr(Stdio::null()).output();
     let found =
         node.ok().filter(|out| out.status.success()).map(|out| String::from_utf8_lossy(&out.stdout).into_owned());

@@ -26,8 +26,7 @@ impl Environment {
     /// Builds the wheel with the profile of the tests and installs it. With `clean`, the environment is made anew; else
     /// one that is there is used again.
     pub fn new(root: &Path, clean: bool) -> Result<Self, String> {
-        let target = target(root);
-        let out = Environment { root: root.to_owned(), folder: target.join("python"), target };
+        let out = Self::ready(root);
         let ready = out.folder.join("ready");
         let lock = root.join(LOCK);
         let wanted = std::fs::read_to_string(&lock).map_err(|e| format!("cannot read {}: {e}", lock.display()))?;
@@ -51,6 +50,11 @@ impl Environment {
     }
 
     fn create(&self) -> Result<(), String> {
+        self.make()?;
+        self.add(LOCK)
+    }
+
+    fn make(&self) -> Result<(), String> {
         let is_new = |name: &&&str| {
             let probe = Command::new(name).args(["-c", OLD_ENOUGH]).stderr(Stdio::null()).status();
             probe.is_ok_and(|status| status.success())
@@ -60,20 +64,52 @@ impl Environment {
                         python3-venv of the system"
                 .into());
         };
-        self.run(Command::new(python).args(["-m", "venv", "--clear"]).arg(&self.folder), "make an environment")?;
+        self.run(Command::new(python).args(["-m", "venv", "--clear"]).arg(&self.folder), "make an environment")
+    }
+
+    /// The environment that [`Self::new`] made.
+    pub fn ready(root: &Path) -> Self {
+        let target = target(root);
+        Environment { root: root.to_owned(), folder: target.join("python"), target }
+    }
+
+    /// An environment below the build folder with the programs of a lockfile alone.
+    pub fn of_tools(root: &Path, name: &str, lock: &str) -> Result<Self, String> {
+        let target = target(root);
+        let out = Environment { root: root.to_owned(), folder: target.join(format!("python-{name}")), target };
+        out.make()?;
+        out.add(lock)?;
+        Ok(out)
+    }
+
+    /// A command that finds the environment's programs.
+    pub fn tool(&self, program: impl AsRef<OsStr>) -> Command {
+        let mut command = Command::new(program);
+        let own = self.program("python").parent().map(Path::to_path_buf).into_iter();
+        let path = std::env::var_os("PATH").unwrap_or_default();
+        let folders: Vec<PathBuf> = own.chain(std::env::split_paths(&path)).collect();
+        if let Ok(path) = std::env::join_paths(folders) {
+            command.env("PATH", path);
+        }
+        command
+    }
+
+    /// Installs more packages, as a lockfile names them.
+    pub fn add(&self, lock: &str) -> Result<(), String> {
         let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--require-hashes", "-r"];
-        let done = self.run(self.python().args(install).arg(self.root.join(LOCK)), "install packages");
+        let done = self.run(self.python().args(install).arg(self.root.join(lock)), "install packages");
         done.map_err(|e| {
-            format!("{e}\npip must reach a package index, or find wheels by PIP_FIND_LINKS; wanted: those of {LOCK}")
+            format!("{e}\npip must reach a package index, or find wheels by PIP_FIND_LINKS; wanted: those of {lock}")
         })
     }
 
     /// A program of the environment.
-    fn program(&self, name: &str) -> PathBuf {
+    pub fn program(&self, name: &str) -> PathBuf {
         if cfg!(windows) { self.folder.join("Scripts").join(name) } else { self.folder.join("bin").join(name) }
     }
 
-    fn python(&self) -> Command {
+    /// Its Python.
+    pub fn python(&self) -> Command {
         Command::new(self.program("python"))
     }
 
@@ -100,7 +136,8 @@ impl Environment {
         self.run(&mut command, "test the Python package")
     }
 
-    fn run(&self, command: &mut Command, what: &str) -> Result<(), String> {
+    /// Runs a command to its end; `what` says in an error what could not be done.
+    pub fn run(&self, command: &mut Command, what: &str) -> Result<(), String> {
         done(command.env("PYTHONDONTWRITEBYTECODE", "1"), what)
     }
 }

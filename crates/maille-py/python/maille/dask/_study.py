@@ -57,21 +57,26 @@ def _plan(of_study: list[dict[str, Any]], folder: Path) -> dict[str, tuple[Desig
             stem = design.name
         except MailleError as error:
             design, stem = error, named
-        for suffix, minor_radius, numbers, spacing in item["variants"]:
+        for suffix, *values in item["variants"]:
             name = _native.folder_name(item["name"] or stem) + suffix
             if name in plan:
                 help = "name each design and value once, or give one of them another `name`"
                 raise ArgumentError("study", f"{name} is in the study twice", help)
-            plan[name] = (_varied(design, minor_radius, numbers, spacing), json.dumps(item["question"]))
+            plan[name] = (_varied(design, *values), json.dumps(item["question"]))
     return plan
 
 
 def _varied(
-    design: Design | MailleError, minor_radius: float | None, numbers: list[tuple[str, float]], spacing: float | None
+    design: Design | MailleError,
+    minor_radius: float | None,
+    numbers: list[tuple[str, float]],
+    spacing: float | None,
+    keep_links: bool,
 ) -> Design | MailleError:
     if not isinstance(design, Design) or (minor_radius is None and not numbers and spacing is None):
         return design
     try:
-        return Design._of(design._inner.varied(minor_radius, [(path, value) for path, value in numbers], spacing))
+        values = [(path, value) for path, value in numbers]
+        return Design._of(design._inner.varied(minor_radius, values, spacing, keep_links))
     except MailleError as error:
         return error

@@ -1,0 +1,139 @@
+//! `cargo xtask package`: what a release consists of, built on this machine: the wheel and the source of the Python
+//! package, an archive of the program, the installer, and their checksums.
+
+use crate::{
+    program::{cargo, done, target},
+    view,
+    wheel::Environment,
+};
+use std::{
+    env, fs,
+    path::{Path, PathBuf},
+    process::Command,
+};
+
+/// What is built with, beside Rust: a C compiler that links for old systems, and maturin.
+const LOCK: &str = "packaging/requirements.lock";
+/// The oldest C library on which the program and the wheel run, that of RHEL 8 and Debian 10.
+const GLIBC: &str = "2.28";
+/// Crates in the order in which they are published.
+const CRATES: &[&str] = &[
+    "maille-geometry",
+    "maille-features",
+    "maille",
+    "maille-verify",
+    "maille-prove",
+    "maille-io",
+    "maille-chapter6",
+    "maille-view",
+    "maille-cli",
+];
+
+/// Builds all below the build folder.
+pub fn write(root: &Path) -> Result<(), String> {
+    let out = target(root).join("dist");
+    match fs::remove_dir_all(&out) {
+        Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
+            return Err(format!("{} cannot be removed: {e}", out.display()));
+        }
+        _ => fs::create_dir_all(&out).map_err(|e| format!("{} cannot be made: {e}", out.display()))?,
+    }
+    view::page(root)?;
+    let tools = Environment::of_tools(root, "packaging", LOCK)?;
+    let mut names = vec![archive(root, &tools, &out)?];
+    names.extend(python(root, &tools, &out)?);
+    let installer = root.join("packaging/install.sh");
+    fs::copy(&installer, out.join("install.sh"))
+        .map_err(|e| format!("{} cannot be copied: {e}", installer.display()))?;
+    names.push("install.sh".into());
+    let sums = Command::new("sha256sum").args(&names).current_dir(&out).output();
+    let sums = sums.ok().filter(|sums| sums.status.success()).ok_or("`sha256sum` did not run")?.stdout;
+    fs::write(out.join("SHA256SUMS"), sums).map_err(|e| format!("SHA256SUMS cannot be written: {e}"))?;
+    println!("   {}", out.display());
+    Ok(())
+}
+
+/// Tries to publish every crate, in order, without doing so.
+pub fn publish(root: &Path) -> Result<(), String> {
+    // The page of the viewer is in its crate.
+    view::page(root)?;
+    let mut command = Command::new(cargo());
+    command.args(["publish", "--dry-run", "--locked", "--allow-dirty"]).current_dir(root);
+    done(command.args(CRATES.iter().flat_map(|name| ["--package", name])), "try to publish the crates")
+}
+
+/// The program with its licences, manual pages and completions.
+fn archive(root: &Path, tools: &Environment, out: &Path) -> Result<String, String> {
+    let os = env::consts::OS;
+    let mut command = tools.tool(cargo());
+    let build = ["--release", "--locked", "--package", "maille-cli", "--features", "view"];
+    let program = match os {
+        "linux" => {
+            let triple = format!("{}-unknown-linux-gnu", env::consts::ARCH);
+            command.arg("zigbuild").args(build).args(["--target", &format!("{triple}.{GLIBC}")]);
+            target(root).join(triple).join("release/maille")
+        }
+        _ => {
+            command.arg("build").args(build);
+            target(root).join("release").join(format!("maille{}", env::consts::EXE_SUFFIX))
+        }
+    };
+    done(command.current_dir(root), "build the program")?;
+    let name = format!("maille-{}-{}-{os}", env!("CARGO_PKG_VERSION"), env::consts::ARCH);
+    let folder = target(root).join("package").join(&name);
+    let (manuals, completions) = (folder.join("man"), folder.join("completions"));
+    for folder in [&manuals, &completions] {
+        fs::create_dir_all(folder).map_err(|e| format!("{} cannot be made: {e}", folder.display()))?;
+    }
+    let copies: [(PathBuf, &str); 4] = [
+        (program.clone(), "maille"),
+        (root.join("README.md"), "README.md"),
+        (root.join("LICENSE-MIT"), "LICENSE-MIT"),
+        (root.join("LICENSE-APACHE"), "LICENSE-APACHE"),
+    ];
+    for (from, to) in copies {
+        let to = format!("{to}{}", if to == "maille" { env::consts::EXE_SUFFIX } else { "" });
+        fs::copy(&from, folder.join(to)).map_err(|e| format!("{} cannot be copied: {e}", from.display()))?;
+    }
+    done(Command::new(&program).arg("man").arg(&manuals).arg("--overwrite"), "write the manual pages")?;
+    for shell in ["bash", "zsh", "fish"] {
+        let text = Command::new(&program).args(["completions", shell]).output();
+        let text = text.ok().filter(|text| text.status.success()).ok_or("`maille completions` did not run")?;
+        let file = completions.join(format!("maille.{shell}"));
+        fs::write(&file, text.stdout).map_err(|e| format!("{} cannot be written: {e}", file.display()))?;
+    }
+    let file = format!("{name}.tar.gz");
+    let mut command = Command::new("tar");
+    command.arg("-czf").arg(out.join(&file)).arg("-C").arg(target(root).join("package")).arg(&name);
+    done(&mut command, "write the archive")?;
+    Ok(file)
+}
+
+/// The wheel for all Pythons from 3.10 on, and the source that pip can build where there is no wheel.
+fn python(root: &Path, tools: &Environment, out: &Path) -> Result<Vec<String>, String> {
+    let manifest = root.join("crates/maille-py/Cargo.toml");
+    let maturin = |command: &str| {
+        let mut tool = tools.tool(tools.program("maturin"));
+        tool.arg(command).arg("--manifest-path").arg(&manifest).arg("--out").arg(out).current_dir(root);
+        tool
+    };
+    let mut wheel = maturin("build");
+    wheel.args(["--release", "--locked"]);
+    if env::consts::OS == "linux" {
+        wheel.args(["--zig", "--compatibility", &format!("manylinux_{}", GLIBC.replace('.', "_"))]);
+    }
+    done(&mut wheel, "build the wheel")?;
+    done(&mut maturin("sdist"), "pack the source of the Python package")?;
+    let files = fs::read_dir(out).map_err(|e| format!("{} cannot be read: {e}", out.display()))?;
+    let names = files.filter_map(|file| Some(file.ok()?.file_name().to_string_lossy().into_owned()));
+    let mut names: Vec<String> =
+        names.filter(|name| !name.contains(env::consts::OS) || name.ends_with(".whl")).collect();
+    names.sort_unstable();
+    Ok(names)
+}
+
+/// Installs what [`write`] has built into a Debian without Rust, and runs it there; needs root and debootstrap.
+pub fn try_clean(root: &Path) -> Result<(), String> {
+    let script = root.join("packaging/clean.sh");
+    done(Command::new("sh").arg(script).arg(target(root).join("dist")), "try the packages in a clean Debian")
+}

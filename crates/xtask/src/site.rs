@@ -1,0 +1,186 @@
+//! `cargo xtask site`: the documents, the viewers of all built-in designs, the notebooks and the reference pages as one
+//! folder of static pages, which opens from the disk.
+
+mod link;
+mod source;
+
+use crate::{
+    program::{cargo, done, target},
+    repository::Finding,
+    view,
+    wheel::Environment,
+};
+use serde_json::Value;
+use source::Source;
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::Command,
+};
+
+/// The book's settings, its table of contents, and the pages that are no documents of the repository.
+const FOLDER: &str = "site";
+/// The program that makes pages of Markdown, with the version that is installed below the build folder.
+const MDBOOK: &str = "mdbook@0.5.4";
+/// What the reference pages and notebooks are made with, beside what the Python package is tested with.
+const LOCK: &str = "site/requirements.lock";
+/// Crates with a reference page.
+const CRATES: &[&str] =
+    &["maille-geometry", "maille", "maille-verify", "maille-prove", "maille-io", "maille-view", "maille-chapter6"];
+
+/// Limits of the viewers; of one cell and few starts, as the gallery of all designs must be made in minutes.
+const PULLS: &str =
+    "--directions 0:180:15 --l2=-0.1,0,0.1 --cell 1x1 --effort low --allow-incomplete --overwrite --quiet";
+const CHAIN: &str = "--cell 1x1 --effort low --allow-incomplete --overwrite --quiet";
+
+/// Makes the site below the build folder, and checks its links and pages. `program` has the viewer; it is built if none is given.
+pub fn write(root: &Path, program: Option<&str>) -> Result<(), String> {
+    if let Some(finding) = check(root).first() {
+        return Err(finding.to_string());
+    }
+    let folder = target(root).join("site");
+    let book = folder.join("src");
+    let program = match program {
+        Some(program) => PathBuf::from(program),
+        None => view::build(root)?,
+    };
+    remove(&book)?;
+    Source::read(root)?.write(&book)?;
+    notebooks(root, &book)?;
+    viewers(&program, &folder.join("viewers"))?;
+    copy(&folder.join("viewers"), &book.join("viewer"))?;
+    atlas(root, &program, &book)?;
+    for name in ["book.toml", "maille.css"] {
+        copy_file(&root.join(FOLDER).join(name), &folder.join(name))?;
+    }
+    remove(&folder.join("book"))?;
+    done(Command::new(mdbook(root)?).arg("build").arg(&folder), "make the pages")?;
+    reference(root, &folder.join("book"))?;
+    view::check_site(root, &folder.join("book"))?;
+    println!("   {}", folder.join("book/index.html").display());
+    Ok(())
+}
+
+/// Documents that the table of contents lacks, or that it names and are not there.
+pub fn check(root: &Path) -> Vec<Finding> {
+    source::check(root)
+}
+
+/// One file for each built-in design with its sheet, map and locked states; one that is there already is made anew
+/// only for a newer program.
+fn viewers(program: &Path, folder: &Path) -> Result<(), String> {
+    fs::create_dir_all(folder).map_err(|e| format!("{} cannot be made: {e}", folder.display()))?;
+    let age = |path: &Path| fs::metadata(path).and_then(|data| data.modified()).ok();
+    for design in designs(program)?["designs"].as_array().into_iter().flatten() {
+        let name = design["name"].as_str().ok_or("a design has no name")?;
+        let file = folder.join(format!("{name}.html"));
+        if age(&file).is_some_and(|made| age(program).is_some_and(|built| built < made)) {
+            continue;
+        }
+        // A chain is pulled along itself alone.
+        let pulls = if design["single"] == true { CHAIN } else { PULLS };
+        let record = folder.with_file_name("records").join(name);
+        let mut solve = Command::new(program);
+        solve.args(["characterize", name]).args(pulls.split_whitespace()).arg("--out").arg(&record);
+        done(&mut solve, &format!("compute the limits of {name}"))?;
+        let mut view = Command::new(program);
+        view.arg("view").arg(&record).args(["--overwrite", "--bundle"]).arg(&file);
+        done(&mut view, &format!("make the viewer of {name}"))?;
+    }
+    Ok(())
+}
+
+/// What `maille designs --json` prints.
+fn designs(program: &Path) -> Result<Value, String> {
+    let listed = Command::new(program).args(["designs", "--json"]).output();
+    let listed = listed.map_err(|e| format!("{} did not start: {e}", program.display()))?;
+    serde_json::from_slice(&listed.stdout).map_err(|e| format!("`maille designs --json` printed no JSON: {e}"))
+}
+
+/// The atlas's table, and the script of its page with the table in it.
+fn atlas(root: &Path, program: &Path, book: &Path) -> Result<(), String> {
+    let table = root.join(FOLDER).join("atlas.parquet");
+    copy_file(&table, &book.join("atlas.parquet"))?;
+    let file = target(root).join("site/designs.json");
+    fs::write(&file, designs(program)?.to_string())
+        .map_err(|e| format!("{} cannot be written: {e}", file.display()))?;
+    let python = Environment::ready(root);
+    let mut command = python.python();
+    command.arg(root.join(FOLDER).join("atlas.py")).arg(table).arg(file).arg(book.join("atlas-data.js"));
+    python.run(&mut command, "read the atlas")?;
+    view::atlas(root, book)
+}
+
+/// Runs the notebooks and makes pages of them.
+fn notebooks(root: &Path, book: &Path) -> Result<(), String> {
+    let python = Environment::new(root, false)?;
+    python.add(LOCK)?;
+    // Copies: what they write stays out of the repository.
+    let copies = target(root).join("site/notebooks");
+    remove(&copies)?;
+    for file in crate::repository::files(root, "examples/notebooks", "ipynb").map_err(|e| e.to_string())? {
+        let file = root.join(file);
+        copy_file(&file, &copies.join(file.file_name().unwrap_or_default()))?;
+    }
+    let notebooks = fs::read_dir(&copies).map_err(|e| format!("{} cannot be read: {e}", copies.display()))?;
+    let convert = ["-m", "nbconvert", "--to", "markdown", "--execute", "--log-level", "ERROR", "--output-dir"];
+    let mut command = python.python();
+    command.args(convert).arg(book.join("examples/notebooks")).args(notebooks.flatten().map(|file| file.path()));
+    python.run(&mut command, "run the notebooks")
+}
+
+/// Reference pages of the Python package and of the crates.
+fn reference(root: &Path, site: &Path) -> Result<(), String> {
+    let python = Environment::ready(root);
+    let pdoc = ["-m", "pdoc", "maille", "!maille._native", "--docformat", "numpy", "-o"];
+    python.run(python.python().args(pdoc).arg(site.join("python")), "make the reference of the Python package")?;
+    let mut command = Command::new(cargo());
+    command.args(["doc", "--no-deps", "--locked"]).args(CRATES.iter().flat_map(|name| ["--package", name]));
+    // A folder of its own: the other one may have pages of what is gone.
+    let built = target(root).join("site/rust");
+    remove(&built)?;
+    command.current_dir(root).args(["--target-dir"]).arg(&built);
+    done(&mut command, "make the reference of the crates")?;
+    copy(&built.join("doc"), &site.join("rust"))
+}
+
+/// The program that makes the pages; installed below the build folder where it is not there.
+fn mdbook(root: &Path) -> Result<PathBuf, String> {
+    let tools = target(root).join("tools");
+    let program = tools.join("bin").join(format!("mdbook{}", std::env::consts::EXE_SUFFIX));
+    if !program.is_file() {
+        let install = ["install", MDBOOK, "--locked", "--quiet", "--root"];
+        done(Command::new(cargo()).args(install).arg(&tools), "install mdBook")?;
+    }
+    Ok(program)
+}
+
+fn remove(folder: &Path) -> Result<(), String> {
+    match fs::remove_dir_all(folder) {
+        Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
+            Err(format!("{} cannot be removed: {e}", folder.display()))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn copy_file(from: &Path, to: &Path) -> Result<(), String> {
+    if let Some(folder) = to.parent() {
+        fs::create_dir_all(folder).map_err(|e| format!("{} cannot be made: {e}", folder.display()))?;
+    }
+    fs::copy(from, to).map(|_| ()).map_err(|e| format!("{} cannot be copied: {e}", from.display()))
+}
+
+/// Copies a folder with all that is in it.
+fn copy(from: &Path, to: &Path) -> Result<(), String> {
+    let entries = fs::read_dir(from).map_err(|e| format!("{} cannot be read: {e}", from.display()))?;
+    for entry in entries {
+        let entry = entry.map_err(|e| e.to_string())?;
+        let to = to.join(entry.file_name());
+        match entry.path().is_dir() {
+            true => copy(&entry.path(), &to)?,
+            false => copy_file(&entry.path(), &to)?,
+        }
+    }
+    Ok(())
+}

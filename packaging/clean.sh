@@ -1,0 +1,43 @@
+#!/bin/sh
+# Installs a release into a Debian that has nothing but Python, and runs it there.
+#
+#   sh packaging/clean.sh target/dist [FOLDER]
+#
+# FOLDER becomes the root of that Debian; it is made by debootstrap, or used again if it is there. Needs root.
+set -eu
+dist=$(cd "$1" && pwd)
+clean=${2:-${TMPDIR:-/tmp}/maille-clean}
+if [ ! -x "$clean/usr/bin/python3" ]; then
+    command -v debootstrap >/dev/null || { apt-get update && apt-get install -y --no-install-recommends debootstrap; }
+    debootstrap --variant=minbase --include=python3,python3-venv,ca-certificates bookworm "$clean"
+fi
+rm -rf "$clean/dist" "$clean/root/try"
+mkdir -p "$clean/root/try"
+cp -r "$dist" "$clean/dist"
+# pip gets NumPy and Matplotlib as on this machine.
+cp /etc/resolv.conf "$clean/etc/resolv.conf" 2>/dev/null || true
+cp /etc/ssl/certs/ca-certificates.crt "$clean/etc/ssl/certs/ca-certificates.crt"
+[ ! -f /etc/pip.conf ] || cp /etc/pip.conf "$clean/etc/pip.conf"
+
+in_clean() {
+    chroot "$clean" env -i HOME=/root PATH=/usr/bin:/bin LANG=C.UTF-8 MPLBACKEND=Agg sh -euc "cd /root/try; $1"
+}
+timed() {
+    begun=$(date +%s%N)
+    in_clean "$2"
+    echo "-- $1: $((($(date +%s%N) - begun) / 1000000)) ms"
+}
+
+in_clean '! command -v cargo && ! command -v gcc'
+timed "install the program" "sh /dist/install.sh"
+timed "the README's first limit" "/root/.local/bin/maille characterize 1.1 && test -s maille-out/1.1/polar.png"
+timed "verify it" "/root/.local/bin/maille verify maille-out/1.1"
+timed "install the wheel" 'python3 -m venv --clear /root/python && /root/python/bin/pip install --quiet "$(echo /dist/*.whl)[plot]"'
+cat > "$clean/root/try/readme.py" <<'P'
+import maille
+
+record = maille.characterize("1.1")
+record.to_numpy()["l1"]
+record.plot().figure.savefig("1.1.png")
+P
+timed "the README's Python lines" "/root/python/bin/python readme.py && test -s 1.1.png"
