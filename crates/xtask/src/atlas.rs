@@ -9,7 +9,7 @@ use std::{
 };
 
 /// Where the table is written, and where a quick one.
-const TABLE: &str = "site/atlas.parquet";
+pub const TABLE: &str = "maille-out/atlas.parquet";
 const QUICK_TABLE: &str = "maille-out/atlas-quick.parquet";
 /// What each design is asked.
 const QUESTION: &str = "directions = \"0:180:15\"\nl2 = [0]\nkeep_links = true\ncell = \"1x1\"\neffort = \"low\"\n";

@@ -5,6 +5,7 @@ mod link;
 mod source;
 
 use crate::{
+    atlas::TABLE,
     program::{cargo, done, target},
     repository::Finding,
     view,
@@ -99,7 +100,10 @@ fn designs(program: &Path) -> Result<Value, String> {
 
 /// The atlas's table, and the script of its page with the table in it.
 fn atlas(root: &Path, program: &Path, book: &Path) -> Result<(), String> {
-    let table = root.join(FOLDER).join("atlas.parquet");
+    let table = root.join(TABLE);
+    if !table.is_file() {
+        return Err(format!("there is no {TABLE}: `cargo xtask atlas` makes it, in half an hour"));
+    }
     copy_file(&table, &book.join("atlas.parquet"))?;
     let file = target(root).join("site/designs.json");
     fs::write(&file, designs(program)?.to_string())

@@ -37,7 +37,7 @@ const measures: Record<string, (row: Row) => number | null> = {
   "spacing / that of the file": (row) => row[2],
 };
 
-const root = document.getElementById("atlas")!;
+const root = document.getElementById("atlas-designs")!;
 root.replaceChildren();
 
 function choice(label: string, values: string[], value: string): HTMLSelectElement {
@@ -73,15 +73,14 @@ function show(): void {
   const ink = getComputedStyle(document.documentElement).getPropertyValue("--fg").trim();
   let shown = 0;
   const series = designs.map((design, index) => {
-    const own = rows.filter(
-      (row) =>
-        row[0] === index &&
-        (weave.value === "all" || weave.value === design.name) &&
-        (proof.value === "all" || !/[^g]/.test(row[4])),
-    );
-    const data = own.flatMap((row) => {
+    const wanted = (row: Row) =>
+      row[0] === index &&
+      (weave.value === "all" || weave.value === design.name) &&
+      (proof.value === "all" || !/[^g]/.test(row[4]));
+    const data = rows.flatMap((row, place) => {
+      if (!wanted(row)) return [];
       const [h, v] = [x(row), y(row)];
-      return h === null || v === null ? [] : [[h, v, rows.indexOf(row)]];
+      return h === null || v === null ? [] : [[h, v, place]];
     });
     shown += data.length;
     return { type: "scatter" as const, name: design.name, data, symbolSize: 5, itemStyle: { opacity: 0.7 } };
@@ -100,6 +99,7 @@ function show(): void {
   chart.setOption(
     {
       animation: false,
+      color: designs.map((_, index) => `hsl(${Math.round(index * 137.5) % 360}, 60%, 45%)`),
       legend: { type: "plain", bottom: 0, itemWidth: 10, itemHeight: 8, textStyle: { ...text, fontSize: 11 } },
       grid: { left: 56, right: 16, top: 12, bottom: 48 + 22 * Math.ceil(designs.length / (field.clientWidth / 130)) },
       xAxis: axis(across.value),
@@ -159,9 +159,17 @@ function choose(row: Row): void {
   });
 }
 
+/** What the address of a design ends with, as `#1.1/0.1/1`. */
+const address = (row: Row) => `#${designOf(row).name}/${row[1]}/${row[2]}`;
+function follow(): void {
+  const row = rows.find((row) => address(row) === decodeURIComponent(location.hash));
+  if (row) choose(row);
+}
 chart.on("click", (point) => {
   const row = rows[(point.data as [number, number, number])[2]];
-  if (row) choose(row);
+  if (row) location.hash = address(row);
 });
+addEventListener("hashchange", follow);
 addEventListener("resize", () => chart.resize());
 show();
+follow();

@@ -80,9 +80,24 @@ test("every page has sound links, says nothing in the console, fits a telephone,
 test("the search finds a page", async ({ page }) => {
   await page.setViewportSize(desk);
   await open(page, "index.html");
-  await page.keyboard.press("s");
-  await page.locator("#mdbook-searchbar, #searchbar").fill("aspect ratio");
-  await expect(page.locator("#mdbook-searchresults li, #searchresults li").first()).toBeVisible();
+  await page.locator("#mdbook-search-toggle").click();
+  await page.locator("#mdbook-searchbar").pressSequentially("aspect ratio");
+  await expect(page.locator("#mdbook-searchresults li").first()).toBeVisible();
+});
+
+test("the atlas shows its designs, and one of them by its address", async ({ page }) => {
+  const said = complaints(page);
+  await page.setViewportSize(desk);
+  await open(page, "site/atlas.html");
+  const shown = page.getByText(/^\d+ of \d+ designs\.$/);
+  await expect(shown).toBeVisible();
+  const all = await shown.textContent();
+  await page.getByLabel("Weave:").selectOption("1.1");
+  await expect(shown).not.toHaveText(all!);
+  await page.goto(`${page.url()}#1.1/0.1/1`);
+  await expect(page.getByRole("heading", { name: "1.1, minor radius 0.1, spacing 1" })).toBeVisible();
+  await expect(page.getByText("l1 from 0.44 along 0° to 0.77403; 13 of 13 limits proved")).toBeVisible();
+  expect(said).toEqual([]);
 });
 
 test("every viewer opens from the disk and shows a sheet", async ({ page }) => {
