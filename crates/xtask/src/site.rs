@@ -1,6 +1,7 @@
 //! `cargo xtask site`: the documents, the viewers of all built-in designs, the notebooks and the reference pages as one
 //! folder of static pages, which opens from the disk.
 
+mod folder;
 mod link;
 mod source;
 
@@ -11,16 +12,15 @@ use crate::{
     view,
     wheel::Environment,
 };
+use folder::{copy, copy_file, remove};
 use serde_json::Value;
-use source::Source;
+use source::{FOLDER, Source};
 use std::{
     fs,
     path::{Path, PathBuf},
     process::Command,
 };
 
-/// The book's settings, its table of contents, and the pages that are no documents of the repository.
-const FOLDER: &str = "site";
 /// The program that makes pages of Markdown, with the version that is installed below the build folder.
 const MDBOOK: &str = "mdbook@0.5.4";
 /// What the reference pages and notebooks are made with, beside what the Python package is tested with.
@@ -157,34 +157,4 @@ fn mdbook(root: &Path) -> Result<PathBuf, String> {
         done(Command::new(cargo()).args(install).arg(&tools), "install mdBook")?;
     }
     Ok(program)
-}
-
-fn remove(folder: &Path) -> Result<(), String> {
-    match fs::remove_dir_all(folder) {
-        Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
-            Err(format!("{} cannot be removed: {e}", folder.display()))
-        }
-        _ => Ok(()),
-    }
-}
-
-fn copy_file(from: &Path, to: &Path) -> Result<(), String> {
-    if let Some(folder) = to.parent() {
-        fs::create_dir_all(folder).map_err(|e| format!("{} cannot be made: {e}", folder.display()))?;
-    }
-    fs::copy(from, to).map(|_| ()).map_err(|e| format!("{} cannot be copied: {e}", from.display()))
-}
-
-/// Copies a folder with all that is in it.
-fn copy(from: &Path, to: &Path) -> Result<(), String> {
-    let entries = fs::read_dir(from).map_err(|e| format!("{} cannot be read: {e}", from.display()))?;
-    for entry in entries {
-        let entry = entry.map_err(|e| e.to_string())?;
-        let to = to.join(entry.file_name());
-        match entry.path().is_dir() {
-            true => copy(&entry.path(), &to)?,
-            false => copy_file(&entry.path(), &to)?,
-        }
-    }
-    Ok(())
 }

@@ -1,7 +1,7 @@
 //! The pages of the site, as Markdown: the documents of the repository with links between pages, and a page of each
 //! other file that they link to.
 
-use super::{FOLDER, copy_file, link};
+use super::{folder::copy_file, link};
 use crate::repository::{Finding, files, read};
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -9,6 +9,8 @@ use std::{
     path::Path,
 };
 
+/// The book's settings, its table of contents, and the pages that are no documents of the repository.
+pub const FOLDER: &str = "site";
 /// The table of contents.
 const CONTENTS: &str = "site/SUMMARY.md";
 /// Folder whose documents all have a place in it.
