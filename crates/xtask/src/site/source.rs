@@ -20,7 +20,7 @@ const NOTEBOOKS: &str = "examples/notebooks";
 /// Its sections are named after designs.
 const GALLERY: &str = "docs/gallery/README.md";
 /// What is shown by a browser as it is.
-const SHOWN: &[&str] = &["png", "jpg", "webp", "svg", "html"];
+const SHOWN: &[&str] = &["png", "jpg", "gif", "webp", "svg", "html"];
 
 /// Pages by their path in the repository, pictures, and the table of contents.
 pub struct Source<'a> {
