@@ -132,7 +132,7 @@ fn python(root: &Path, tools: &Environment, out: &Path) -> Result<Vec<String>, S
     Ok(names)
 }
 
-/// Installs what [`write`] has built into a Debian without Rust, and runs it there; needs root and debootstrap.
+/// Installs what `write` has built into a Debian without Rust, and runs it there; needs root and debootstrap.
 pub fn try_clean(root: &Path) -> Result<(), String> {
     let script = root.join("packaging/clean.sh");
     done(Command::new("sh").arg(script).arg(target(root).join("dist")), "try the packages in a clean Debian")
