@@ -402,7 +402,7 @@ mod tests {
     /// Rings of 1.1 that are far apart are not linked.
     #[test]
     fn values_with_other_links_can_be_left_out() {
-        let text = "keep_links = true\n[[designs]]\ndesign = \"1.1\"\nspacing = [0.95, 1.7]\n";
+        let text = "keep_links = true\n[[designs]]\ndesign = \"1.1\"\nspacing = [0.95, 1.8]\n";
         let study = Study::read("s", text).unwrap();
         let design = crate::read_design("1.1", crate::builtin("1.1").unwrap()).unwrap();
         let variants = study.designs[0].variants();
