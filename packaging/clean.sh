@@ -33,11 +33,6 @@ timed "install the program" "sh /dist/install.sh"
 timed "the README's first limit" "/root/.local/bin/maille characterize 1.1 && test -s maille-out/1.1/polar.png"
 timed "verify it" "/root/.local/bin/maille verify maille-out/1.1"
 timed "install the wheel" 'python3 -m venv --clear /root/python && /root/python/bin/pip install --quiet "$(echo /dist/*.whl)[plot]"'
-cat > "$clean/root/try/readme.py" <<'P'
-import maille
-
-record = maille.characterize("1.1")
-record.to_numpy()["l1"]
-record.plot().figure.savefig("1.1.png")
-P
+awk '/^```python/ { on = 1; next } /^```/ { on = 0 } on' "$(dirname "$0")/../README.md" > "$clean/root/try/readme.py"
+test -s "$clean/root/try/readme.py"
 timed "the README's Python lines" "/root/python/bin/python readme.py && test -s 1.1.png"

@@ -1,6 +1,6 @@
 """The atlas's table as a script that its page reads: python site/atlas.py TABLE DESIGNS.json OUT.js
 
-TABLE is what `cargo xtask atlas` writes, DESIGNS.json what `maille designs --json` prints. A page that is opened from the
+TABLE is what `cargo xtask atlas` writes, DESIGNS.json the list that `maille designs --json` prints. A page that is opened from the
 disk cannot read other files, but it can run a script.
 """
 
@@ -13,7 +13,7 @@ table, designs, out = sys.argv[1:]
 rows = parquet.read_table(table).to_pylist()
 directions = sorted({row["direction_deg"] for row in rows})
 place = {direction: at for at, direction in enumerate(directions)}
-about = {design["name"]: design for design in json.load(open(designs, encoding="utf-8"))["designs"]}
+about = {design["name"]: design for design in json.load(open(designs, encoding="utf-8"))}
 names = sorted({row["design"] for row in rows}, key=list(about).index)
 index = {name: at for at, name in enumerate(names)}
 

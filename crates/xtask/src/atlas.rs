@@ -1,6 +1,9 @@
 //! `cargo xtask atlas`: every built-in weave with many wires and spacings, as one table.
 
-use crate::program::{self, done};
+use crate::{
+    program::{self, done},
+    wheel::Environment,
+};
 use serde_json::Value;
 use std::{
     fs,
@@ -9,7 +12,7 @@ use std::{
 };
 
 /// Where the table is written, and where a quick one.
-pub const TABLE: &str = "maille-out/atlas.parquet";
+pub const TABLE: &str = "site/atlas.parquet";
 const QUICK_TABLE: &str = "maille-out/atlas-quick.parquet";
 /// What each design is asked.
 const QUESTION: &str = "directions = \"0:180:15\"\nl2 = [0]\nkeep_links = true\ncell = \"1x1\"\neffort = \"low\"\n";
@@ -35,9 +38,7 @@ pub fn write(root: &Path, quick: bool, program: Option<&str>) -> Result<(), Stri
         command.args(arguments).current_dir(root);
         command
     };
-    let listed = run(&["designs", "--json"]).output().map_err(|e| format!("the program did not start: {e}"))?;
-    let listed: Value =
-        serde_json::from_slice(&listed.stdout).map_err(|e| format!("`maille designs --json` printed no JSON: {e}"))?;
+    let listed = program::designs(&program)?;
     let (name, table, wires, spacings) = match quick {
         true => ("atlas-quick", QUICK_TABLE, QUICK_WIRES, QUICK_SPACINGS),
         false => ("atlas", TABLE, WIRES, SPACINGS),
@@ -52,7 +53,12 @@ pub fn write(root: &Path, quick: bool, program: Option<&str>) -> Result<(), Stri
         return Err(format!("`maille sweep {file}` ended with {status}"));
     }
     let folder = format!("maille-out/{name}");
-    done(&mut run(&["table", &folder, "--columns", COLUMNS, "-o", table, "--overwrite"]), "write the table")?;
+    let whole = format!("{folder}/whole.parquet");
+    done(&mut run(&["table", &folder, "--columns", COLUMNS, "-o", &whole, "--overwrite"]), "write the table")?;
+    let python = Environment::new(root, false)?;
+    let mut command = python.python();
+    command.arg("site/lighter.py").args([&*whole, table]).current_dir(root);
+    python.run(&mut command, "write a lighter table")?;
     println!("   {table}");
     Ok(())
 }
@@ -66,10 +72,10 @@ fn series((first, last, count): (f64, f64, usize)) -> Vec<f64> {
 
 /// A study of all sheets of rings that are built in. Chains have one direction only; elements of curves take seconds a
 /// limit.
-fn study(designs: &Value, wires: &[f64], spacings: &[f64]) -> Option<String> {
+fn study(designs: &[Value], wires: &[f64], spacings: &[f64]) -> Option<String> {
     let mut out = format!("# Made by `cargo xtask atlas`.\n{QUESTION}");
-    for design in designs["designs"].as_array()? {
-        if design["single"] == true || design["curves"] != 0 {
+    for design in designs {
+        if design["single"].as_bool()? || design["curves"].as_u64()? > 0 {
             continue;
         }
         let (name, radius) = (design["name"].as_str()?, design["minor_radius"].as_f64()?);
@@ -85,15 +91,15 @@ mod tests {
 
     #[test]
     fn a_study_has_all_sheets_of_rings_with_the_own_wire_and_spacing() {
-        let designs = serde_json::json!({ "designs": [
-            { "name": "a", "single": false, "curves": 0, "minor_radius": 1.15 },
-            { "name": "b", "single": true, "curves": 0, "minor_radius": 1.0 },
-            { "name": "c", "single": false, "curves": 2, "minor_radius": 1.0 },
-        ] });
+        let designs = [
+            serde_json::json!({ "name": "a", "single": false, "curves": 0, "minor_radius": 1.15 }),
+            serde_json::json!({ "name": "b", "single": true, "curves": 0, "minor_radius": 1.0 }),
+            serde_json::json!({ "name": "c", "single": false, "curves": 2, "minor_radius": 1.0 }),
+        ];
         let text = study(&designs, &[0.5, 1.0], &series(QUICK_SPACINGS)).unwrap();
         let expected = "\n[[designs]]\ndesign = \"a\"\nminor_radius = [0.575, 1.15]\nspacing = [0.95, 1.0]\n";
         assert_eq!(text.split_once(QUESTION).unwrap().1, expected);
         assert!(series(WIRES).contains(&1.0) && series(SPACINGS).contains(&1.0));
-        assert!(study(&serde_json::json!({}), &[], &[]).is_none());
+        assert!(study(&[serde_json::json!({})], &[], &[]).is_none());
     }
 }

@@ -33,9 +33,8 @@ pub fn write(root: &Path, quick: bool, program: Option<&str>) -> Result<(), Stri
     let scratch = root.join("maille-out/gallery-records");
     let house = House { program, folder: root.join(folder), scratch, pulls };
     fs::create_dir_all(&house.folder).map_err(|e| format!("{folder} cannot be made: {e}"))?;
-    let designs = house.json("designs --json")?;
     let mut pages = Vec::new();
-    for design in designs["designs"].as_array().ok_or("`maille designs --json` lists no designs")? {
+    for design in program::designs(&house.program)? {
         let begun = Instant::now();
         let name = design["name"].as_str().ok_or("a design has no name")?;
         let limits = house.show(name, design["single"] == true)?;

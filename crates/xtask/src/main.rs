@@ -7,6 +7,7 @@ mod bench;
 mod certify;
 mod circles;
 mod features;
+mod folder;
 mod gallery;
 mod layers;
 mod package;
@@ -40,8 +41,8 @@ cargo xtask COMMAND
            --program PATH  this program; otherwise it is built
            --limit-s N     time for one map and for its verification, each [default: 1800]
            --threads N     threads of the program [default: all cores]
-  atlas    limits of every built-in weave with 31 wires and 19 spacings, as maille-out/atlas.parquet; goes on where it was
-           stopped
+  atlas    limits of every built-in weave with 31 wires and 19 spacings, as site/atlas.parquet; half an hour; goes on where
+           it was stopped
            --quick         few of them, into maille-out/atlas-quick.parquet
            --program PATH  this program; otherwise it is built
   site     write target/site/book: documents, viewers of all designs, notebooks and reference as static pages, and check

@@ -2,15 +2,12 @@
 //! package, an archive of the program, the installer, and their checksums.
 
 use crate::{
+    folder::{copy_file, remove},
     program::{cargo, done, target},
     view,
     wheel::Environment,
 };
-use std::{
-    env, fs,
-    path::{Path, PathBuf},
-    process::Command,
-};
+use std::{env, fs, path::Path, process::Command};
 
 /// What is built with, beside Rust: a C compiler that links for old systems, and maturin.
 const LOCK: &str = "packaging/requirements.lock";
@@ -32,23 +29,15 @@ const CRATES: &[&str] = &[
 /// Builds all below the build folder.
 pub fn write(root: &Path) -> Result<(), String> {
     let out = target(root).join("dist");
-    match fs::remove_dir_all(&out) {
-        Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
-            return Err(format!("{} cannot be removed: {e}", out.display()));
-        }
-        _ => fs::create_dir_all(&out).map_err(|e| format!("{} cannot be made: {e}", out.display()))?,
-    }
+    remove(&out)?;
     view::page(root)?;
     let tools = Environment::of_tools(root, "packaging", LOCK)?;
-    let mut names = vec![archive(root, &tools, &out)?];
-    names.extend(python(root, &tools, &out)?);
-    let installer = root.join("packaging/install.sh");
-    fs::copy(&installer, out.join("install.sh"))
-        .map_err(|e| format!("{} cannot be copied: {e}", installer.display()))?;
-    names.push("install.sh".into());
-    let sums = Command::new("sha256sum").args(&names).current_dir(&out).output();
-    let sums = sums.ok().filter(|sums| sums.status.success()).ok_or("`sha256sum` did not run")?.stdout;
-    fs::write(out.join("SHA256SUMS"), sums).map_err(|e| format!("SHA256SUMS cannot be written: {e}"))?;
+    copy_file(&root.join("packaging/install.sh"), &out.join("install.sh"))?;
+    archive(root, &tools, &out)?;
+    python(root, &tools, &out)?;
+    let mut command = tools.python();
+    command.arg(root.join("packaging/checksums.py")).arg(&out);
+    done(&mut command, "write the checksums")?;
     println!("   {}", out.display());
     Ok(())
 }
@@ -63,7 +52,7 @@ pub fn publish(root: &Path) -> Result<(), String> {
 }
 
 /// The program with its licences, manual pages and completions.
-fn archive(root: &Path, tools: &Environment, out: &Path) -> Result<String, String> {
+fn archive(root: &Path, tools: &Environment, out: &Path) -> Result<(), String> {
     let os = env::consts::OS;
     let mut command = tools.tool(cargo());
     let build = ["--release", "--locked", "--package", "maille-cli", "--features", "view"];
@@ -85,15 +74,9 @@ fn archive(root: &Path, tools: &Environment, out: &Path) -> Result<String, Strin
     for folder in [&manuals, &completions] {
         fs::create_dir_all(folder).map_err(|e| format!("{} cannot be made: {e}", folder.display()))?;
     }
-    let copies: [(PathBuf, &str); 4] = [
-        (program.clone(), "maille"),
-        (root.join("README.md"), "README.md"),
-        (root.join("LICENSE-MIT"), "LICENSE-MIT"),
-        (root.join("LICENSE-APACHE"), "LICENSE-APACHE"),
-    ];
-    for (from, to) in copies {
-        let to = format!("{to}{}", if to == "maille" { env::consts::EXE_SUFFIX } else { "" });
-        fs::copy(&from, folder.join(to)).map_err(|e| format!("{} cannot be copied: {e}", from.display()))?;
+    copy_file(&program, &folder.join("maille").with_extension(env::consts::EXE_EXTENSION))?;
+    for name in ["README.md", "LICENSE-MIT", "LICENSE-APACHE"] {
+        copy_file(&root.join(name), &folder.join(name))?;
     }
     done(Command::new(&program).arg("man").arg(&manuals).arg("--overwrite"), "write the manual pages")?;
     for shell in ["bash", "zsh", "fish"] {
@@ -102,15 +85,13 @@ fn archive(root: &Path, tools: &Environment, out: &Path) -> Result<String, Strin
         let file = completions.join(format!("maille.{shell}"));
         fs::write(&file, text.stdout).map_err(|e| format!("{} cannot be written: {e}", file.display()))?;
     }
-    let file = format!("{name}.tar.gz");
     let mut command = Command::new("tar");
-    command.arg("-czf").arg(out.join(&file)).arg("-C").arg(target(root).join("package")).arg(&name);
-    done(&mut command, "write the archive")?;
-    Ok(file)
+    command.arg("-czf").arg(out.join(format!("{name}.tar.gz")));
+    done(command.arg("-C").arg(target(root).join("package")).arg(&name), "write the archive")
 }
 
 /// The wheel for all Pythons from 3.10 on, and the source that pip can build where there is no wheel.
-fn python(root: &Path, tools: &Environment, out: &Path) -> Result<Vec<String>, String> {
+fn python(root: &Path, tools: &Environment, out: &Path) -> Result<(), String> {
     let manifest = root.join("crates/maille-py/Cargo.toml");
     let maturin = |command: &str| {
         let mut tool = tools.tool(tools.program("maturin"));
@@ -123,13 +104,7 @@ fn python(root: &Path, tools: &Environment, out: &Path) -> Result<Vec<String>, S
         wheel.args(["--zig", "--compatibility", &format!("manylinux_{}", GLIBC.replace('.', "_"))]);
     }
     done(&mut wheel, "build the wheel")?;
-    done(&mut maturin("sdist"), "pack the source of the Python package")?;
-    let files = fs::read_dir(out).map_err(|e| format!("{} cannot be read: {e}", out.display()))?;
-    let names = files.filter_map(|file| Some(file.ok()?.file_name().to_string_lossy().into_owned()));
-    let mut names: Vec<String> =
-        names.filter(|name| !name.contains(env::consts::OS) || name.ends_with(".whl")).collect();
-    names.sort_unstable();
-    Ok(names)
+    done(&mut maturin("sdist"), "pack the source of the Python package")
 }
 
 /// Installs what `write` has built into a Debian without Rust, and runs it there; needs root and debootstrap.

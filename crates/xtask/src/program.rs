@@ -32,6 +32,15 @@ fn built(root: &Path, what: &[&str]) -> Result<PathBuf, String> {
         .ok_or_else(|| format!("`cargo build {}` has built no program", what.join(" ")))
 }
 
+/// The built-in designs, as a program lists them with `maille designs --json`.
+pub fn designs(program: &Path) -> Result<Vec<Value>, String> {
+    let listed = Command::new(program).args(["designs", "--json"]).output();
+    let listed = listed.map_err(|e| format!("{} did not start: {e}", program.display()))?;
+    let listed: Value =
+        serde_json::from_slice(&listed.stdout).map_err(|e| format!("`maille designs --json` printed no JSON: {e}"))?;
+    listed["designs"].as_array().cloned().ok_or_else(|| "`maille designs --json` lists no designs".into())
+}
+
 /// The cargo that started this, or the one in the path.
 pub fn cargo() -> std::ffi::OsString {
     std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())

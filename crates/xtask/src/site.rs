@@ -1,19 +1,17 @@
 //! `cargo xtask site`: the documents, the viewers of all built-in designs, the notebooks and the reference pages as one
 //! folder of static pages, which opens from the disk.
 
-mod folder;
 mod link;
 mod source;
 
 use crate::{
     atlas::TABLE,
-    program::{cargo, done, target},
+    folder::{copy, copy_file, remove},
+    program::{self, cargo, done, target},
     repository::Finding,
     view,
     wheel::Environment,
 };
-use folder::{copy, copy_file, remove};
-use serde_json::Value;
 use source::{FOLDER, Source};
 use std::{
     fs,
@@ -45,18 +43,20 @@ pub fn write(root: &Path, program: Option<&str>) -> Result<(), String> {
         Some(program) => PathBuf::from(program),
         None => view::build(root)?,
     };
+    let python = Environment::new(root, false)?;
+    python.add(LOCK)?;
     remove(&book)?;
     Source::read(root)?.write(&book)?;
-    notebooks(root, &book)?;
+    notebooks(root, &python, &book)?;
     viewers(&program, &folder.join("viewers"))?;
     copy(&folder.join("viewers"), &book.join("viewer"))?;
-    atlas(root, &program, &book)?;
+    atlas(root, &program, &python, &book)?;
     for name in ["book.toml", "maille.css"] {
         copy_file(&root.join(FOLDER).join(name), &folder.join(name))?;
     }
     remove(&folder.join("book"))?;
     done(Command::new(mdbook(root)?).arg("build").arg(&folder), "make the pages")?;
-    reference(root, &folder.join("book"))?;
+    reference(root, &python, &folder.join("book"))?;
     view::check_site(root, &folder.join("book"))?;
     println!("   {}", folder.join("book/index.html").display());
     Ok(())
@@ -72,7 +72,7 @@ pub fn check(root: &Path) -> Vec<Finding> {
 fn viewers(program: &Path, folder: &Path) -> Result<(), String> {
     fs::create_dir_all(folder).map_err(|e| format!("{} cannot be made: {e}", folder.display()))?;
     let age = |path: &Path| fs::metadata(path).and_then(|data| data.modified()).ok();
-    for design in designs(program)?["designs"].as_array().into_iter().flatten() {
+    for design in program::designs(program)? {
         let name = design["name"].as_str().ok_or("a design has no name")?;
         let file = folder.join(format!("{name}.html"));
         if age(&file).is_some_and(|made| age(program).is_some_and(|built| built < made)) {
@@ -91,24 +91,13 @@ fn viewers(program: &Path, folder: &Path) -> Result<(), String> {
     Ok(())
 }
 
-/// What `maille designs --json` prints.
-fn designs(program: &Path) -> Result<Value, String> {
-    let listed = Command::new(program).args(["designs", "--json"]).output();
-    let listed = listed.map_err(|e| format!("{} did not start: {e}", program.display()))?;
-    serde_json::from_slice(&listed.stdout).map_err(|e| format!("`maille designs --json` printed no JSON: {e}"))
-}
-
 /// The atlas's table, and the script of its page with the table in it.
-fn atlas(root: &Path, program: &Path, book: &Path) -> Result<(), String> {
+fn atlas(root: &Path, program: &Path, python: &Environment, book: &Path) -> Result<(), String> {
     let table = root.join(TABLE);
-    if !table.is_file() {
-        return Err(format!("there is no {TABLE}: `cargo xtask atlas` makes it, in half an hour"));
-    }
     copy_file(&table, &book.join("atlas.parquet"))?;
     let file = target(root).join("site/designs.json");
-    fs::write(&file, designs(program)?.to_string())
-        .map_err(|e| format!("{} cannot be written: {e}", file.display()))?;
-    let python = Environment::ready(root);
+    let designs = serde_json::Value::from(program::designs(program)?).to_string();
+    fs::write(&file, designs).map_err(|e| format!("{} cannot be written: {e}", file.display()))?;
     let mut command = python.python();
     command.arg(root.join(FOLDER).join("atlas.py")).arg(table).arg(file).arg(book.join("atlas-data.js"));
     python.run(&mut command, "read the atlas")?;
@@ -116,9 +105,7 @@ fn atlas(root: &Path, program: &Path, book: &Path) -> Result<(), String> {
 }
 
 /// Runs the notebooks and makes pages of them.
-fn notebooks(root: &Path, book: &Path) -> Result<(), String> {
-    let python = Environment::new(root, false)?;
-    python.add(LOCK)?;
+fn notebooks(root: &Path, python: &Environment, book: &Path) -> Result<(), String> {
     // Copies: what they write stays out of the repository.
     let copies = target(root).join("site/notebooks");
     remove(&copies)?;
@@ -134,8 +121,7 @@ fn notebooks(root: &Path, book: &Path) -> Result<(), String> {
 }
 
 /// Reference pages of the Python package and of the crates.
-fn reference(root: &Path, site: &Path) -> Result<(), String> {
-    let python = Environment::ready(root);
+fn reference(root: &Path, python: &Environment, site: &Path) -> Result<(), String> {
     let pdoc = ["-m", "pdoc", "maille", "!maille._native", "--docformat", "numpy", "-o"];
     python.run(python.python().args(pdoc).arg(site.join("python")), "make the reference of the Python package")?;
     let mut command = Command::new(cargo());
@@ -150,7 +136,7 @@ fn reference(root: &Path, site: &Path) -> Result<(), String> {
 
 /// The program that makes the pages; installed below the build folder where it is not there.
 fn mdbook(root: &Path) -> Result<PathBuf, String> {
-    let tools = target(root).join("tools");
+    let tools = target(root).join("tools").join(MDBOOK);
     let program = tools.join("bin").join(format!("mdbook{}", std::env::consts::EXE_SUFFIX));
     if !program.is_file() {
         let install = ["install", MDBOOK, "--locked", "--quiet", "--root"];

@@ -26,7 +26,8 @@ impl Environment {
     /// Builds the wheel with the profile of the tests and installs it. With `clean`, the environment is made anew; else
     /// one that is there is used again.
     pub fn new(root: &Path, clean: bool) -> Result<Self, String> {
-        let out = Self::ready(root);
+        let target = target(root);
+        let out = Environment { root: root.to_owned(), folder: target.join("python"), target };
         let ready = out.folder.join("ready");
         let lock = root.join(LOCK);
         let wanted = std::fs::read_to_string(&lock).map_err(|e| format!("cannot read {}: {e}", lock.display()))?;
@@ -65,12 +66,6 @@ impl Environment {
                 .into());
         };
         self.run(Command::new(python).args(["-m", "venv", "--clear"]).arg(&self.folder), "make an environment")
-    }
-
-    /// The environment that [`Self::new`] made.
-    pub fn ready(root: &Path) -> Self {
-        let target = target(root);
-        Environment { root: root.to_owned(), folder: target.join("python"), target }
     }
 
     /// An environment below the build folder with the programs of a lockfile alone.

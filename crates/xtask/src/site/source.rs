@@ -1,8 +1,11 @@
 //! The pages of the site, as Markdown: the documents of the repository with links between pages, and a page of each
 //! other file that they link to.
 
-use super::{folder::copy_file, link};
-use crate::repository::{Finding, files, read};
+use super::link;
+use crate::{
+    folder::copy_file,
+    repository::{Finding, files, read},
+};
 use std::{
     collections::{BTreeMap, BTreeSet},
     fs,

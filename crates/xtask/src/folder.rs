@@ -1,4 +1,4 @@
-//! Folders of the site, copied and removed.
+//! Folders and files, copied and removed.
 
 use std::{fs, path::Path};
 
