@@ -70,23 +70,28 @@ pub fn check(root: &Path) -> Vec<Finding> {
 /// One file for each built-in design with its sheet, map and locked states; one that is there already is made anew
 /// only for a newer program.
 fn viewers(program: &Path, folder: &Path) -> Result<(), String> {
+    let program = fs::canonicalize(program).map_err(|e| format!("{} is not there: {e}", program.display()))?;
     fs::create_dir_all(folder).map_err(|e| format!("{} cannot be made: {e}", folder.display()))?;
     let age = |path: &Path| fs::metadata(path).and_then(|data| data.modified()).ok();
-    for design in program::designs(program)? {
+    for design in program::designs(&program)? {
         let name = design["name"].as_str().ok_or("a design has no name")?;
         let file = folder.join(format!("{name}.html"));
-        if age(&file).is_some_and(|made| age(program).is_some_and(|built| built < made)) {
+        if age(&file).is_some_and(|made| age(&program).is_some_and(|built| built < made)) {
             continue;
         }
         // A chain is pulled along itself alone.
         let pulls = if design["single"] == true { CHAIN } else { PULLS };
-        let record = folder.with_file_name("records").join(name);
-        let mut solve = Command::new(program);
-        solve.args(["characterize", name]).args(pulls.split_whitespace()).arg("--out").arg(&record);
-        done(&mut solve, &format!("compute the limits of {name}"))?;
-        let mut view = Command::new(program);
-        view.arg("view").arg(&record).args(["--overwrite", "--bundle"]).arg(&file);
-        done(&mut view, &format!("make the viewer of {name}"))?;
+        // The page shows the record's path as it is given here.
+        let record = format!("records/{name}");
+        let run = |arguments: &[&str]| {
+            let mut command = Command::new(&program);
+            command.args(arguments).current_dir(folder.parent().unwrap_or(folder));
+            command
+        };
+        let mut solve = run(&["characterize", name, "--out", &record]);
+        done(solve.args(pulls.split_whitespace()), &format!("compute the limits of {name}"))?;
+        let mut view = run(&["view", &record, "--overwrite", "--bundle"]);
+        done(view.arg(&file), &format!("make the viewer of {name}"))?;
     }
     Ok(())
 }

@@ -93,6 +93,7 @@ function show(): void {
     nameLocation: "middle" as const,
     nameGap: 32,
     nameTextStyle: text,
+    axisLine: { onZero: false },
     axisLabel: { ...text, formatter: (value: number) => String(Number(value.toPrecision(6))) },
     splitLine: { lineStyle: { opacity: 0.25 } },
   });

@@ -143,18 +143,26 @@ export class PolarPlot {
     const l2s = widths(family.limits);
     return l2s.flatMap((l2, k) => {
       const color = family.old ? OLD : widthColor(family.colors, k, l2s.length);
-      const limits = family.limits.filter((l) => l.row.l2 === l2 && reached(l) !== null);
-      limits.sort((a, b) => halfTurn(a.row.direction_deg) - halfTurn(b.row.direction_deg));
-      const filled = l2s.length === 1 && !family.old;
-      const curve = limits.length > 2 ? [this.curve(limits, color, family.old, filled)] : [];
+      const asked = family.limits.filter((l) => l.row.l2 === l2);
+      asked.sort((a, b) => halfTurn(a.row.direction_deg) - halfTurn(b.row.direction_deg));
+      const limits = asked.filter((l) => reached(l) !== null);
+      const filled = limits.length === asked.length && l2s.length === 1 && !family.old;
+      const curve = limits.length > 2 ? [this.curve(asked, color, family.old, filled)] : [];
       return family.old ? curve : [...curve, ...limits.flatMap((limit) => this.dots(limit, color))];
     });
   }
 
-  /** Closed by the directions opposite to those of `limits`. */
-  private curve(limits: Limit[], color: string, old: boolean, filled: boolean): Node {
-    const points = [0, 180].flatMap((half) => limits.map((limit) => this.place(limit, half)));
-    const d = points.map(([x, y], k) => `${k ? "L" : "M"}${x.toFixed(2)} ${y.toFixed(2)}`).join("") + "Z";
+  /** Through the limits and their opposites: closed, or broken where a direction that was asked has no limit. */
+  private curve(asked: Limit[], color: string, old: boolean, filled: boolean): Node {
+    const around = [0, 180].flatMap((half) => asked.map((l) => (reached(l) === null ? null : this.place(l, half))));
+    const gap = Math.max(0, around.indexOf(null));
+    let pen = "M";
+    const parts = [...around.slice(gap), ...around.slice(0, gap)].map((point) => {
+      const part = point && `${pen}${point[0].toFixed(2)} ${point[1].toFixed(2)}`;
+      pen = point ? "L" : "M";
+      return part ?? "";
+    });
+    const d = parts.join("") + (around.includes(null) ? "" : "Z");
     return s("path", { d, class: old ? "curve old" : "curve", stroke: color, fill: filled ? color : "none" });
   }
 

@@ -53,6 +53,17 @@ test("a simulation is played, its states have their forces and gaps", async ({ p
   expect(written.length).toBe(readFileSync(join(program.folder, "program.stl")).length);
 });
 
+test("a curve is broken where a direction has no limit", async ({ page, program }) => {
+  const asked = ["--directions", "0:180:15", "--l2=-0.1,0", "--cell", "1x1", "--effort", "low", "--allow-incomplete"];
+  program.run("characterize", "european-4-in-1", ...asked, "--quiet", "--out", "narrow");
+  await page.goto(await program.view("narrow"));
+  const curves = page.locator(".map .curve");
+  await expect(curves).toHaveCount(2);
+  // With l2 = -0.1 only 0, 15, 45 degrees and their images have a limit.
+  const pieces = await curves.evaluateAll((all) => all.map((path) => path.getAttribute("d")!.match(/[MZ]/g)!.join("")));
+  expect(pieces.sort()).toEqual(["MMMMMM", "MZ"]);
+});
+
 test("rolls are looked through, a piece of the sheet in each", async ({ page, program }) => {
   program.run("roll", "european-4-in-1", "--directions", "0,90", "--quiet", "--out", "rolls");
   await page.goto(await program.view("rolls"));
