@@ -32,6 +32,7 @@ in_clean '! command -v cargo && ! command -v gcc'
 timed "install the program" "sh /dist/install.sh"
 timed "the README's first limit" "/root/.local/bin/maille characterize 1.1 && test -s maille-out/1.1/polar.png"
 timed "verify it" "/root/.local/bin/maille verify maille-out/1.1"
+timed "install the Debian package" "dpkg --install /dist/*.deb >dpkg.txt && /usr/bin/maille designs >/dev/null && dpkg --remove maille >dpkg.txt"
 timed "install the wheel" 'python3 -m venv --clear /root/python && /root/python/bin/pip install --quiet "$(echo /dist/*.whl)[plot]"'
 awk '/^```python/ { on = 1; next } /^```/ { on = 0 } on' "$(dirname "$0")/../README.md" > "$clean/root/try/readme.py"
 test -s "$clean/root/try/readme.py"

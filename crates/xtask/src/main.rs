@@ -20,6 +20,7 @@ mod uses;
 mod view;
 mod wheel;
 
+use package::Recipes;
 use std::process::ExitCode;
 
 const HELP: &str = "\
@@ -48,8 +49,12 @@ cargo xtask COMMAND
   site     write target/site/book: documents, viewers of all designs, notebooks and reference as static pages, and check
            them in a browser; installs mdBook below target
            --program PATH  this program, with the viewer; otherwise it is built
-  package  build what a release consists of, into target/dist: archive, wheel, source, installer, checksums
+  package  build what a release consists of, into target/dist: archive, Debian package, wheel, source, installer,
+           checksums
            --try           install that into a Debian without Rust, and run it there; needs root
+  recipes  fill in the recipes for conda-forge and Homebrew, after `package`, into target/recipes
+           --repository URL  the project's address, which they name
+           --try             with an example's address; build and test by them, without conda-forge and Homebrew; needs Ruby
   publish  try to publish every crate, in order, without doing so
   bench    every bench, and docs/performance.md from it; close other programs first
            --from FILE     from what `cargo bench` has printed to FILE
@@ -85,6 +90,8 @@ fn main() -> ExitCode {
         ["site", "--program", program] => steps::site(&root, Some(program)),
         ["package"] => steps::failed(package::write(&root)),
         ["package", "--try"] => steps::failed(package::try_clean(&root)),
+        ["recipes", "--repository", address] => steps::failed(package::recipes(&root, Recipes::Of(address))),
+        ["recipes", "--try"] => steps::failed(package::recipes(&root, Recipes::Try)),
         ["publish"] => steps::failed(package::publish(&root)),
         ["bench"] => steps::failed(bench::write(&root, None)),
         ["bench", "--from", file] => steps::failed(bench::write(&root, Some(file))),

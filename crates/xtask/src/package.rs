@@ -2,8 +2,8 @@
 //! package, an archive of the program, the installer, and their checksums.
 
 use crate::{
-    folder::{copy_file, remove},
-    program::{cargo, done, target},
+    folder::{copy, copy_file, remove},
+    program::{cargo, done, installed, target},
     view,
     wheel::Environment,
 };
@@ -13,6 +13,8 @@ use std::{env, fs, path::Path, process::Command};
 const LOCK: &str = "packaging/requirements.lock";
 /// The oldest C library on which the program and the wheel run, that of RHEL 8 and Debian 10.
 const GLIBC: &str = "2.28";
+/// What makes the Debian package.
+const CARGO_DEB: &str = "cargo-deb@3.8.0";
 /// Crates in the order in which they are published.
 const CRATES: &[&str] = &[
     "maille-geometry",
@@ -40,6 +42,37 @@ pub fn write(root: &Path) -> Result<(), String> {
     done(&mut command, "write the checksums")?;
     println!("   {}", out.display());
     Ok(())
+}
+
+/// Where the recipes get their addresses from.
+pub enum Recipes<'a> {
+    /// The repository that they name.
+    Of(&'a str),
+    /// None: the recipes are tried, as far as this machine can.
+    Try,
+}
+
+/// Fills in the recipes of `packaging` for conda-forge and Homebrew, after `write`.
+pub fn recipes(root: &Path, how: Recipes) -> Result<(), String> {
+    view::page(root)?;
+    let mut command = Command::new(cargo());
+    command.args(["package", "--no-verify", "--locked", "--allow-dirty", "--quiet"]).current_dir(root);
+    done(command.args(CRATES.iter().flat_map(|name| ["--package", name])), "pack the crates")?;
+    let version = env!("CARGO_PKG_VERSION");
+    let (dist, crates) = (target(root).join("dist"), target(root).join("package"));
+    let sdist = dist.join(format!("maille-{version}.tar.gz"));
+    if !sdist.is_file() {
+        return Err(format!("{} is not there; make it with `cargo xtask package`", sdist.display()));
+    }
+    let tools = Environment::of_tools(root, "packaging", LOCK)?;
+    let mut command = tools.python();
+    command.arg(root.join("packaging/recipes.py")).arg(target(root).join("recipes")).arg("--sdist").arg(sdist);
+    command.arg("--crate").arg(crates.join(format!("maille-cli-{version}.crate")));
+    match how {
+        Recipes::Of(repository) => command.args(["--repository", repository]),
+        Recipes::Try => command.arg("--try").arg(root.join("crates/maille-cli")).env("CARGO_TARGET_DIR", target(root)),
+    };
+    done(&mut command, "write the recipes")
 }
 
 /// Tries to publish every crate, in order, without doing so.
@@ -85,9 +118,26 @@ fn archive(root: &Path, tools: &Environment, out: &Path) -> Result<(), String> {
         let file = completions.join(format!("maille.{shell}"));
         fs::write(&file, text.stdout).map_err(|e| format!("{} cannot be written: {e}", file.display()))?;
     }
+    if os == "linux" {
+        debian(root, &program, &folder, out)?;
+    }
     let mut command = Command::new("tar");
     command.arg("-czf").arg(out.join(format!("{name}.tar.gz")));
     done(command.arg("-C").arg(target(root).join("package")).arg(&name), "write the archive")
+}
+
+/// The program's Debian package, of what the archive has; its parts are named in the manifest of `maille-cli`, which finds
+/// them beside the program.
+fn debian(root: &Path, program: &Path, archive: &Path, out: &Path) -> Result<(), String> {
+    let parts = program.with_file_name("debian");
+    remove(&parts)?;
+    for part in ["man", "completions"] {
+        copy(&archive.join(part), &parts.join(part))?;
+    }
+    let mut command = Command::new(installed(root, CARGO_DEB)?);
+    command.args(["--package", "maille-cli", "--no-build", "--no-strip", "--target"]);
+    command.arg(format!("{}-unknown-linux-gnu", env::consts::ARCH)).arg("--output").arg(out);
+    done(command.current_dir(root), "write the Debian package")
 }
 
 /// The wheel for all Pythons from 3.10 on, and the source that pip can build where there is no wheel.

@@ -46,6 +46,18 @@ pub fn cargo() -> std::ffi::OsString {
     std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
 }
 
+/// A program of crates.io, as `mdbook@0.5.4`; installed below the build folder where it is not there.
+pub fn installed(root: &Path, package: &str) -> Result<PathBuf, String> {
+    let tools = target(root).join("tools").join(package);
+    let name = package.split('@').next().unwrap_or(package);
+    let program = tools.join("bin").join(format!("{name}{}", std::env::consts::EXE_SUFFIX));
+    if !program.is_file() {
+        let install = ["install", package, "--locked", "--quiet", "--root"];
+        done(Command::new(cargo()).args(install).arg(&tools), &format!("install {name}"))?;
+    }
+    Ok(program)
+}
+
 /// Where cargo builds.
 pub fn target(root: &Path) -> PathBuf {
     std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), |path| root.join(path))

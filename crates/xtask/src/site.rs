@@ -7,7 +7,7 @@ mod source;
 use crate::{
     atlas::TABLE,
     folder::{copy, copy_file, remove},
-    program::{self, cargo, done, target},
+    program::{self, cargo, done, installed, target},
     repository::Finding,
     view,
     wheel::Environment,
@@ -55,7 +55,7 @@ pub fn write(root: &Path, program: Option<&str>) -> Result<(), String> {
         copy_file(&root.join(FOLDER).join(name), &folder.join(name))?;
     }
     remove(&folder.join("book"))?;
-    done(Command::new(mdbook(root)?).arg("build").arg(&folder), "make the pages")?;
+    done(Command::new(installed(root, MDBOOK)?).arg("build").arg(&folder), "make the pages")?;
     reference(root, &python, &folder.join("book"))?;
     view::check_site(root, &folder.join("book"))?;
     println!("   {}", folder.join("book/index.html").display());
@@ -137,15 +137,4 @@ fn reference(root: &Path, python: &Environment, site: &Path) -> Result<(), Strin
     command.current_dir(root).args(["--target-dir"]).arg(&built);
     done(&mut command, "make the reference of the crates")?;
     copy(&built.join("doc"), &site.join("rust"))
-}
-
-/// The program that makes the pages; installed below the build folder where it is not there.
-fn mdbook(root: &Path) -> Result<PathBuf, String> {
-    let tools = target(root).join("tools").join(MDBOOK);
-    let program = tools.join("bin").join(format!("mdbook{}", std::env::consts::EXE_SUFFIX));
-    if !program.is_file() {
-        let install = ["install", MDBOOK, "--locked", "--quiet", "--root"];
-        done(Command::new(cargo()).args(install).arg(&tools), "install mdBook")?;
-    }
-    Ok(program)
 }

@@ -1,0 +1,99 @@
+"""Fills in the recipes for conda-forge and Homebrew, and tries them.
+
+    python packaging/recipes.py OUT --sdist FILE --crate FILE --repository https://... [--maintainer NAME]
+    python packaging/recipes.py OUT --sdist FILE --crate FILE --try CRATE_FOLDER
+
+--sdist and --crate are the files as they will be on PyPI and crates.io: the recipes name their SHA-256. --try fills
+in an example's address and renders both recipes of conda. It builds that of the program into a package and runs its
+tests, and does the same with Homebrew's formula, by packaging/homebrew/check.rb. Both build from CRATE_FOLDER,
+the unpublished source, with this machine's Rust instead of conda's. That conda finds the needed packages
+is not tried.
+"""
+
+import argparse
+import hashlib
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import tomllib
+
+HERE = pathlib.Path(__file__).resolve().parent
+RECIPES = ("conda/maille/recipe.yaml", "conda/maille-cli/recipe.yaml", "homebrew/maille.rb")
+
+
+def facts(sdist, crate, repository, maintainer):
+    """What stands for each name between @."""
+    project = tomllib.loads((HERE.parent / "crates/maille-py/pyproject.toml").read_text(encoding="utf-8"))["project"]
+    numpy = next(need for need in project["dependencies"] if need.startswith("numpy>="))
+    version = tomllib.loads((HERE.parent / "Cargo.toml").read_text(encoding="utf-8"))["workspace"]["package"]["version"]
+    for file in (sdist, crate):
+        if version not in file.name:
+            raise SystemExit(f"{file} is not of version {version}")
+    return {
+        "VERSION": version,
+        "SHA256_PYPI": hashlib.sha256(sdist.read_bytes()).hexdigest(),
+        "SHA256_CRATE": hashlib.sha256(crate.read_bytes()).hexdigest(),
+        "NUMPY": numpy.removeprefix("numpy>="),
+        "REPOSITORY": repository,
+        "MAINTAINER": maintainer,
+    }
+
+
+def fill(out, known):
+    for name in RECIPES:
+        text = (HERE / name).read_text(encoding="utf-8")
+        first, rest = text.split("\n", 1)
+        rest = re.sub("@([A-Z0-9_]+)@", lambda found: known[found[1]], rest)
+        file = out / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        new = file.with_name(file.name + ".new")
+        new.write_text(first.split(" `")[0] + "\n" + rest, encoding="utf-8")
+        new.replace(file)
+        print(file)
+
+
+def conda(out, source):
+    """Renders both recipes as conda-forge would, and builds the program's without conda's compilers."""
+    import rattler_build
+
+    variants = {"c_compiler": ["gcc"], "rust_compiler": ["rust"], "c_stdlib": ["sysroot"], "python": ["3.10", "3.13"]}
+    rendered = {}
+    for name, count in (("maille", 2), ("maille-cli", 1)):
+        recipe = rattler_build.Stage0Recipe.from_file(out / f"conda/{name}/recipe.yaml")
+        found = recipe.render(rattler_build.VariantConfig(variants))
+        if len(found) != count:
+            raise SystemExit(f"{name}: {len(found)} variants, not {count}")
+        rendered[name] = found[0].recipe.to_dict()
+    recipe = rendered["maille-cli"]
+    recipe["source"] = [{"path": str(source), "use_gitignore": False}]
+    recipe["requirements"] = {}
+    # A program of conda-forge lists the licences of all dependencies; the first line and the last file are its.
+    recipe["build"] = {"number": 0, "script": recipe["build"]["script"][1:]}
+    recipe["about"]["license_file"] = recipe["about"]["license_file"][:-1]
+    rattler_build.Stage0Recipe.from_dict(recipe).run_build(
+        channels=[], output_dir=out / "conda-packages", env_isolation=rattler_build.EnvironmentIsolation.NONE)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("out", type=pathlib.Path)
+    parser.add_argument("--sdist", type=pathlib.Path, required=True)
+    parser.add_argument("--crate", type=pathlib.Path, required=True)
+    parser.add_argument("--repository")
+    parser.add_argument("--maintainer", default="")
+    parser.add_argument("--try", dest="source", type=pathlib.Path)
+    asked = parser.parse_args()
+    if (asked.repository is None) == (asked.source is None):
+        parser.error("give either --repository or --try")
+    fill(asked.out, facts(asked.sdist, asked.crate, asked.repository or "https://example.org/maille", asked.maintainer or "someone"))
+    if asked.source:
+        conda(asked.out, asked.source.resolve())
+        with tempfile.TemporaryDirectory() as prefix:
+            command = ["ruby", HERE / "homebrew/check.rb", asked.out / "homebrew/maille.rb", asked.source, prefix]
+            sys.exit(subprocess.run(command).returncode)
+
+
+if __name__ == "__main__":
+    main()
