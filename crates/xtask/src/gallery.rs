@@ -151,7 +151,7 @@ fn document(pages: &[Page], pulls: &str) -> String {
     let mut out = format!(
         "# Gallery\n\n\
         Every built-in design: the sheet at its start, the largest stretch in each direction, and the numbers. Written by\n\
-        `cargo xtask gallery`, which runs for each\n\n    \
+        `cargo xtask gallery`, which runs for each\n\n<!-- with: NAME=1.1 -->\n\n    \
         maille characterize NAME {pulls}\n    \
         maille render NAME {RENDER}\n    \
         maille plot NAME {PLOT}\n    \
