@@ -20,7 +20,7 @@ cp /etc/ssl/certs/ca-certificates.crt "$clean/etc/ssl/certs/ca-certificates.crt"
 [ ! -f /etc/pip.conf ] || cp /etc/pip.conf "$clean/etc/pip.conf"
 
 in_clean() {
-    chroot "$clean" env -i HOME=/root PATH=/usr/bin:/bin LANG=C.UTF-8 MPLBACKEND=Agg sh -euc "cd /root/try; $1"
+    chroot "$clean" env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 MPLBACKEND=Agg sh -euc "cd /root/try; $1"
 }
 timed() {
     begun=$(date +%s%N)

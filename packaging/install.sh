@@ -77,5 +77,6 @@ mv "$into/.maille.new" "$into/maille"
 echo "installed as $into/maille"
 case :$PATH: in
     *:"$into":*) ;;
-    *) echo "$into is not in your PATH; add it, or call the program by its path" ;;
+    *) echo "$into is not in your PATH; to call the program by its name alone:"
+       echo "    export PATH=\"$into:\$PATH\"" ;;
 esac

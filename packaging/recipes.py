@@ -1,13 +1,12 @@
 """Fills in the recipes for conda-forge and Homebrew, and tries them.
 
-    python packaging/recipes.py OUT --sdist FILE --crate FILE --repository https://... [--maintainer NAME]
-    python packaging/recipes.py OUT --sdist FILE --crate FILE --try CRATE_FOLDER
+    python packaging/recipes.py OUT --sdist FILE --crates FOLDER --repository https://... [--maintainer NAME]
+    python packaging/recipes.py OUT --sdist FILE --crates FOLDER --try
 
---sdist and --crate are the files as they will be on PyPI and crates.io: the recipes name their SHA-256. --try fills
-in an example's address and renders both recipes of conda. It builds that of the program into a package and runs its
-tests, and does the same with Homebrew's formula, by packaging/homebrew/check.rb. Both build from CRATE_FOLDER,
-the unpublished source, with this machine's Rust instead of conda's. That conda finds the needed packages
-is not tried.
+--sdist is the file as it will be on PyPI, and FOLDER has the crates as they will be on crates.io: the recipes name
+their SHA-256. --try fills in an example's address and renders both recipes of conda. By that of the program it
+builds a package and runs its tests, and it does the same with Homebrew's formula, by packaging/homebrew/check.rb. Both
+take the packed crates, with this machine's Rust. Whether conda-forge has the needed packages is not tried.
 """
 
 import argparse
@@ -16,6 +15,7 @@ import pathlib
 import re
 import subprocess
 import sys
+import tarfile
 import tempfile
 import tomllib
 
@@ -23,14 +23,12 @@ HERE = pathlib.Path(__file__).resolve().parent
 RECIPES = ("conda/maille/recipe.yaml", "conda/maille-cli/recipe.yaml", "homebrew/maille.rb")
 
 
-def facts(sdist, crate, repository, maintainer):
+def facts(sdist, crates, repository, maintainer):
     """What stands for each name between @."""
     project = tomllib.loads((HERE.parent / "crates/maille-py/pyproject.toml").read_text(encoding="utf-8"))["project"]
     numpy = next(need for need in project["dependencies"] if need.startswith("numpy>="))
     version = tomllib.loads((HERE.parent / "Cargo.toml").read_text(encoding="utf-8"))["workspace"]["package"]["version"]
-    for file in (sdist, crate):
-        if version not in file.name:
-            raise SystemExit(f"{file} is not of version {version}")
+    crate = crates / f"maille-cli-{version}.crate"
     return {
         "VERSION": version,
         "SHA256_PYPI": hashlib.sha256(sdist.read_bytes()).hexdigest(),
@@ -54,7 +52,22 @@ def fill(out, known):
         print(file)
 
 
-def conda(out, source):
+def unpacked(out, crates, version):
+    """The source of the program as crates.io will have it, and beside it the crates that it needs and are not there yet."""
+    for crate in crates.glob(f"*-{version}.crate"):
+        with tarfile.open(crate) as packed:
+            packed.extractall(out, filter="data")
+    source = out / f"maille-cli-{version}"
+    others = [folder for folder in sorted(out.iterdir()) if folder != source]
+    lines = [f'{folder.name.removesuffix("-" + version)} = {{ path = "{folder.as_posix()}" }}\n' for folder in others]
+    (source / ".cargo").mkdir()
+    (source / ".cargo/config.toml").write_text("[patch.crates-io]\n" + "".join(lines), encoding="utf-8")
+    # The lockfile says that they are from crates.io; this says that they are not, and changes nothing else.
+    subprocess.run(["cargo", "metadata", "--format-version", "1"], cwd=source, stdout=subprocess.DEVNULL, check=True)
+    return source
+
+
+def conda(out, source, work):
     """Renders both recipes as conda-forge would, and builds the program's without conda's compilers."""
     import rattler_build
 
@@ -73,25 +86,29 @@ def conda(out, source):
     recipe["build"] = {"number": 0, "script": recipe["build"]["script"][1:]}
     recipe["about"]["license_file"] = recipe["about"]["license_file"][:-1]
     rattler_build.Stage0Recipe.from_dict(recipe).run_build(
-        channels=[], output_dir=out / "conda-packages", env_isolation=rattler_build.EnvironmentIsolation.NONE)
+        channels=[], output_dir=work, env_isolation=rattler_build.EnvironmentIsolation.NONE)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("out", type=pathlib.Path)
     parser.add_argument("--sdist", type=pathlib.Path, required=True)
-    parser.add_argument("--crate", type=pathlib.Path, required=True)
+    parser.add_argument("--crates", type=pathlib.Path, required=True)
     parser.add_argument("--repository")
     parser.add_argument("--maintainer", default="")
-    parser.add_argument("--try", dest="source", type=pathlib.Path)
+    parser.add_argument("--try", dest="tried", action="store_true")
     asked = parser.parse_args()
-    if (asked.repository is None) == (asked.source is None):
+    if (asked.repository is None) != asked.tried:
         parser.error("give either --repository or --try")
-    fill(asked.out, facts(asked.sdist, asked.crate, asked.repository or "https://example.org/maille", asked.maintainer or "someone"))
-    if asked.source:
-        conda(asked.out, asked.source.resolve())
-        with tempfile.TemporaryDirectory() as prefix:
-            command = ["ruby", HERE / "homebrew/check.rb", asked.out / "homebrew/maille.rb", asked.source, prefix]
+    known = facts(asked.sdist, asked.crates, asked.repository or "https://example.org/maille", asked.maintainer or "someone")
+    fill(asked.out, known)
+    if asked.tried:
+        # Outside of the repository, whose workspace the crates would otherwise be counted to.
+        with tempfile.TemporaryDirectory() as work:
+            work = pathlib.Path(work)
+            source = unpacked(work / "source", asked.crates, known["VERSION"])
+            conda(asked.out, source, work / "conda")
+            command = ["ruby", HERE / "homebrew/check.rb", asked.out / "homebrew/maille.rb", source, work / "homebrew"]
             sys.exit(subprocess.run(command).returncode)
 
 

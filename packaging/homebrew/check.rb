@@ -6,6 +6,7 @@
 # in an empty folder. `brew audit` checks more, and needs Homebrew.
 require "fileutils"
 require "open3"
+require "pathname"
 require "tmpdir"
 
 formula, source, prefix = ARGV.map { |path| File.expand_path(path) }

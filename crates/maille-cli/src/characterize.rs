@@ -4,7 +4,7 @@ use crate::{
     effort::SearchArgs,
     exit::{self, refused, wrong},
     help::ENERGY,
-    input::{DesignArgs, file_name},
+    input::{DesignArgs, Input, file_name},
     map::{self, RunArgs, Solved, unanswered},
     numbers::{Numbers, one_of, parse, parse_l2, positive, read},
     output,
@@ -16,7 +16,7 @@ use clap::builder::PossibleValue;
 use maille::{
     design::Design,
     error::InvalidInput,
-    lattice::Across,
+    lattice::{Across, Cell},
     record::{LimitRow, Status},
     relaxation::{
         HessianMethod, MinimaMethod,
@@ -274,8 +274,8 @@ fn once(args: &Args) -> Result<ExitCode> {
     };
     let begun = Instant::now();
     let open = map::open(&map, &input)?;
-    if !args.quiet && open.is_unlinked() {
-        eprintln!("warning: no chain of links joins the cells of this design; no pull has a bound");
+    if !args.quiet {
+        Input::warn(&input.compile(&input.design, Cell::PRIMITIVE)?);
     }
     let Solved { records, tally, interrupted, .. } = map::solve(vec![("", open)], &out, args.run.threads, args.quiet)?;
     let rows = &records[0].rows;

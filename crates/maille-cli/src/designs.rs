@@ -1,7 +1,10 @@
 //! `maille designs`: the built-in designs with a line each.
 
-use crate::output;
-use maille_io::{builtin_designs, read_design};
+use crate::{
+    exit::{self, wrong},
+    output,
+};
+use maille_io::{builtin, builtin_designs, nearest_builtin, read_design};
 use miette::Result;
 use serde_json::json;
 
@@ -10,15 +13,27 @@ use serde_json::json;
 #[command(after_help = "\
 Examples:
   maille designs
+  maille designs --file byzantine > mine.toml       the file of one, as a start for your own
   maille designs --json | jq -r '.designs[].name'")]
 pub struct Args {
     /// Print one JSON document; docs/json.md has its keys
     #[arg(long)]
     json: bool,
+    /// Print the file of one
+    #[arg(long, value_name = "NAME", conflicts_with = "json")]
+    file: Option<String>,
 }
 
 /// Prints the list.
 pub fn run(args: &Args) -> Result<()> {
+    if let Some(name) = &args.file {
+        let Some(text) = builtin(name) else {
+            let near = nearest_builtin(name).map_or(String::new(), |near| format!("did you mean {near}? "));
+            let help = format!("{near}`maille designs` lists them");
+            return Err(wrong(exit::DESIGN, format!("there is no built-in design {name}"), help));
+        };
+        return output::print(text.as_bytes());
+    }
     let designs: Vec<_> =
         builtin_designs().iter().map(|entry| read_design(entry.name, entry.toml)).collect::<Result<_, _>>()?;
     let rings =

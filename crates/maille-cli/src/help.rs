@@ -93,8 +93,14 @@ pub fn matches(program: Command) -> ArgMatches {
     .get_matches()
 }
 
-/// The command with its examples on lines that a terminal of 80 letters does not break.
+/// The command with its examples on lines that a terminal of 80 letters does not break. Its options take negative numbers, so that
+/// those that must not be negative can say so.
 fn with_short_lines(command: Command) -> Command {
+    let negative = |arg: clap::Arg| match arg.get_long().is_some() && arg.get_action().takes_values() {
+        true => arg.allow_negative_numbers(true),
+        false => arg,
+    };
+    let command = command.mut_args(negative);
     match command.get_after_help().map(|help| short_lines(&help.to_string())) {
         Some(help) => command.after_help(help),
         None => command,

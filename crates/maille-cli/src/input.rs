@@ -139,6 +139,13 @@ impl Input {
         self.source.explain(&found).list()
     }
 
+    /// Prints what is odd about the links of a design, as a sheet that falls apart.
+    pub fn warn(model: &Model) {
+        for warning in topology::warnings(model) {
+            eprintln!("warning: {}", warning.problem);
+        }
+    }
+
     /// The same design with the parameters of a study.
     pub fn varied(&self, variant: &Variant) -> Result<Input> {
         let changed = variant.words();
@@ -223,6 +230,14 @@ fn unknown(name: &str) -> Report {
     if Path::new(name).extension().is_some_and(|e| e == "toml") || name.contains(std::path::is_separator) {
         let help = "is it in this folder? `maille designs` lists the built-in ones, `maille new` writes a file";
         return wrong(exit::DESIGN, format!("there is no file \"{name}\""), help);
+    }
+    let file = format!("{name}.toml");
+    if Path::new(&file).is_file() {
+        return wrong(
+            exit::DESIGN,
+            format!("there is no built-in design \"{name}\""),
+            format!("did you mean the file {file}?"),
+        );
     }
     // Nearly every number is near another: only words are guessed.
     let near = nearest_builtin(name).filter(|_| name.len() > 3);

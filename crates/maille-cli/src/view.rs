@@ -25,9 +25,7 @@ Examples:
   maille view maille-out/radius            a sweep: its first record, and a list of the others
   maille view 3.1 --no-open --port 8080    prints the address alone
   maille view 1.1 --bundle 1.1.html        one file that opens without a server, to send or to publish
-  maille view 1.1 --bundle 1.1.html --directions 0:180:5 --l2 -0.125,0,0.125
-
-The viewer is built with the program by `cargo xtask view`, which needs Node.js.")]
+  maille view 1.1 --bundle 1.1.html --directions 0:180:5 --l2 -0.125,0,0.125")]
 pub struct Args {
     /// A built-in design (see `maille designs`), a TOML file, - for standard input, or the folder of a record, a
     /// simulation, rolls or a sweep

@@ -16,7 +16,7 @@
 //!     cargo nextest run --release -p maille-cli --test blocks --run-ignored all
 //!
 //! Commands that do not end (`--watch`, the server of `view`) are only parsed, by another test, and so are those of a batch
-//! system. Blocks of Python are run by the tests of the Python package, blocks of Rust by `cargo test --doc`.
+//! system; the site's check in a browser opens what `view --bundle` writes. Blocks of Python are run by the tests of the Python package, blocks of Rust by `cargo test --doc`.
 #![cfg(unix)]
 
 use std::{
@@ -79,9 +79,8 @@ impl Block {
     fn read(&mut self, mark: &str) {
         match mark.split_once(": ") {
             Some(("file", name)) => self.file = Some(name.to_owned()),
-            Some(("before", commands)) => {
-                self.before.extend(commands.split(" ; ").map(|line| format!("maille {line}")))
-            }
+            Some(("excerpt", name)) => self.excerpt = Some(name.to_owned()),
+            Some(("before", command)) => self.before.push(command.to_owned()),
             Some(("with", words)) => {
                 for word in words.split_whitespace() {
                     let (name, value) = word.split_once('=').expect("with: NAME=value");
@@ -121,8 +120,7 @@ impl Block {
                 command = command.replace(name, value);
             }
             command = command.replace("cargo run --release -- ", "maille ");
-            let endless =
-                command.contains("--watch") || command.starts_with("maille view ") && !command.contains("--bundle");
+            let endless = command.contains("--watch") || command.starts_with("maille view");
             if ["maille ", "cat > ", "printf "].iter().any(|start| command.starts_with(start)) && !endless {
                 out.push((self.line + index, command));
             }
@@ -145,9 +143,13 @@ fn run(page: &str, slow: bool) {
     let folder = tempfile::tempdir().unwrap();
     let programs = tempfile::tempdir().unwrap();
     symlink(env!("CARGO_BIN_EXE_maille"), programs.path().join("maille")).unwrap();
-    // The reader of these pages stands in the repository.
-    for name in ["examples", "designs"] {
-        symlink(root.join(name), folder.path().join(name)).unwrap();
+    // The reader stands in the repository, or in the folder of the example.
+    let given = match page.starts_with("examples/") {
+        true => fs::read_dir(root.join(page).parent().unwrap()).unwrap().map(|entry| entry.unwrap().path()).collect(),
+        false => vec![root.join("examples"), root.join("designs")],
+    };
+    for path in given {
+        symlink(&path, folder.path().join(path.file_name().unwrap())).unwrap();
     }
     let path = format!("{}:{}", programs.path().display(), std::env::var("PATH").unwrap());
     let mut wrong = Vec::new();
@@ -155,14 +157,16 @@ fn run(page: &str, slow: bool) {
         if let Some(name) = &block.file {
             fs::write(folder.path().join(name), block.lines.join("\n") + "\n").unwrap();
         }
-        let before = block.before.iter().map(|command| (block.line, command.clone()));
-        for (line, command) in before.chain(block.commands()) {
+        let before = block.before.iter().map(|command| (block.line, command.clone(), None));
+        let shown = block.commands().into_iter().map(|(line, command)| (line, command, block.ends));
+        for (line, command, ends) in before.chain(shown) {
             let begun = Instant::now();
-            let output = Command::new("sh").args(["-c", &command]).current_dir(folder.path()).env("PATH", &path);
-            let output = output.env("NO_COLOR", "1").output().unwrap();
+            let mut shell = Command::new("sh");
+            shell.args(["-c", &command]).current_dir(folder.path()).env("PATH", &path).env("NO_COLOR", "1");
+            let output = shell.output().unwrap();
             let code = output.status.code();
             println!("{page}:{line}: {:.1} s, {code:?}: {command}", begun.elapsed().as_secs_f64());
-            let right = match block.ends {
+            let right = match ends {
                 Some(wanted) => code == Some(wanted),
                 None => matches!(code, Some(0 | 5)),
             };
@@ -188,6 +192,7 @@ macro_rules! pages {
 
 pages! {
     readme "README.md",
+    contributing "CONTRIBUTING.md",
     program "crates/maille-cli/README.md",
     gallery "docs/gallery/README.md",
     commands "docs/guide/README.md",

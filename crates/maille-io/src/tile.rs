@@ -34,10 +34,13 @@ impl fmt::Display for Tile {
 const MOST: u32 = 100_000;
 
 impl Tile {
-    /// The tile whose [`size`](Tile::size) is nearest to this one, at least one cell.
+    /// The tile whose [`size`](Tile::size) is nearest to this one, at least one cell; of a chain always one beside the other.
     pub fn nearest(model: &Model, state: &State, size: [f64; 2]) -> Tile {
         let (first, step) = extents(model, state);
         Tile(std::array::from_fn(|k| {
+            if k == 1 && model.single {
+                return 1;
+            }
             let more = ((size[k] - first[k]) / step[k]).round();
             more.clamp(0.0, f64::from(MOST - 1)) as u32 + 1
         }))

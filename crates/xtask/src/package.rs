@@ -53,7 +53,7 @@ pub enum Recipes<'a> {
 }
 
 /// Fills in the recipes of `packaging` for conda-forge and Homebrew, after `write`.
-pub fn recipes(root: &Path, how: Recipes) -> Result<(), String> {
+pub fn recipes(root: &Path, how: Recipes<'_>) -> Result<(), String> {
     view::page(root)?;
     let mut command = Command::new(cargo());
     command.args(["package", "--no-verify", "--locked", "--allow-dirty", "--quiet"]).current_dir(root);
@@ -65,12 +65,12 @@ pub fn recipes(root: &Path, how: Recipes) -> Result<(), String> {
         return Err(format!("{} is not there; make it with `cargo xtask package`", sdist.display()));
     }
     let tools = Environment::of_tools(root, "packaging", LOCK)?;
-    let mut command = tools.python();
+    let mut command = tools.tool(tools.program("python"));
     command.arg(root.join("packaging/recipes.py")).arg(target(root).join("recipes")).arg("--sdist").arg(sdist);
-    command.arg("--crate").arg(crates.join(format!("maille-cli-{version}.crate")));
+    command.arg("--crates").arg(crates);
     match how {
         Recipes::Of(repository) => command.args(["--repository", repository]),
-        Recipes::Try => command.arg("--try").arg(root.join("crates/maille-cli")).env("CARGO_TARGET_DIR", target(root)),
+        Recipes::Try => command.arg("--try").env("CARGO_TARGET_DIR", target(root)),
     };
     done(&mut command, "write the recipes")
 }

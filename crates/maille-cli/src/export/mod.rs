@@ -7,6 +7,7 @@ use crate::{
     exit::{self, wrong},
     extreme::closest,
     frames::Frame,
+    input::Input,
     numbers::positive,
     output,
     piece::PieceArgs,
@@ -92,8 +93,8 @@ pub struct Args {
     /// glb: instances by EXT_mesh_gpu_instancing; smaller and faster, but only for viewers that know it
     #[arg(long)]
     gpu_instancing: bool,
-    /// Refuse if the meshes of different elements come closer than this many millimetres
-    #[arg(long, value_parser = positive, value_name = "MM", conflicts_with = "frames")]
+    /// Refuse if the meshes of different elements come closer than this many millimetres, as 0.3 or 0.3mm
+    #[arg(long, value_parser = clearance, value_name = "MM", conflicts_with = "frames")]
     min_clearance: Option<f64>,
     /// Export the closest cell in which the meshes of different elements are at least this far apart in the size that is
     /// written, as 0.3mm: the smallest area, over all poses and the lattice; as `maille roomiest --min-gap` finds it
@@ -175,6 +176,13 @@ fn write_options(args: &Args) -> WriteOptions {
     }
 }
 
+/// Millimetres, with the unit or without it; also a length in another unit.
+fn clearance(text: &str) -> Result<f64, String> {
+    positive(text).or_else(|_| parse_length(text).map(|length| length.mm)).map_err(|_| {
+        format!("\"{text}\" is not a positive length; give millimetres, such as 0.3, or a length with its unit, such as 0.3mm")
+    })
+}
+
 /// Runs the command.
 pub fn run(args: &Args) -> Result<()> {
     let source = match args.min_gap {
@@ -208,6 +216,9 @@ pub fn run(args: &Args) -> Result<()> {
     }
     if args.frames.is_some() && source.simulated.is_none() {
         interpolation_note(&source, &frames, mm).into_iter().for_each(note);
+    }
+    if !args.quiet {
+        Input::warn(&source.model);
     }
     let series = write_frames(args, &source, &frames, tile, mm, &destination, &formats)?;
     match &destination {

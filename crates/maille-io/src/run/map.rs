@@ -108,11 +108,6 @@ impl OpenMap {
         matches!(&self.map.question.method, Method::Exact(options) if options.across.lateral_free)
     }
 
-    /// Whether no chain of links joins the cells of the design.
-    pub fn is_unlinked(&self) -> bool {
-        maille::topology::binding_vectors(&self.models[0]).is_empty()
-    }
-
     /// The folder of the record.
     pub fn folder(&self) -> Option<&Path> {
         self.map.out.as_deref()

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native
+from ._extra import extra
 from .design import DesignLike, chosen
 from .errors import ShapeError
 from .record import Progress, _Bar, _effort, _whole
@@ -49,7 +50,8 @@ class Boundary(Columns):
     def plot(self, *, ax: Axes3D | None = None, **surface: Any) -> Axes3D:
         """Draws the surface in three dimensions, and gives the axes."""
         if ax is None:
-            from matplotlib import pyplot
+            with extra("plot"):
+                from matplotlib import pyplot
             from mpl_toolkits.mplot3d import Axes3D
 
             made = pyplot.figure(layout="constrained").add_subplot(projection="3d")

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native, _polar
+from ._extra import extra
 from .design import Design, DesignLike, chosen
 from .errors import ArgumentError
 from .sheet import Sheet
@@ -130,7 +131,8 @@ class Record(Columns):
         if label is None:
             raise ArgumentError("quantity", f"{quantity!r} is none", "give stretch, l1 or lambda1")
         if ax is None:
-            from matplotlib import pyplot
+            with extra("plot"):
+                from matplotlib import pyplot
             from matplotlib.projections import polar
 
             # Constrained: the legend beside the axes stays in the picture.
@@ -334,7 +336,8 @@ class _Bar:
 
     def __enter__(self) -> Callable[[int, int], object] | None:
         if self._progress is True:
-            from tqdm.auto import tqdm
+            with extra("progress"):
+                from tqdm.auto import tqdm
 
             self._bar = tqdm(unit=self._unit)
             return self._tell

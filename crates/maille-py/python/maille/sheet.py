@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
+from ._extra import extra
 from ._files import write_whole
 from .design import Design, DesignLike
 from .errors import ArgumentError
@@ -51,7 +52,8 @@ class Sheet:
     def plot(self, *, tile: tuple[int, int] = (2, 2), ax: Axes | None = None, **line: Any) -> Axes:
         """Draws the core circles of all rings from above, and gives the axes. `tile`: cells along a1 and a2."""
         if ax is None:
-            from matplotlib import pyplot
+            with extra("plot"):
+                from matplotlib import pyplot
 
             ax = pyplot.figure(layout="constrained").add_subplot()
         circles = self.circles()
@@ -144,7 +146,8 @@ class View:
 
     def widget(self) -> Any:
         """The widget: a `k3d.Plot`, with a mesh for each kind of element."""
-        import k3d
+        with extra("widget"):
+            import k3d
 
         if self._native is None:
             raise ArgumentError("interactive", "this view is a picture", "show it with interactive=True")

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native
+from ._extra import extra
 from .design import Design, DesignLike, chosen
 from .errors import ArgumentError, NotARecordError, ShapeError
 from .record import Progress, _Bar, _sequence, _whole
@@ -105,7 +106,8 @@ class Simulation(Columns):
     def plot(self, *, ax: Axes | None = None, **line: Any) -> Axes:
         """Draws the energy against the share of the pull, and gives the axes."""
         if ax is None:
-            from matplotlib import pyplot
+            with extra("plot"):
+                from matplotlib import pyplot
 
             ax = pyplot.figure(layout="constrained").add_subplot()
         ax.plot(self.frame_share, self.energy, **{"marker": "o", **line})
@@ -119,7 +121,8 @@ class Simulation(Columns):
         if self.forces is None or not np.isfinite(self.forces["stretch"]).any():
             raise ArgumentError("plot_force", "no frame has a stretch along a pull", "hold an edge and pull the one opposite to it")
         if ax is None:
-            from matplotlib import pyplot
+            with extra("plot"):
+                from matplotlib import pyplot
 
             ax = pyplot.figure(layout="constrained").add_subplot()
         ax.plot(self.forces["stretch"], self.forces["mean_force"], **{"marker": "o", **line})

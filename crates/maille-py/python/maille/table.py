@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ._extra import extra
+
 if TYPE_CHECKING:
     import pandas
     import polars
@@ -24,19 +26,22 @@ class Columns:
 
     def to_arrow(self) -> pyarrow.Table:
         """A `pyarrow.Table`."""
-        import pyarrow
+        with extra("table"):
+            import pyarrow
 
         columns = {name: (column, pyarrow.float64() if column.dtype.kind == "f" else None) for name, column in self.to_numpy().items()}
         return pyarrow.table({name: pyarrow.array(_plain(column), kind) for name, (column, kind) in columns.items()})
 
     def to_pandas(self) -> pandas.DataFrame:
         """A `pandas.DataFrame`."""
-        frame: pandas.DataFrame = self.to_arrow().to_pandas()
+        with extra("table"):
+            frame: pandas.DataFrame = self.to_arrow().to_pandas()
         return frame
 
     def to_polars(self) -> polars.DataFrame:
         """A `polars.DataFrame`."""
-        import polars
+        with extra("polars"):
+            import polars
 
         frame = polars.from_arrow(self.to_arrow())
         assert isinstance(frame, polars.DataFrame)
