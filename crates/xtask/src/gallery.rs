@@ -148,14 +148,8 @@ impl Page {
 }
 
 fn document(pages: &[Page], pulls: &str) -> String {
-    let mut out = format!(
-        "# Gallery\n\n\
-        Every built-in design: the sheet at its start, the largest stretch in each direction, and the numbers. Written by\n\
-        `cargo xtask gallery`, which runs for each\n\n<!-- with: NAME=1.1 -->\n\n    \
-        maille characterize NAME {pulls}\n    \
-        maille render NAME {RENDER}\n    \
-        maille plot NAME {PLOT}\n    \
-        maille inspect NAME --json\n\n\
+    let mut out = "# Gallery\n\n\
+        Every built-in design: the sheet at its start, the largest stretch in each direction, and the numbers.\n\n\
         Lengths are relative to R, the design's reference radius; a negative gap is an overlap that the file allows at\n\
         the start. l1 is the largest stretch along the pull, less 1, with\n\
         the width held (l2 = 0), and the direction where it is least and largest; of equal ones the first. *Attained* says\n\
@@ -164,10 +158,17 @@ fn document(pages: &[Page], pulls: &str) -> String {
         [reading plots](../guide/reading-plots.md) and [certificates](../guide/certificates.md).\n\n\
         | design | rings | links | smallest gap / R | wire / R | smallest l1 | largest l1 | attained |\n\
         | --- | --- | --- | --- | --- | --- | --- | --- |\n"
-    );
+    .to_owned();
     out.extend(pages.iter().map(|page| &*page.line));
     out.extend(pages.iter().map(|page| &*page.section));
-    out
+    out + &format!(
+        "\n## How it is made\n\n\
+        `cargo xtask gallery` runs for each design\n\n<!-- with: NAME=1.1 -->\n\n    \
+        maille characterize NAME {pulls}\n    \
+        maille render NAME {RENDER}\n    \
+        maille plot NAME {PLOT}\n    \
+        maille inspect NAME --json\n"
+    )
 }
 
 /// The name that a heading has in a link, as GitHub makes it.

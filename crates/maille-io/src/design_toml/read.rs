@@ -304,7 +304,7 @@ impl Reader<'_> {
 
     fn ring(&mut self, value: &Value<'_>, path: &str) -> Option<RingSpec> {
         let at = self.table(value, path, RING, "write { major_radius = 1.0, normal = [0.0, 0.0, 1.0] }")?;
-        let help = "major_radius = 1.0, the radius of the ring's core circle";
+        let help = "major_radius = 1.0, the radius of the ring's core circle: (inner diameter + wire) / 2";
         let major_radius = self.required(&at, "major_radius", help).and_then(|(v, p)| self.number(v, &p));
         let help = "normal = [0.0, 0.0, 1.0] for a ring that lies in the sheet; any non-zero vector";
         let normal = self.required(&at, "normal", help).and_then(|(v, p)| self.vector(v, &p));

@@ -53,7 +53,7 @@ export class ExportMenu {
     const request: Export = {
       format,
       subject: a.subject,
-      tile: frames ? [1, 1] : tile,
+      tile: frames ? [1, 1] : a.cells(tile),
       state: frames ? { ...NO_STATE, ...frames.posed(t).state } : (limit?.state ?? null),
       cell: frames ? frames.simulation.sheet.cell : (limit?.row.cell ?? null),
       finite: frames !== null,

@@ -272,6 +272,11 @@ export class Side {
     return limit && sheet && reached(limit) !== null && limit.state.poses.length ? { limit, sheet } : null;
   }
 
+  /** The cells to draw of those that are asked for: a chain is one cell wide. */
+  cells(tile: [number, number]): [number, number] {
+    return this.design?.lattice.single ? [tile[0], 1] : tile;
+  }
+
   /** What is drawn at `t`, between the start and the limit, or between the first state of a simulation and the last. */
   drawn(t: number): Pick<Drawing, "sheet" | "limit" | "t"> | null {
     if (this.frames) return { sheet: this.frames.simulation.sheet, limit: this.frames.posed(t), t: 1 };

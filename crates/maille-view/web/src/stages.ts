@@ -53,7 +53,7 @@ export class Stages {
     stage.show({
       own,
       ...drawn,
-      tile: frames ? [1, 1] : mode === "draw" ? DRAWN : tile,
+      tile: frames ? [1, 1] : mode === "draw" ? DRAWN : side.cells(tile),
       reach: frames?.reach ?? null,
       colorBy,
       picked,
