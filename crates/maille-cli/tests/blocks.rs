@@ -102,7 +102,7 @@ impl Block {
         }
         let mut lines = self.lines.iter().enumerate();
         while let Some((index, line)) = lines.next() {
-            let mut command = line.split("   ").next().unwrap_or_default().trim().to_owned();
+            let mut command = line.trim().split("  ").next().unwrap_or_default().to_owned();
             while command.ends_with('\\') {
                 command.pop();
                 command += lines.next().map_or("", |(_, line)| line.trim());
