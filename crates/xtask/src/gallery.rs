@@ -162,8 +162,7 @@ fn document(pages: &[Page], pulls: &str) -> String {
     out.extend(pages.iter().map(|page| &*page.line));
     out.extend(pages.iter().map(|page| &*page.section));
     out + &format!(
-        "\n## How it is made\n\n\
-        `cargo xtask gallery` runs for each design\n\n<!-- with: NAME=1.1 -->\n\n    \
+        "\n---\n\n**How it is made.** `cargo xtask gallery` runs for each design\n\n<!-- with: NAME=1.1 -->\n\n    \
         maille characterize NAME {pulls}\n    \
         maille render NAME {RENDER}\n    \
         maille plot NAME {PLOT}\n    \
