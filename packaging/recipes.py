@@ -1,6 +1,6 @@
 """Fills in the recipes for conda-forge and Homebrew, and tries them.
 
-    python packaging/recipes.py OUT --sdist FILE --crates FOLDER --repository https://... [--maintainer NAME]
+    python packaging/recipes.py OUT --sdist FILE --crates FOLDER --repository https://... --maintainer NAME
     python packaging/recipes.py OUT --sdist FILE --crates FOLDER --try
 
 --sdist is the file as it will be on PyPI, and FOLDER has the crates as they will be on crates.io: the recipes name
@@ -95,12 +95,14 @@ def main():
     parser.add_argument("--sdist", type=pathlib.Path, required=True)
     parser.add_argument("--crates", type=pathlib.Path, required=True)
     parser.add_argument("--repository")
-    parser.add_argument("--maintainer", default="")
+    parser.add_argument("--maintainer", help="account of who looks after the recipes, for conda-forge")
     parser.add_argument("--try", dest="tried", action="store_true")
     asked = parser.parse_args()
-    if (asked.repository is None) != asked.tried:
-        parser.error("give either --repository or --try")
-    known = facts(asked.sdist, asked.crates, asked.repository or "https://example.org/maille", asked.maintainer or "someone")
+    if asked.tried:
+        asked.repository, asked.maintainer = "https://example.org/maille", "someone"
+    if not (asked.repository or "").startswith("https://") or not asked.maintainer:
+        parser.error("give --repository https://... and --maintainer, or --try")
+    known = facts(asked.sdist, asked.crates, asked.repository, asked.maintainer)
     fill(asked.out, known)
     if asked.tried:
         # Outside of the repository, whose workspace the crates would otherwise be counted to.

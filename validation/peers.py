@@ -1,7 +1,7 @@
 """The same questions to maille and to engines for rigid bodies, with the tables of docs/peers.md.
 
     pip install ./crates/maille-py -r validation/peers.txt
-    python validation/peers.py [--write docs/peers.md] [--only rapier,MuJoCo,Bullet,Coal]
+    python validation/peers.py [--write docs/peers.md] [--only rapier,MuJoCo,Bullet,Coal] [--facets 32]
 
 1. A pull with a known answer. A piece of design 1.1, 3 x 3 cells with free edges. The flat rings of the first
    column are fixed, those of the last are pulled along x, each with the same force. Taut chains along x are
@@ -10,7 +10,7 @@
 2. The same pull of European 4-in-1, 4 x 4 cells, with default time steps. maille simulate gives the stretch.
 3. The gaps between random rings, against distances of meshes.
 
-The engines have no torus, so a ring is 32 capsules with their ends on the core circle. R is 1. Bodies have mass 1,
+The engines have no torus, so a ring is 32 capsules (--facets) with their ends on the core circle. R is 1. Bodies have mass 1,
 no friction, no gravity, and velocities decay as exp(-t). A run ends when the stretch changes by less than 1e-6 in
 a unit of time, or after 40. The links and the smallest gap of the end are computed by maille, from the poses, for
 round rings. Times are processor times of all threads; building a scene does not count.
@@ -29,7 +29,6 @@ import maille
 import numpy as np
 
 TAUT = 1.44
-CAPSULES = 32
 FORCES = (1.0, 10.0, 100.0)
 FINER = (4.0, 1.0, 0.25)  # the default time step, divided by these
 MARK = "<!-- made by `python validation/peers.py --write docs/peers.md` from here on -->"
@@ -38,8 +37,8 @@ MARK = "<!-- made by `python validation/peers.py --write docs/peers.md` from her
 class Piece:
     """A piece of cells x cells at the start, in units of R: names, centres, normals; which rings are held and pulled."""
 
-    def __init__(self, design, cells):
-        self.design, self.cells = maille.Design.of(design), cells
+    def __init__(self, design, cells, facets):
+        self.design, self.cells, self.facets = maille.Design.of(design), cells, facets
         self.unit = self.design.reference_radius
         self.wire = self.design.minor_radius / self.unit
         self.names, centers, normals = [], [], []
@@ -78,7 +77,7 @@ class Piece:
         u = np.cross(n, [0.3, 0.5, 0.8])
         u /= np.linalg.norm(u)
         v = np.cross(n, u)
-        at = np.arange(CAPSULES + 1) * 2 * math.pi / CAPSULES
+        at = np.arange(self.facets + 1) * 2 * math.pi / self.facets
         points = np.outer(np.cos(at), u) + np.outer(np.sin(at), v)
         return list(zip(points[:-1], points[1:]))
 
@@ -108,7 +107,7 @@ class Rapier:
             body = self.world.add_body(
                 builder.translation(tuple(center)).linear_damping(1.0).angular_damping(1.0).can_sleep(False))
             for a, b in piece.capsules(k):
-                capsule = rp.Collider.capsule_from_endpoints(tuple(a), tuple(b), piece.wire).mass(1 / CAPSULES).friction(0.0)
+                capsule = rp.Collider.capsule_from_endpoints(tuple(a), tuple(b), piece.wire).mass(1 / piece.facets).friction(0.0)
                 self.world.add_collider(capsule, body)
             if k in piece.pulled:
                 self.world.rigid_bodies[body].add_force((force, 0.0, 0.0))
@@ -135,7 +134,7 @@ class Mujoco:
         for k, center in enumerate(piece.centers):
             pieces = "".join(
                 '<geom type="capsule" size="{}" mass="{}" fromto="{}"/>'.format(
-                    piece.wire, 1 / CAPSULES, " ".join(repr(float(x)) for x in (*a, *b)))
+                    piece.wire, 1 / piece.facets, " ".join(repr(float(x)) for x in (*a, *b)))
                 for a, b in piece.capsules(k))
             joint = "" if k in piece.held else '<joint type="free" damping="1"/>'
             place = " ".join(repr(float(x)) for x in center)
@@ -231,14 +230,14 @@ def simulated(piece):
 
 
 def limit():
-    """The limit of the periodic sheet 1.1 along x, the median time of 21."""
+    """The limit of the periodic sheet 1.1 along x: its status, and the values of a row; the time is the median of 21."""
     times = []
     for _ in range(21):
         begun = time.process_time()
         record = maille.characterize("1.1", directions=[0], l2=[0])
         times.append(time.process_time() - begun)
     columns = record.to_numpy()
-    return 1 + columns["l1"][0], columns["min_gap"][0], 0, float(np.median(times))
+    return columns["status"][0], (1 + columns["l1"][0], columns["min_gap"][0], 0, float(np.median(times)))
 
 
 def pulls(engines, piece, finer, known=None):
@@ -253,7 +252,8 @@ def pulls(engines, piece, finer, known=None):
         print("  ".join(rows[-1]), file=sys.stderr, flush=True)
 
     if known is TAUT:
-        add("`maille characterize`", "the periodic sheet, `global`", *limit())
+        status, values = limit()
+        add("`maille characterize`", f"the periodic sheet, `{status}`", *values)
     add("`maille simulate`", "the piece", *own)
     for engine in engines:
         for share in finer:
@@ -351,6 +351,7 @@ def cpu():
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", default="rapier,MuJoCo,Bullet,Coal")
+    parser.add_argument("--facets", type=int, default=32, help="capsules of a ring [default: 32]")
     parser.add_argument("--write", type=Path, help="the page whose tables to make anew")
     asked = parser.parse_args()
     only = asked.only.split(",")
@@ -359,8 +360,8 @@ def main():
     versions = ", ".join(f"{name} {importlib.metadata.version(package)}" for name, package in packages)
     text = f"maille {maille.__version__}, {versions}; Python {platform.python_version()}, {os.cpu_count()} cores of {cpu()}.\n"
     if engines:
-        text += "\n## A grid of rings\n\n" + markdown(pulls(engines, Piece("1.1", 3), FINER, TAUT)) + "\n"
-        text += "\n## A dense weave\n\n" + markdown(pulls(engines, Piece("european-4-in-1", 4), (1.0,))) + "\n"
+        text += "\n## A grid of rings\n\n" + markdown(pulls(engines, Piece("1.1", 3, asked.facets), FINER, TAUT)) + "\n"
+        text += "\n## A dense weave\n\n" + markdown(pulls(engines, Piece("european-4-in-1", 4, asked.facets), (1.0,))) + "\n"
     if "Coal" in only:
         text += "\n## The gap between two rings\n\n" + markdown(gaps()) + "\n"
     if asked.write is None:

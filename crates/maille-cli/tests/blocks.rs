@@ -8,15 +8,16 @@
 //!     <!-- excerpt: designs/1.1.toml -->        its lines are lines of this file of the repository
 //!     <!-- before: maille designs -->           a command whose results the page takes as given
 //!     <!-- with: NAME=1.1 -->                   what stands for a word
-//!     <!-- slow: 40 s -->                       not run in each test; the time is of the release profile
+//!     <!-- slow: 40 s -->                       not run in each test; it takes about so long
 //!     <!-- ends: 3 -->                          with an error, as the page says
 //!
 //! Slow blocks, and with them all others of their page, are run by
 //!
 //!     cargo nextest run --release -p maille-cli --test blocks --run-ignored all
 //!
-//! Commands that do not end (`--watch`, the server of `view`) are only parsed, by another test, and so are those of a batch
-//! system; the site's check in a browser opens what `view --bundle` writes. Blocks of Python are run by the tests of the Python package, blocks of Rust by `cargo test --doc`.
+//! `--watch` and `view` do not end or need the viewer: `src/docs.rs` parses them, as it does slow ones, and the site's check in a
+//! browser opens what `view --bundle` writes. Blocks of Python are run by the tests of the Python package, blocks of Rust by
+//! `cargo test --doc`.
 #![cfg(unix)]
 
 use std::{

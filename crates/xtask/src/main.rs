@@ -53,7 +53,7 @@ cargo xtask COMMAND
            checksums
            --try           install that into a Debian without Rust, and run it there; needs root
   recipes  fill in the recipes for conda-forge and Homebrew, after `package`, into target/recipes
-           --repository URL  the project's address, which they name
+           --repository URL --maintainer NAME  the project's address and an account, which they name
            --try             with an example's address; build and test by them, without conda-forge and Homebrew; needs Ruby
   publish  try to publish every crate, in order, without doing so
   bench    every bench, and docs/performance.md from it; close other programs first
@@ -90,7 +90,9 @@ fn main() -> ExitCode {
         ["site", "--program", program] => steps::site(&root, Some(program)),
         ["package"] => steps::failed(package::write(&root)),
         ["package", "--try"] => steps::failed(package::try_clean(&root)),
-        ["recipes", "--repository", address] => steps::failed(package::recipes(&root, Recipes::Of(address))),
+        ["recipes", "--repository", repository, "--maintainer", maintainer] => {
+            steps::failed(package::recipes(&root, Recipes::Of { repository, maintainer }))
+        }
         ["recipes", "--try"] => steps::failed(package::recipes(&root, Recipes::Try)),
         ["publish"] => steps::failed(package::publish(&root)),
         ["bench"] => steps::failed(bench::write(&root, None)),

@@ -46,9 +46,9 @@ pub fn write(root: &Path) -> Result<(), String> {
 
 /// Where the recipes get their addresses from.
 pub enum Recipes<'a> {
-    /// The repository that they name.
-    Of(&'a str),
-    /// None: the recipes are tried, as far as this machine can.
+    /// The repository and the maintainer that they name.
+    Of { repository: &'a str, maintainer: &'a str },
+    /// An example: the recipes are tried, as far as this machine can.
     Try,
 }
 
@@ -69,7 +69,9 @@ pub fn recipes(root: &Path, how: Recipes<'_>) -> Result<(), String> {
     command.arg(root.join("packaging/recipes.py")).arg(target(root).join("recipes")).arg("--sdist").arg(sdist);
     command.arg("--crates").arg(crates);
     match how {
-        Recipes::Of(repository) => command.args(["--repository", repository]),
+        Recipes::Of { repository, maintainer } => {
+            command.args(["--repository", repository, "--maintainer", maintainer])
+        }
         Recipes::Try => command.arg("--try").env("CARGO_TARGET_DIR", target(root)),
     };
     done(&mut command, "write the recipes")
