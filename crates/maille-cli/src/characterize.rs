@@ -4,7 +4,7 @@ use crate::{
     effort::SearchArgs,
     exit::{self, refused, wrong},
     help::ENERGY,
-    input::{DesignArgs, Input, file_name},
+    input::{self, DesignArgs, Input, file_name},
     map::{self, RunArgs, Solved, unanswered},
     numbers::{Numbers, one_of, parse, parse_l2, positive, read},
     output,
@@ -275,7 +275,7 @@ fn once(args: &Args) -> Result<ExitCode> {
     let begun = Instant::now();
     let open = map::open(&map, &input)?;
     if !args.quiet {
-        Input::warn(&input.compile(&input.design, Cell::PRIMITIVE)?);
+        input::warn(&input.compile(&input.design, Cell::PRIMITIVE)?);
     }
     let Solved { records, tally, interrupted, .. } = map::solve(vec![("", open)], &out, args.run.threads, args.quiet)?;
     let rows = &records[0].rows;

@@ -1,10 +1,7 @@
 //! `maille designs`: the built-in designs with a line each.
 
-use crate::{
-    exit::{self, wrong},
-    output,
-};
-use maille_io::{builtin, builtin_designs, nearest_builtin, read_design};
+use crate::{input::built_in_file, output};
+use maille_io::{builtin_designs, read_design};
 use miette::Result;
 use serde_json::json;
 
@@ -27,12 +24,7 @@ pub struct Args {
 /// Prints the list.
 pub fn run(args: &Args) -> Result<()> {
     if let Some(name) = &args.file {
-        let Some(text) = builtin(name) else {
-            let near = nearest_builtin(name).map_or(String::new(), |near| format!("did you mean {near}? "));
-            let help = format!("{near}`maille designs` lists them");
-            return Err(wrong(exit::DESIGN, format!("there is no built-in design {name}"), help));
-        };
-        return output::print(text.as_bytes());
+        return output::print(built_in_file(name)?.as_bytes());
     }
     let designs: Vec<_> =
         builtin_designs().iter().map(|entry| read_design(entry.name, entry.toml)).collect::<Result<_, _>>()?;

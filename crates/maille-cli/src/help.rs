@@ -83,7 +83,8 @@ pub fn matches(program: Command) -> ArgMatches {
         groups()
     ));
     let names: Vec<String> = program.get_subcommands().map(|command| command.get_name().to_owned()).collect();
-    let program = names.iter().fold(program, |program, name| program.mut_subcommand(name, with_short_lines));
+    let clearer = |command| with_short_lines(with_negative_numbers(command));
+    let program = names.iter().fold(program, |program, name| program.mut_subcommand(name, clearer));
     let energy = std::env::args().any(|word| word == "energy" || word == "--method=energy");
     let hide = |arg: clap::Arg| if arg.get_help_heading() == Some(ENERGY) { arg.hide(true) } else { arg };
     match energy {
@@ -93,14 +94,16 @@ pub fn matches(program: Command) -> ArgMatches {
     .get_matches()
 }
 
-/// The command with its examples on lines that a terminal of 80 letters does not break. Its options take negative numbers, so that
-/// those that must not be negative can say so.
-fn with_short_lines(command: Command) -> Command {
-    let negative = |arg: clap::Arg| match arg.get_long().is_some() && arg.get_action().takes_values() {
+/// The command with options that take negative numbers, so that those that must not be negative can say so.
+fn with_negative_numbers(command: Command) -> Command {
+    command.mut_args(|arg| match arg.get_long().is_some() && arg.get_action().takes_values() {
         true => arg.allow_negative_numbers(true),
         false => arg,
-    };
-    let command = command.mut_args(negative);
+    })
+}
+
+/// The command with its examples on lines that a terminal of 80 letters does not break.
+fn with_short_lines(command: Command) -> Command {
     match command.get_after_help().map(|help| short_lines(&help.to_string())) {
         Some(help) => command.after_help(help),
         None => command,

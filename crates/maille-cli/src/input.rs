@@ -139,13 +139,6 @@ impl Input {
         self.source.explain(&found).list()
     }
 
-    /// Prints what is odd about the links of a design, as a sheet that falls apart.
-    pub fn warn(model: &Model) {
-        for warning in topology::warnings(model) {
-            eprintln!("warning: {}", warning.problem);
-        }
-    }
-
     /// The same design with the parameters of a study.
     pub fn varied(&self, variant: &Variant) -> Result<Input> {
         let changed = variant.words();
@@ -198,6 +191,13 @@ impl Input {
     }
 }
 
+/// Prints what is odd about the links of a model, as a sheet that falls apart.
+pub fn warn(model: &Model) {
+    for warning in topology::warnings(model) {
+        eprintln!("warning: {}", warning.problem);
+    }
+}
+
 /// Problems that are listed one by one.
 const MOST: usize = 6;
 
@@ -226,6 +226,12 @@ fn cure(file: &str) -> String {
     )
 }
 
+/// The text of a built-in design's file.
+pub fn built_in_file(name: &str) -> Result<&'static str> {
+    builtin(name)
+        .ok_or_else(|| wrong(exit::DESIGN, format!("there is no built-in design \"{name}\""), nearest_help(name)))
+}
+
 fn unknown(name: &str) -> Report {
     if Path::new(name).extension().is_some_and(|e| e == "toml") || name.contains(std::path::is_separator) {
         let help = "is it in this folder? `maille designs` lists the built-in ones, `maille new` writes a file";
@@ -239,16 +245,19 @@ fn unknown(name: &str) -> Report {
             format!("did you mean the file {file}?"),
         );
     }
+    wrong(exit::DESIGN, format!("there is no built-in design and no file \"{name}\""), nearest_help(name))
+}
+
+/// Which built-in design may have been meant.
+fn nearest_help(name: &str) -> String {
     // Nearly every number is near another: only words are guessed.
-    let near = nearest_builtin(name).filter(|_| name.len() > 3);
-    let help = match near {
+    match nearest_builtin(name).filter(|_| name.len() > 3) {
         Some(near) => format!("did you mean {near}? `maille designs` lists them"),
         None => {
             let names: Vec<&str> = builtin_designs().iter().map(|b| b.name).collect();
             format!("`maille designs` says what they are: {}", names.join(", "))
         }
-    };
-    wrong(exit::DESIGN, format!("there is no built-in design and no file \"{name}\""), help)
+    }
 }
 
 /// What is wrong, as a list for scripts: field, problem, help, and line and column from 1 where the file has a place.

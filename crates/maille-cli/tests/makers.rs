@@ -217,6 +217,59 @@ fn check_warns_of_what_is_odd() {
     }
 }
 
+/// The commands whose files one would print say so too, unless they are to be quiet.
+#[test]
+fn commands_warn_of_a_sheet_that_falls_apart() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::write(folder.join("w.toml"), WEAVE).unwrap();
+    for line in ["export w.toml --out w.stl", "characterize w.toml --directions 0 --l2 0 --out w"] {
+        let said = done(folder, &format!("{line} --overwrite"));
+        assert!(said.err.contains("warning: ") && said.err.contains("in one direction only, 0.0°"), "{}", said.err);
+        let said = done(folder, &format!("{line} --overwrite --quiet"));
+        assert!(!said.err.contains("warning"), "{}", said.err);
+    }
+}
+
+/// The file of a built-in design is a file like any other: it is the design itself.
+#[test]
+fn the_file_of_a_built_in_design_is_that_design() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    for design in maille_io::builtin_designs() {
+        let file = done(folder, &format!("designs --file {}", design.name)).out;
+        assert_eq!(file, design.toml);
+        fs::write(folder.join("own.toml"), file).unwrap();
+        let [own, built_in] = ["own.toml", design.name].map(|of| json(folder, &format!("inspect {of} --json")));
+        assert_eq!(own["links"], built_in["links"], "{}", design.name);
+    }
+}
+
+/// A chain has cells in one direction: it is as long as asked, and one cell wide.
+#[test]
+fn a_chain_of_a_size_is_one_cell_wide() {
+    let folder = tempfile::tempdir().unwrap();
+    let said = done(folder.path(), "export cable --size 10x10cm --out c.stl");
+    assert!(said.err.contains("x1 cells"), "{}", said.err);
+}
+
+/// A clearance of 0.3 mm is that of 0.03 cm, and a number alone is one of millimetres.
+#[test]
+fn a_clearance_has_a_unit() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    done(folder, "new w.toml --weave european-4-in-1 --wire 1.6mm --id 8mm --quiet");
+    let asked = |clearance: &str| {
+        let ran =
+            maille(folder, &format!("export w.toml --tile 2x2 --out w.stl --overwrite --min-clearance {clearance}"));
+        (ran.code, ran.out + &ran.err)
+    };
+    let [millimetres, centimetres, bare] = ["0.3mm", "0.03cm", "0.3"].map(asked);
+    assert_eq!(millimetres, bare);
+    assert_eq!(centimetres, bare);
+    assert_ne!(asked("3mm").0, asked("0.001mm").0);
+}
+
 /// Squares whose corners are rounded less than the thickest wire needs: no pair of elements shows it.
 #[test]
 fn a_wire_that_is_too_thick_for_a_bend_is_named() {

@@ -1,10 +1,10 @@
-"""Files are whole or not there, wherever Ctrl-C falls."""
+"""Files are whole or not there, wherever Ctrl-C falls; packages that are missing are named."""
 
 import os
 
 import pytest
 
-from maille import _files
+from maille import _extra, _files
 
 
 @pytest.mark.parametrize("renamed", [False, True])
@@ -23,3 +23,10 @@ def test_ctrl_c_about_the_renaming(renamed, tmp_path, monkeypatch):
         _files.write_whole(file, b"after")
     assert file.read_bytes() == (b"after" if renamed else b"before")
     assert list(tmp_path.iterdir()) == [file]
+
+
+def test_a_missing_package_is_named_with_what_to_install():
+    with pytest.raises(ModuleNotFoundError, match=r'^this needs no_such_package: pip install "maille\[plot\]"$') as found:
+        with _extra.extra("plot"):
+            import no_such_package  # noqa: F401
+    assert found.value.name == "no_such_package"

@@ -7,7 +7,7 @@ use crate::{
     exit::{self, wrong},
     extreme::closest,
     frames::Frame,
-    input::Input,
+    input,
     numbers::positive,
     output,
     piece::PieceArgs,
@@ -218,7 +218,7 @@ pub fn run(args: &Args) -> Result<()> {
         interpolation_note(&source, &frames, mm).into_iter().for_each(note);
     }
     if !args.quiet {
-        Input::warn(&source.model);
+        input::warn(&source.model);
     }
     let series = write_frames(args, &source, &frames, tile, mm, &destination, &formats)?;
     match &destination {

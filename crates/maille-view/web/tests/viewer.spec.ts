@@ -30,6 +30,13 @@ test("the first picture, and turning it", async ({ page, program }) => {
   expect(Math.hypot(...turned.map((x, k) => x - dragged[k]!))).toBeGreaterThan(0.5);
 });
 
+test("a chain is one cell wide", async ({ page, program }) => {
+  await page.goto(await program.view("cable"));
+  await page.waitForFunction(() => performance.getEntriesByName("maille-first-picture").length > 0);
+  const rings = await page.evaluate(() => (window as unknown as Handle).maille.stage.ringCount);
+  expect(rings).toBe(8 * 2);
+});
+
 test("a click at 45 degrees shows the number of the program", async ({ page, program }) => {
   await page.goto(await program.view("1.1"));
   await solved(page);
