@@ -4,7 +4,7 @@ use crate::{
     effort::SearchArgs,
     exit::{self, refused, wrong},
     help::ENERGY,
-    input::{self, DesignArgs, Input, file_name},
+    input::{self, DesignArgs, file_name},
     map::{self, RunArgs, Solved, unanswered},
     numbers::{Numbers, one_of, parse, parse_l2, positive, read},
     output,

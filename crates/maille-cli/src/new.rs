@@ -38,7 +38,8 @@ Wires: a diameter as 1.6mm or 0.064in, or a gauge: 16swg (British), 16awg (Ameri
 A schema for editors, maille.schema.json, is written beside the file if it is not there yet: with taplo, or an editor
 that uses it, fields are completed and checked. --no-schema leaves it out.")]
 pub struct Args {
-    /// Name of the design
+    /// Name of the design, and of its file without .toml
+    #[arg(value_parser = without_ending)]
     name: String,
     /// The weave
     #[arg(long, value_enum)]
@@ -104,6 +105,11 @@ impl WeaveArg {
             WeaveArg::KingsMail => Weave::KingsMail,
         }
     }
+}
+
+/// A design's name; whoever gives that of the file means the same.
+fn without_ending(text: &str) -> Result<String, std::convert::Infallible> {
+    Ok(text.strip_suffix(".toml").unwrap_or(text).to_owned())
 }
 
 /// Runs the command.
