@@ -7,7 +7,11 @@ use crate::{
     view,
     wheel::Environment,
 };
-use std::{env, fs, path::Path, process::Command};
+use std::{
+    env, fs,
+    path::{Path, PathBuf},
+    process::Command,
+};
 
 /// What is built with, beside Rust: a C compiler that links for old systems, and maturin.
 const LOCK: &str = "packaging/requirements.lock";
@@ -52,22 +56,26 @@ pub enum Recipes<'a> {
     Try,
 }
 
+/// The source of the Python package among what `write` has made.
+fn source(root: &Path) -> Result<PathBuf, String> {
+    let sdist = target(root).join("dist").join(format!("maille-{}.tar.gz", env!("CARGO_PKG_VERSION")));
+    match sdist.is_file() {
+        true => Ok(sdist),
+        false => Err(format!("{} is not there; make it with `cargo xtask package`", sdist.display())),
+    }
+}
+
 /// Fills in the recipes of `packaging` for conda-forge and Homebrew, after `write`.
 pub fn recipes(root: &Path, how: Recipes<'_>) -> Result<(), String> {
+    let sdist = source(root)?;
     view::page(root)?;
     let mut command = Command::new(cargo());
     command.args(["package", "--no-verify", "--locked", "--allow-dirty", "--quiet"]).current_dir(root);
     done(command.args(CRATES.iter().flat_map(|name| ["--package", name])), "pack the crates")?;
-    let version = env!("CARGO_PKG_VERSION");
-    let (dist, crates) = (target(root).join("dist"), target(root).join("package"));
-    let sdist = dist.join(format!("maille-{version}.tar.gz"));
-    if !sdist.is_file() {
-        return Err(format!("{} is not there; make it with `cargo xtask package`", sdist.display()));
-    }
     let tools = Environment::of_tools(root, "packaging", LOCK)?;
     let mut command = tools.tool(tools.program("python"));
     command.arg(root.join("packaging/recipes.py")).arg(target(root).join("recipes")).arg("--sdist").arg(sdist);
-    command.arg("--crates").arg(crates);
+    command.arg("--crates").arg(target(root).join("package"));
     match how {
         Recipes::Of { repository, maintainer } => {
             command.args(["--repository", repository, "--maintainer", maintainer])
@@ -161,6 +169,7 @@ fn python(root: &Path, tools: &Environment, out: &Path) -> Result<(), String> {
 
 /// Installs what `write` has built into a Debian without Rust, and runs it there; needs root and debootstrap.
 pub fn try_clean(root: &Path) -> Result<(), String> {
+    source(root)?;
     let script = root.join("packaging/clean.sh");
     done(Command::new("sh").arg(script).arg(target(root).join("dist")), "try the packages in a clean Debian")
 }
