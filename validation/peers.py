@@ -1,19 +1,21 @@
 """The same questions to maille and to engines for rigid bodies, with the tables of docs/peers.md.
 
     pip install ./crates/maille-py -r validation/peers.txt
-    python validation/peers.py [--write docs/peers.md] [--only rapier,MuJoCo,Bullet,Coal] [--facets 32]
+    python validation/peers.py [--write docs/peers.md] [--only rapier,MuJoCo,torus,Bullet,Coal] [--facets 32]
 
 1. A pull with a known answer. A piece of design 1.1, 3 x 3 cells with free edges. The centres of the flat rings of
    the first column are held, those of the last are pulled along x, each with the same force. Taut chains along x are
    straight, so the stretch between the two columns is known: 2 (2R - 2r) / 2.5 R = 1.44 at r = 0.1 R. Each engine
-   runs with nine settings: its default time step, a quarter of it and four times it; forces 1, 10 and 100.
+   runs with nine settings: its default time step, a quarter of it and four times it; forces 1, 10 and 100. MuJoCo
+   runs once more with its torus, and the default time step.
 2. The same pull of European 4-in-1, 4 x 4 cells, with default time steps. maille simulate gives the stretch.
 3. The gaps between random rings, against distances of meshes.
 
-The engines have no torus, so a ring is 32 capsules (--facets) with their ends on the core circle. R is 1. Bodies have mass 1,
-no friction, no gravity, and velocities decay as exp(-t). A run ends when the stretch changes by less than 1e-6 in
-a unit of time, or after 40. The links and the smallest gap of the end are computed by maille, from the poses, for
-round rings. Times are processor times of all threads; building a scene does not count.
+A ring is 32 capsules (--facets) with their ends on the core circle; only MuJoCo has a torus, a signed distance on which
+it searches for contacts. R is 1. Bodies have mass 1, no friction, no gravity, and velocities decay as exp(-t). A run
+ends when the stretch changes by less than 1e-6 in a unit of time, or after 40; it is stopped after two minutes. The
+links and the smallest gap of the end are computed by maille, from the poses, for round rings. Times are processor times
+of all threads; building a scene does not count.
 """
 import argparse
 import importlib.metadata
@@ -31,6 +33,7 @@ import numpy as np
 TAUT = 1.44
 FORCES = (1.0, 10.0, 100.0)
 FINER = (4.0, 1.0, 0.25)  # the default time step, divided by these
+MOST_S = 120.0  # of processor time, for one run
 MARK = "<!-- made by `python validation/peers.py --write docs/peers.md` from here on -->"
 
 
@@ -80,6 +83,10 @@ class Piece:
         at = np.arange(self.facets + 1) * 2 * math.pi / self.facets
         points = np.outer(np.cos(at), u) + np.outer(np.sin(at), v)
         return list(zip(points[:-1], points[1:]))
+
+
+def words(numbers):
+    return " ".join(repr(float(x)) for x in numbers)
 
 
 def unit(vectors):
@@ -133,26 +140,43 @@ class Mujoco:
         self.piece, self.mujoco = piece, mujoco
         bodies = []
         for k, center in enumerate(piece.centers):
-            pieces = "".join(
-                '<geom type="capsule" size="{}" mass="{}" fromto="{}"/>'.format(
-                    piece.wire, 1 / piece.facets, " ".join(repr(float(x)) for x in (*a, *b)))
-                for a, b in piece.capsules(k))
             joint = f'<joint type="{"ball" if k in piece.held else "free"}" damping="1"/>'
-            place = " ".join(repr(float(x)) for x in center)
-            bodies.append(f'<body pos="{place}">{joint}{pieces}</body>')
+            bodies.append(f'<body pos="{words(center)}">{joint}{self.ring(piece, k)}</body>')
         self.model = mujoco.MjModel.from_xml_string(
-            f'<mujoco><option timestep="{step_s}" gravity="0 0 0"/><size memory="1G"/>'
+            f'<mujoco>{self.shapes(piece)}<option timestep="{step_s}" gravity="0 0 0"/><size memory="1G"/>'
             '<default><geom condim="1"/></default>'
             f'<worldbody>{"".join(bodies)}</worldbody></mujoco>')
         self.data = mujoco.MjData(self.model)
         for k in piece.pulled:
             self.data.xfrc_applied[k + 1, 0] = force  # body 0 is the world
 
+    def shapes(self, piece):
+        return ""
+
+    def ring(self, piece, k):
+        return "".join(
+            f'<geom type="capsule" size="{piece.wire}" mass="{1 / piece.facets}" fromto="{words((*a, *b))}"/>'
+            for a, b in piece.capsules(k))
+
     def step(self):
         self.mujoco.mj_step(self.model, self.data)
 
     def poses(self):
         return self.data.xpos[1:].copy(), rotated(self.data.xquat[1:], self.piece.normals)
+
+
+class MujocoTorus(Mujoco):
+    name = "MuJoCo, torus"
+
+    def shapes(self, piece):
+        size = f'<config key="radius1" value="1"/><config key="radius2" value="{piece.wire}"/>'
+        return ('<extension><plugin plugin="mujoco.sdf.torus">'
+                f'<instance name="ring">{size}</instance></plugin></extension>'
+                '<asset><mesh name="ring"><plugin instance="ring"/></mesh></asset>')
+
+    def ring(self, piece, k):
+        axis = words(piece.normals[k])
+        return f'<geom type="sdf" mesh="ring" mass="1" zaxis="{axis}"><plugin instance="ring"/></geom>'
 
 
 class Bullet:
@@ -183,7 +207,7 @@ class Bullet:
             d, middle = b - a, (a + b) / 2
             length = math.dist(a, b)
             turn = f"0 {math.acos(d[2] / length)} {math.atan2(d[1], d[0])}"
-            place = " ".join(repr(float(x)) for x in middle)
+            place = words(middle)
             pieces.append(f'<collision><origin xyz="{place}" rpy="{turn}"/><geometry>'
                           f'<capsule radius="{piece.wire}" length="{length}"/></geometry></collision>')
         return ('<robot name="ring"><link name="ring"><inertial><mass value="1"/>'
@@ -203,7 +227,7 @@ class Bullet:
 
 
 def run(engine, piece, step_s, force):
-    """One run of an engine: stretch, gap, lost links, seconds, and whether the piece came to rest."""
+    """One run of an engine: stretch, gap, lost links, seconds, and how it ended if not at rest."""
     scene = engine(piece, step_s, force)
     before, spent = math.nan, 0.0
     for _ in range(40):
@@ -213,9 +237,11 @@ def run(engine, piece, step_s, force):
         spent += time.process_time() - begun
         stretch, gap, lost = piece.result(*scene.poses())
         if abs(stretch - before) < 1e-6:
-            return stretch, gap, lost, spent, True
+            return stretch, gap, lost, spent, ""
+        if spent > MOST_S:
+            return stretch, gap, lost, spent, ", stopped"
         before = stretch
-    return stretch, gap, lost, spent, False
+    return stretch, gap, lost, spent, ", still moving"
 
 
 def simulated(piece):
@@ -259,10 +285,10 @@ def pulls(engines, piece, finer, known=None):
         add("`maille characterize`", f"the periodic sheet, `{status}`", *values)
     add("`maille simulate`", "the piece", *own)
     for engine in engines:
-        for share in finer:
+        for share in (1.0,) if engine is MujocoTorus else finer:
             for force in FORCES:
-                *found, rest = run(engine, piece, engine.step_s / share, force)
-                add(engine.name, f"step 1/{share / engine.step_s:.0f}, force {force:g}" + ("" if rest else ", still moving"), *found)
+                *found, end = run(engine, piece, engine.step_s / share, force)
+                add(engine.name, f"step 1/{share / engine.step_s:.0f}, force {force:g}" + end, *found)
     return rows
 
 
@@ -353,14 +379,15 @@ def cpu():
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--only", default="rapier,MuJoCo,Bullet,Coal")
+    parser.add_argument("--only", default="rapier,MuJoCo,torus,Bullet,Coal")
     parser.add_argument("--facets", type=int, default=32, help="capsules of a ring [default: 32]")
     parser.add_argument("--write", type=Path, help="the page whose tables to make anew")
     asked = parser.parse_args()
     only = asked.only.split(",")
-    engines = [engine for engine in (Rapier, Mujoco, Bullet) if engine.name in only]
-    packages = [(engine.name, engine.package) for engine in engines] + [("Coal", "coal")] * ("Coal" in only)
-    versions = ", ".join(f"{name} {importlib.metadata.version(package)}" for name, package in packages)
+    engines = [engine for engine in (Rapier, Mujoco, MujocoTorus, Bullet) if engine.name.removeprefix("MuJoCo, ") in only]
+    packages = {engine.name.removesuffix(", torus"): engine.package for engine in engines}
+    packages |= {"Coal": "coal"} if "Coal" in only else {}
+    versions = ", ".join(f"{name} {importlib.metadata.version(package)}" for name, package in packages.items())
     text = f"maille {maille.__version__}, {versions}; Python {platform.python_version()}, {os.cpu_count()} cores of {cpu()}.\n"
     if engines:
         text += "\n## A grid of rings\n\n" + markdown(pulls(engines, Piece("1.1", 3, asked.facets), FINER, TAUT)) + "\n"
