@@ -1,7 +1,7 @@
 """The same questions to maille and to engines for rigid bodies, with the tables of docs/peers.md.
 
     pip install ./crates/maille-py -r validation/peers.txt
-    python validation/peers.py [--write docs/peers.md] [--only rapier,MuJoCo,torus,Bullet,Coal] [--facets 32]
+    python validation/peers.py [--write docs/peers.md] [--only "rapier,MuJoCo,MuJoCo torus,Bullet,Coal"] [--facets 32]
 
 1. A pull with a known answer. A piece of design 1.1, 3 x 3 cells with free edges. The centres of the flat rings of
    the first column are held, those of the last are pulled along x, each with the same force. Taut chains along x are
@@ -102,6 +102,7 @@ def rotated(q, v):
 
 class Rapier:
     name, package, step_s = "rapier", "rapier3d", 1 / 60
+    finer = FINER
 
     def __init__(self, piece, step_s, force):
         import rapier3d as rp
@@ -133,6 +134,7 @@ class Rapier:
 
 class Mujoco:
     name, package, step_s = "MuJoCo", "mujoco-core", 0.002
+    finer = FINER
 
     def __init__(self, piece, step_s, force):
         import mujoco
@@ -166,7 +168,8 @@ class Mujoco:
 
 
 class MujocoTorus(Mujoco):
-    name = "MuJoCo, torus"
+    name = "MuJoCo torus"
+    finer = (1.0,)  # it is slow
 
     def shapes(self, piece):
         size = f'<config key="radius1" value="1"/><config key="radius2" value="{piece.wire}"/>'
@@ -181,6 +184,7 @@ class MujocoTorus(Mujoco):
 
 class Bullet:
     name, package, step_s = "Bullet", "pybullet", 1 / 240
+    finer = FINER
 
     def __init__(self, piece, step_s, force):
         import pybullet
@@ -269,7 +273,7 @@ def limit():
     return columns["status"][0], (1 + columns["l1"][0], columns["min_gap"][0], 0, float(np.median(times)))
 
 
-def pulls(engines, piece, finer, known=None):
+def pulls(engines, piece, every_step, known=None):
     """The table of a pull. Without a known stretch, that of maille simulate is compared with."""
     own = simulated(piece)
     known = own[0] if known is None else known
@@ -285,7 +289,7 @@ def pulls(engines, piece, finer, known=None):
         add("`maille characterize`", f"the periodic sheet, `{status}`", *values)
     add("`maille simulate`", "the piece", *own)
     for engine in engines:
-        for share in (1.0,) if engine is MujocoTorus else finer:
+        for share in engine.finer if every_step else (1.0,):
             for force in FORCES:
                 *found, end = run(engine, piece, engine.step_s / share, force)
                 add(engine.name, f"step 1/{share / engine.step_s:.0f}, force {force:g}" + end, *found)
@@ -379,19 +383,19 @@ def cpu():
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--only", default="rapier,MuJoCo,torus,Bullet,Coal")
+    parser.add_argument("--only", default="rapier,MuJoCo,MuJoCo torus,Bullet,Coal")
     parser.add_argument("--facets", type=int, default=32, help="capsules of a ring [default: 32]")
     parser.add_argument("--write", type=Path, help="the page whose tables to make anew")
     asked = parser.parse_args()
     only = asked.only.split(",")
-    engines = [engine for engine in (Rapier, Mujoco, MujocoTorus, Bullet) if engine.name.removeprefix("MuJoCo, ") in only]
-    packages = {engine.name.removesuffix(", torus"): engine.package for engine in engines}
+    engines = [engine for engine in (Rapier, Mujoco, MujocoTorus, Bullet) if engine.name in only]
+    packages = {engine.name.removesuffix(" torus"): engine.package for engine in engines}
     packages |= {"Coal": "coal"} if "Coal" in only else {}
     versions = ", ".join(f"{name} {importlib.metadata.version(package)}" for name, package in packages.items())
     text = f"maille {maille.__version__}, {versions}; Python {platform.python_version()}, {os.cpu_count()} cores of {cpu()}.\n"
     if engines:
-        text += "\n## A grid of rings\n\n" + markdown(pulls(engines, Piece("1.1", 3, asked.facets), FINER, TAUT)) + "\n"
-        text += "\n## A dense weave\n\n" + markdown(pulls(engines, Piece("european-4-in-1", 4, asked.facets), (1.0,))) + "\n"
+        text += "\n## A grid of rings\n\n" + markdown(pulls(engines, Piece("1.1", 3, asked.facets), True, TAUT)) + "\n"
+        text += "\n## A dense weave\n\n" + markdown(pulls(engines, Piece("european-4-in-1", 4, asked.facets), False)) + "\n"
     if "Coal" in only:
         text += "\n## The gap between two rings\n\n" + markdown(gaps()) + "\n"
     if asked.write is None:
