@@ -6,7 +6,7 @@ use crate::{
     input::{Input, file_name},
     numbers::positive,
     output,
-    units::{Length, parse_length, parse_wire},
+    units::{Length, parse_length, parse_wire, without_rounding},
 };
 use maille::{design::Design, lattice::Cell, model::Model, topology};
 use maille_io::{
@@ -175,7 +175,7 @@ fn rings(args: &Args) -> Result<Rings> {
     let (major, minor, unit) = match (args.wire.zip(args.id), args.major.zip(args.minor)) {
         (Some((wire, id)), _) => {
             // The rounding of sums alone, so that the inner diameter is the one that was asked for.
-            (nine_decimals((id.mm + wire.mm) / 2.0), nine_decimals(wire.mm / 2.0), "mm")
+            (without_rounding((id.mm + wire.mm) / 2.0), without_rounding(wire.mm / 2.0), "mm")
         }
         (None, Some((major, minor))) => (major, minor, args.unit.as_str()),
         (None, None) => {
@@ -184,10 +184,6 @@ fn rings(args: &Args) -> Result<Rings> {
         }
     };
     Ok(Rings { major, minor, unit: Some(unit.into()) })
-}
-
-fn nine_decimals(mm: f64) -> f64 {
-    (mm * 1e9).round() / 1e9
 }
 
 /// Where wire and inner diameter are given, the help speaks of them.

@@ -65,9 +65,14 @@ pub fn parse_length(text: &str) -> Result<Length, String> {
         Some((a, b)) => a.parse::<f64>().ok().zip(b.parse::<f64>().ok()).map(|(a, b)| a / b),
         None => value.parse().ok(),
     };
-    let mm = value.zip(millimetres(unit)).map(|(value, unit)| value * unit);
+    let mm = value.zip(millimetres(unit)).map(|(value, unit)| without_rounding(value * unit));
     let mm = mm.filter(|mm| mm.is_finite() && *mm > 0.0).ok_or_else(wrong)?;
     Ok(Length { mm, gauge: None })
+}
+
+/// To nine decimals: what a sum or a change of unit adds beyond them is rounding.
+pub fn without_rounding(mm: f64) -> f64 {
+    (mm * 1e9).round() / 1e9
 }
 
 /// As [`parse_length`], or a gauge: `16swg`, `14awg`.
@@ -155,6 +160,7 @@ mod tests {
     fn lengths_and_gauges() {
         let mm = |text: &str| parse_wire(text).map(|w| (w.mm * 1e4).round() / 1e4);
         assert_eq!(mm("1.6mm"), Ok(1.6));
+        assert_eq!(parse_length("0.09cm").map(|length| length.mm), Ok(0.9));
         assert_eq!(mm("5/16in"), Ok(7.9375));
         assert_eq!(mm("5/16\""), Ok(7.9375));
         assert_eq!(mm(".25 in"), Ok(6.35));
@@ -179,7 +185,7 @@ mod tests {
     fn sizes() {
         assert_eq!(parse_size("400x600mm"), Ok([400.0, 600.0]));
         assert_eq!(parse_size("40 x 60 cm"), Ok([400.0, 600.0]));
-        assert_eq!(parse_size("16×24in"), Ok([16.0 * 25.4, 24.0 * 25.4]));
+        assert_eq!(parse_size("16×24in"), Ok([406.4, 609.6]));
         for wrong in ["", "400mm", "400x600", "x600mm", "0x1mm", "400x-1mm", "4x5x6mm", "4cmx5mm"] {
             assert!(parse_size(wrong).is_err(), "{wrong}");
         }

@@ -291,6 +291,7 @@ fn rings_that_overlap_are_placed_by_the_cure_that_is_said() {
     fs::write(folder.join("w.toml"), &text).unwrap();
     let refused = maille(folder, "check w.toml");
     assert_eq!((refused.code, refused.err.matches("overlap by").count()), (Some(3), 1), "{}", refused.err);
+    assert!(refused.err.contains(" mm in the starting state"), "{}", refused.err);
     assert!(refused.err.contains("maille roomiest w.toml --lattice free --save NEW.toml"), "{}", refused.err);
     fs::write(folder.join("w.toml"), text.replace("overlap = false", "overlap = true")).unwrap();
     done(folder, "roomiest w.toml --lattice free --save new.toml");

@@ -60,10 +60,10 @@ pub enum WeaveError {
         minor: f64,
     },
     /// The wire is too thick.
-    #[error("{weave} does not assemble: {} and {} would fuse, {overlap} deep", rings[0], rings[1])]
+    #[error("{weave} does not assemble: {} and {} would fuse, {overlap}{unit} deep", rings[0], rings[1])]
     #[diagnostic(help(
-        "rings of major radius {major} take a minor radius below {thickest}; a minor radius of {minor} takes rings of \
-         major radius above {smallest}"
+        "rings of major radius {major}{unit} take a minor radius below {thickest}{unit}; a minor radius of {minor}{unit} \
+         takes rings of major radius above {smallest}{unit}"
     ))]
     TooThick {
         /// Name of the weave.
@@ -80,6 +80,8 @@ pub enum WeaveError {
         thickest: f64,
         /// Major radius at which wire of this minor radius touches.
         smallest: f64,
+        /// What follows each of these lengths: a space and their unit, or nothing.
+        unit: String,
     },
 }
 
@@ -249,6 +251,7 @@ impl Weave {
                 minor,
                 thickest: significant(distance / 2.0, f64::floor),
                 smallest: significant(2.0 * minor * major / distance, f64::ceil),
+                unit: rings.unit.as_ref().map_or(String::new(), |unit| format!(" {unit}")),
             }),
             _ => Ok(design),
         }

@@ -155,8 +155,9 @@ fn wire_that_is_too_thick_is_refused_with_the_wire_that_does() {
         };
         assert!(overlap > 0.0);
         assert!(of_unit_radius(weave, thickest - 1e-4).is_ok() && of_unit_radius(weave, thickest + 1e-3).is_err());
-        let with = |major: f64| weave.design("x", &Rings { major, minor: 0.4, unit: None });
+        let with = |major: f64| weave.design("x", &Rings { major, minor: 0.4, unit: Some("mm".into()) });
         assert!(with(smallest + 1e-3).is_ok() && with(smallest - 1e-2).is_err());
+        assert!(with(1.0).unwrap_err().to_string().ends_with(" mm deep"));
     }
     for (major, minor) in [(1.0, 1.0), (1.0, 0.0), (0.0, 0.0), (f64::NAN, 0.1), (1.0, -0.1), (f64::INFINITY, 0.1)] {
         let rings = Rings { major, minor, unit: None };

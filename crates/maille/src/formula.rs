@@ -93,7 +93,14 @@ impl Formula {
                     Some(first) => {
                         let product = before.ends_with(|c: char| c.is_alphanumeric() || c == ')')
                             && (first.is_alphanumeric() || first == '_' || first == '(');
-                        let help = if product { &format!("is an operator missing before {rest}, as *?") } else { HELP };
+                        let help = match product {
+                            true if before.parse::<f64>().is_ok() && is_name(rest) => &format!(
+                                "is an operator missing before {rest}, as *? if {rest} is a unit, write {before} without \
+                                 quotes, and unit = \"{rest}\" at the top of the file: all its lengths are in it"
+                            ),
+                            true => &format!("is an operator missing before {rest}, as *?"),
+                            false => HELP,
+                        };
                         no(format!("\"{text}\" cannot be read from \"{rest}\" on"), help)
                     }
                 }
@@ -332,7 +339,9 @@ mod tests {
         ] {
             assert_eq!(problem(text), found, "{text}");
         }
-        assert_eq!(Formula::parse("2 radius").unwrap_err().help, "is an operator missing before radius, as *?");
+        let help = |text: &str| Formula::parse(text).unwrap_err().help;
+        assert_eq!(help("2 (1 + radius)"), "is an operator missing before (1 + radius), as *?");
+        assert!(help("0.6mm").contains("write 0.6 without quotes, and unit = \"mm\""));
         assert!(problem(&"(".repeat(1000)).contains("too long"));
         assert!(problem(&"(".repeat(LONGEST)).contains("too long"));
         assert!(problem(&"(".repeat(MOST_NESTED)).contains("too early"));

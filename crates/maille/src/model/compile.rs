@@ -312,9 +312,13 @@ impl Model {
         }
         deep.sort_by(|a, b| b.0.total_cmp(&a.0));
         if let Some((depth, deepest)) = deep.first() {
-            let mut problem = format!("{} overlap by {} in the starting state", names(deepest), depth_words(*depth));
+            let words = |depth| match &design.unit {
+                Some(unit) => format!("{} {unit}", depth_words(depth)),
+                None => depth_words(depth),
+            };
+            let mut problem = format!("{} overlap by {} in the starting state", names(deepest), words(*depth));
             for (depth, pair) in deep.iter().take(MOST_NAMED).skip(1) {
-                problem += &format!(", {} by {}", names(pair), depth_words(*depth));
+                problem += &format!(", {} by {}", names(pair), words(*depth));
             }
             match deep.len().saturating_sub(MOST_NAMED) {
                 0 => {}
