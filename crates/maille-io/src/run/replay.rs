@@ -8,12 +8,12 @@ use maille::{
     error::InvalidInput,
     model::Model,
     record::LimitRow,
-    survey::{Finished, MapQuestion, Task, characterize},
+    survey::{Finished, MapQuestion, Method, Task, characterize},
 };
 use std::sync::{Mutex, atomic::AtomicBool};
 use thiserror::Error;
 
-/// Limits that differ by no more are the same.
+/// Limits of the exact method that differ by no more are the same.
 const SAME_L1: f64 = 1e-9;
 
 /// A row as recorded, and as it comes out now.
@@ -23,13 +23,16 @@ pub struct Replayed<'a> {
     pub then: &'a LimitRow,
     /// The row and the state of now.
     pub now: Finished,
+    /// Limits that differ by no more are the same: 1e-9, or of the energy method, which brackets them, the width of its bracket,
+    /// because processors round differently.
+    pub tolerance: f64,
 }
 
 impl Replayed<'_> {
-    /// Whether status and limit are those of the record, the limit to 1e-9.
+    /// Whether status and limit are those of the record.
     pub fn agrees(&self) -> bool {
         let same = match (self.then.l1, self.now.row.l1) {
-            (Some(then), Some(now)) => (then - now).abs() <= SAME_L1,
+            (Some(then), Some(now)) => (then - now).abs() <= self.tolerance,
             (then, now) => then == now,
         };
         same && self.then.status == self.now.row.status
@@ -59,6 +62,10 @@ pub fn replay<'a>(
     let models: Vec<Model> = cells.into_iter().map(compile).collect::<Result<_, _>>()?;
     let directions_deg = distinct(rows.iter().map(|row| row.direction_deg)).0;
     let question = MapQuestion { directions_deg, ..asked };
+    let tolerance = match &question.method {
+        Method::Energy(options) => options.l1_resolution,
+        Method::Exact(_) => SAME_L1,
+    };
     let wanted = |task: Task| rows.iter().any(|row| (row.direction_deg, row.l2) == (task.direction_deg, task.l2));
     let found = Mutex::new(Vec::<Finished>::new());
     characterize(&models, design.minor_radius, &question, &wanted, cancel, &|_, _| (), &|row| {
@@ -67,5 +74,5 @@ pub fn replay<'a>(
     let found = found.into_inner().unwrap_or_else(|e| e.into_inner());
     let now =
         |then: &LimitRow| found.iter().find(|now| (now.row.direction_deg, now.row.l2) == (then.direction_deg, then.l2));
-    Ok(rows.iter().filter_map(|then| Some(Replayed { then, now: now(then)?.clone() })).collect())
+    Ok(rows.iter().filter_map(|then| Some(Replayed { then, now: now(then)?.clone(), tolerance })).collect())
 }
