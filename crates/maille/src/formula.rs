@@ -87,6 +87,7 @@ impl Formula {
             Ok(node) => node.check().map(|()| Formula(node)),
             Err(error) => {
                 let (before, rest) = text.split_at(error.offset());
+                let joined = !before.ends_with(char::is_whitespace);
                 let (before, rest) = (before.trim(), rest.trim());
                 match rest.chars().next() {
                     None => no(format!("\"{text}\" ends too early"), HELP),
@@ -94,7 +95,7 @@ impl Formula {
                         let product = before.ends_with(|c: char| c.is_alphanumeric() || c == ')')
                             && (first.is_alphanumeric() || first == '_' || first == '(');
                         let help = match product {
-                            true if before.parse::<f64>().is_ok() && is_name(rest) => &format!(
+                            true if joined && before.parse::<f64>().is_ok() && is_name(rest) => &format!(
                                 "is an operator missing before {rest}, as *? if {rest} is a unit, write {before} without \
                                  quotes, and unit = \"{rest}\" at the top of the file: all its lengths are in it"
                             ),
@@ -340,7 +341,7 @@ mod tests {
             assert_eq!(problem(text), found, "{text}");
         }
         let help = |text: &str| Formula::parse(text).unwrap_err().help;
-        assert_eq!(help("2 (1 + radius)"), "is an operator missing before (1 + radius), as *?");
+        assert_eq!(help("2 radius"), "is an operator missing before radius, as *?");
         assert!(help("0.6mm").contains("write 0.6 without quotes, and unit = \"mm\""));
         assert!(problem(&"(".repeat(1000)).contains("too long"));
         assert!(problem(&"(".repeat(LONGEST)).contains("too long"));
