@@ -51,7 +51,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         ReplayError::Design(_) => wrong(exit::RECORD, error.to_string(), DAMAGED),
     })?;
     for row in &replayed {
-        let Replayed { then, now } = row;
+        let Replayed { then, now, .. } = row;
         say!("{}°, l2 = {}", then.direction_deg, then.l2);
         say!("  recorded  {}", line(then));
         say!("  now       {}{}", line(&now.row), if row.agrees() { "" } else { "   DIFFERS" });
