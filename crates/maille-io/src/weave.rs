@@ -81,7 +81,7 @@ pub enum WeaveError {
         /// Major radius at which wire of this minor radius touches.
         smallest: f64,
         /// What follows each of these lengths: a space and their unit, or nothing.
-        unit: String,
+        unit: Box<str>,
     },
 }
 
@@ -251,7 +251,7 @@ impl Weave {
                 minor,
                 thickest: significant(distance / 2.0, f64::floor),
                 smallest: significant(2.0 * minor * major / distance, f64::ceil),
-                unit: rings.unit.as_ref().map_or(String::new(), |unit| format!(" {unit}")),
+                unit: rings.unit.as_ref().map_or(String::new(), |unit| format!(" {unit}")).into(),
             }),
             _ => Ok(design),
         }
