@@ -291,7 +291,10 @@ fn a_simulation_that_was_cut_or_edited_is_refused_and_none_is_a_mixture() {
         let text = fs::read_to_string(&path).unwrap();
         let first = text[..text.len() - 1].rfind('\n').map_or(0, |at| at + 1);
         let cut = [&text[..text.len() - 2], &text[..text.len() / 2], &text[..first]].map(str::to_owned);
-        for (k, wrong) in digits_changed(&text, 12).chain(cut).enumerate() {
+        // Another text of the same number.
+        let longer = text.replacen(".0,", ".00,", 1);
+        assert_ne!(longer, text, "{name}");
+        for (k, wrong) in digits_changed(&text, 12).chain(cut).chain([longer]).enumerate() {
             fs::write(&path, &wrong).unwrap();
             let (code, text) = said(&maille(folder, read));
             assert_eq!(code, 4, "{name}, {k}: {text}");

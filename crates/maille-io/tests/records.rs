@@ -435,3 +435,16 @@ fn rows_of_a_record_come_out_again_and_an_edited_one_does_not() {
     record.run.parameters["method"] = json!("guess");
     assert!(matches!(replay(&record, &[&record.rows[0]], &cancel), Err(ReplayError::Record(_))));
 }
+
+/// Processors round differently, which moves a limit of the energy method within its bracket.
+#[test]
+fn limits_of_the_energy_method_come_out_again_within_their_bracket() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/records/energy");
+    let mut record = Record::read(&folder).unwrap();
+    for (row, shift) in record.rows.iter_mut().zip([1e-5, 2e-3]) {
+        *row.l1.as_mut().unwrap() += shift;
+    }
+    let rows: Vec<&LimitRow> = record.rows.iter().take(2).collect();
+    let replayed = replay(&record, &rows, &AtomicBool::new(false)).unwrap();
+    assert_eq!(replayed.iter().map(Replayed::agrees).collect::<Vec<_>>(), [true, false]);
+}
