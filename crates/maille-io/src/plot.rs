@@ -14,6 +14,7 @@ mod look;
 mod outcome;
 mod palette;
 mod pdf;
+mod letters;
 mod png;
 mod poisson;
 mod polar;

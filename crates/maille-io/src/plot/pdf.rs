@@ -1,4 +1,4 @@
-//! SVG to PDF: lines and areas stay what they are, and letters become outlines, so that a reader needs no font.
+//! SVG to PDF: lines and areas stay what they are, and letters are outlines, so that a reader needs no font.
 
 use super::canvas::title_of;
 use super::png::{PlotError, tree};
@@ -82,7 +82,7 @@ impl Page {
                 Node::Group(group) => self.group(group)?,
                 Node::Path(path) if path.is_visible() => self.path(path)?,
                 Node::Path(_) => (),
-                Node::Text(text) => self.group(text.flattened())?,
+                Node::Text(_) => return Err(PlotError::Pdf("a text that is no outline")),
                 Node::Image(_) => return Err(PlotError::Pdf("a picture of pixels")),
             }
         }

@@ -1,17 +1,11 @@
-//! SVG to PNG, with the fonts that come with the program, and PNG of 256 colours.
+//! SVG to PNG, and PNG of 256 colours.
 
-use super::canvas::title_of;
+use super::{canvas::title_of, letters};
 use color_quant::NeuQuant;
 use resvg::tiny_skia::{Pixmap, Transform};
-use resvg::usvg::{Options, Tree, fontdb::Database};
-use std::{
-    io::Cursor,
-    sync::{Arc, OnceLock},
-};
+use resvg::usvg::{Options, Tree};
+use std::io::Cursor;
 use thiserror::Error;
-
-const REGULAR: &[u8] = include_bytes!("../../fonts/DejaVuSans-subset.ttf");
-const BOLD: &[u8] = include_bytes!("../../fonts/DejaVuSans-Bold-subset.ttf");
 
 /// A picture that cannot be drawn.
 #[derive(Debug, Error)]
@@ -39,7 +33,7 @@ pub enum PlotError {
 
 /// Draws an SVG; `scale` is the number of pixels per unit of the SVG (2 for screens and print).
 ///
-/// Uses only the embedded fonts: the same SVG gives the same pixels on every machine.
+/// Letters are those that come with the program: the same SVG gives the same pixels on every machine.
 pub fn svg_to_png(svg: &str, scale: f32) -> Result<Vec<u8>, PlotError> {
     let tree = tree(svg)?;
     let (width, height) = (tree.size().width(), tree.size().height());
@@ -67,22 +61,9 @@ fn with_title(mut png: Vec<u8>, title: &str) -> Vec<u8> {
     png
 }
 
-/// The SVG with its texts set in the embedded fonts.
+/// The SVG, its letters as outlines.
 pub(super) fn tree(svg: &str) -> Result<Tree, PlotError> {
-    let options = Options { font_family: "DejaVu Sans".into(), fontdb: fonts(), ..Options::default() };
-    Tree::from_str(svg, &options).map_err(|e| PlotError::Svg(e.to_string()))
-}
-
-fn fonts() -> Arc<Database> {
-    static FONTS: OnceLock<Arc<Database>> = OnceLock::new();
-    let load = || {
-        let mut fonts = Database::new();
-        fonts.load_font_data(REGULAR.to_vec());
-        fonts.load_font_data(BOLD.to_vec());
-        fonts.set_sans_serif_family("DejaVu Sans");
-        Arc::new(fonts)
-    };
-    FONTS.get_or_init(load).clone()
+    Tree::from_str(&letters::outlined(svg)?, &Options::default()).map_err(|e| PlotError::Svg(e.to_string()))
 }
 
 /// Pixels that a palette is trained on: all of them. It takes longer for large pictures, and is always the same.
