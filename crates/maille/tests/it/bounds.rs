@@ -1,5 +1,6 @@
 //! The proven bounds against closed forms, their invariances, and states that try to break them.
 
+use crate::common::{builtin, design};
 use maille::{
     bound::{Bound, BoundKind, ChainBound, LinkBound, best_bound, crossing_pairs_length},
     design::Design,
@@ -15,10 +16,6 @@ use rand_chacha::ChaCha8Rng;
 
 const DESIGNS: [&str; 15] =
     ["1.1", "1.2", "1.3", "1.3-small", "2", "2-oblong", "3.1", "3.2", "3.3", "3.4", "4.1", "4.2", "4.3", "5.1", "5.2"];
-
-fn design(name: &str, r: f64) -> Design {
-    maille_io::read_design(name, maille_io::builtin(name).unwrap()).unwrap().with_minor_radius(r)
-}
 
 fn model(name: &str, r: f64, cell: &str) -> Model {
     Model::compile(&design(name, r), cell.parse().unwrap()).unwrap()
@@ -300,7 +297,7 @@ fn normals_lower_the_bound_of_woven_sheets() {
         ("kings-mail", 90.0, 0.0, 0.4101681, 0.95),
     ];
     for (name, direction_deg, l2, limit, most) in cases {
-        let design = maille_io::read_design(name, maille_io::builtin(name).unwrap()).unwrap();
+        let design = builtin(name);
         let model = Model::compile(&design, "1x1".parse().unwrap()).unwrap();
         let chain = ChainBound::new(&model);
         let link = LinkBound::new(&model, &chain);

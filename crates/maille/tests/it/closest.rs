@@ -1,5 +1,6 @@
 //! The closest cell with a gap: against a closed form, gaps counted by brute force, lattices beside it, and other ways to write the design.
 
+use crate::common::builtin;
 use maille::{
     answer::Answer,
     design::Design,
@@ -12,10 +13,6 @@ use maille::{
 };
 use maille_geometry::Vec3;
 use std::sync::atomic::AtomicBool;
-
-fn design(name: &str) -> Design {
-    maille_io::read_design(name, maille_io::builtin(name).unwrap()).unwrap()
-}
 
 /// The answer, and its state as a design.
 fn closest(design: &Design, gap: f64) -> (Answer, Design) {
@@ -124,7 +121,7 @@ fn one_ring_stands_as_close_as_stadiums() {
 #[test]
 fn gaps_are_kept() {
     for name in ["european-4-in-1", "1.1", "japanese-6-in-1", "kings-mail"] {
-        let design = design(name);
+        let design = builtin(name);
         let mut last = 0.0;
         for gap in [0.0, 0.5 * widest(&design)] {
             let (found, posed) = closest(&design, gap);
@@ -143,7 +140,7 @@ fn gaps_are_kept() {
 #[test]
 fn lattices_beside_it_have_less_room() {
     for name in ["european-4-in-1", "1.1"] {
-        let design = design(name);
+        let design = builtin(name);
         let gap = 0.5 * widest(&design);
         let (found, posed) = closest(&design, gap);
         certified(&found);
@@ -169,7 +166,7 @@ fn lattices_beside_it_have_less_room() {
 /// All lengths 7.3 times as long, and the mirror image: the same share of the area.
 #[test]
 fn scale_and_mirror_change_nothing() {
-    let design = design("european-4-in-1");
+    let design = builtin("european-4-in-1");
     let gap = 0.5 * widest(&design);
     let value = certified(&closest(&design, gap).0);
     let scaled = certified(&closest(&design.scaled(7.3), 7.3 * gap).0);
@@ -189,7 +186,7 @@ fn scale_and_mirror_change_nothing() {
 /// Wider than the widest gap: no cell, and the answer has the widest. As wide as nearly that: a cell.
 #[test]
 fn a_gap_too_wide_names_the_widest() {
-    let design = design("european-4-in-1");
+    let design = builtin("european-4-in-1");
     let (model, widest) = (Model::compile(&design, Cell::PRIMITIVE).unwrap(), widest(&design));
     let (found, _) = closest(&design, 1.01 * widest);
     assert_eq!((found.status, found.value), (Status::NotConverged, None));
@@ -201,7 +198,7 @@ fn a_gap_too_wide_names_the_widest() {
 
 #[test]
 fn questions_that_cannot_be_asked() {
-    let sheet = Sheet::in_cells(&design("1.1"), Cell::PRIMITIVE.into()).unwrap();
+    let sheet = Sheet::in_cells(&builtin("1.1"), Cell::PRIMITIVE.into()).unwrap();
     for (question, field) in [
         (Question::closest_cell(-0.1), "min_gap"),
         (Question::closest_cell(f64::NAN), "min_gap"),

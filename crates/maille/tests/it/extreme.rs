@@ -1,5 +1,6 @@
 //! Thickest wire and widest gap against closed forms, an independent check, each other, and a bisection.
 
+use crate::common::builtin;
 use maille::{
     answer::Answer,
     design::Design,
@@ -10,10 +11,6 @@ use maille::{
     topology,
 };
 use std::sync::atomic::AtomicBool;
-
-fn design(name: &str) -> Design {
-    maille_io::read_design(name, maille_io::builtin(name).unwrap()).unwrap()
-}
 
 fn solve(design: &Design, what: Extreme, options: &ExtremeOptions) -> (Model, Answer) {
     let model = Model::compile(design, Cell::PRIMITIVE).unwrap();
@@ -32,7 +29,7 @@ fn certified(found: &Answer) -> f64 {
 #[test]
 fn closed_forms() {
     for (name, r) in [("1.1", 1.0 - 0.5_f64.sqrt()), ("1.2", 1.0 / 6.0)] {
-        let (_, found) = solve(&design(name), Extreme::ThickestWire, &ExtremeOptions::default());
+        let (_, found) = solve(&builtin(name), Extreme::ThickestWire, &ExtremeOptions::default());
         let thickest = 0.1 * certified(&found);
         assert!((thickest - r).abs() < 1e-9, "{name}: {thickest} for {r}");
     }
@@ -43,7 +40,7 @@ fn closed_forms() {
 fn the_widest_gap_is_what_the_thickest_wire_fills() {
     for name in ["1.1", "2-oblong", "european-4-in-1"] {
         for lattice_free in [true, false] {
-            let design = design(name);
+            let design = builtin(name);
             let options = ExtremeOptions { lattice_free, ..ExtremeOptions::default() };
             let (model, thick) = solve(&design, Extreme::ThickestWire, &options);
             let (_, wide) = solve(&design, Extreme::LargestClearance, &ExtremeOptions { seed: 7, ..options.clone() });
@@ -62,7 +59,7 @@ fn the_widest_gap_is_what_the_thickest_wire_fills() {
 #[test]
 fn a_bisection_finds_no_thicker_wire() {
     for name in ["1.1", "european-4-in-1"] {
-        let design = design(name);
+        let design = builtin(name);
         let (_, found) = solve(&design, Extreme::ThickestWire, &ExtremeOptions::default());
         let thickest = certified(&found) * design.minor_radius.unwrap();
         let room = |r: f64, starts: usize| {
@@ -81,7 +78,7 @@ fn a_bisection_finds_no_thicker_wire() {
 #[test]
 fn a_state_is_a_design() {
     for name in ["european-4-in-1", "1.3-small"] {
-        let design = design(name);
+        let design = builtin(name);
         let (model, found) =
             solve(&design, Extreme::LargestClearance, &ExtremeOptions { starts: Some(2), ..ExtremeOptions::default() });
         let posed = found.state.design(&design, &model);
@@ -94,7 +91,7 @@ fn a_state_is_a_design() {
 
 #[test]
 fn threads_change_nothing() {
-    let design = design("2-oblong");
+    let design = builtin("2-oblong");
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| solve(&design, Extreme::ThickestWire, &ExtremeOptions::default()).1)

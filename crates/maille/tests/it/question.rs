@@ -1,6 +1,6 @@
 //! What a question refuses, what it stores, and that it is answered as a map answers it.
 
-use crate::common::map;
+use crate::common::{builtin, map};
 use maille::{
     Across, CellChoice, Effort, Goal, Question, Sense, Sheet, Status, Strain,
     lattice::Cell,
@@ -11,7 +11,7 @@ use maille::{
 use std::sync::atomic::AtomicBool;
 
 fn sheet(name: &str) -> Sheet {
-    let design = maille_io::read_design(name, maille_io::builtin(name).unwrap()).unwrap();
+    let design = builtin(name);
     Sheet::in_cells(&design, Cell::PRIMITIVE.into()).unwrap()
 }
 

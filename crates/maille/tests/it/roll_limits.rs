@@ -1,5 +1,6 @@
 //! The tightest rolls: symmetry, and that they do not depend on how the sheet is written.
 
+use crate::common::builtin;
 use maille::{
     Across, Effort, Question, Sheet, Status,
     answer::Answer,
@@ -13,7 +14,7 @@ use std::{f64::consts::TAU, sync::atomic::AtomicBool};
 
 /// A built-in design in one cell.
 fn sheet(name: &str, cell: &str) -> Sheet {
-    let design = maille_io::read_design(name, maille_io::builtin(name).unwrap()).unwrap();
+    let design = builtin(name);
     Sheet::in_cells(&design, cell.parse::<Cell>().unwrap().into()).unwrap()
 }
 

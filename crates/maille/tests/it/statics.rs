@@ -2,6 +2,7 @@
 //! along the pull is 1. Weaves with two rings lying on each other, coaxial or shifted, among them.
 
 use crate::common;
+use crate::common::builtin;
 use maille::{
     design::Design,
     lattice::{Cell, Direction},
@@ -103,10 +104,6 @@ fn check(design: &Design, directions: &[f64], l2: &[f64]) -> Vec<Finished> {
     let certified = found.iter().filter(|f| matches!(f.row.status, Status::Global | Status::Local)).count();
     assert_eq!(certified, found.len(), "{}", design.name);
     found
-}
-
-fn builtin(name: &str) -> Design {
-    maille_io::read_design(name, maille_io::builtin(name).unwrap()).unwrap()
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Limits with width or shear free, and queries in the space of strains.
 
-use crate::common::map;
+use crate::common::{builtin, map};
 use maille::{
     answer::Answer,
     lattice::{Across, Cell},
@@ -22,8 +22,7 @@ use std::{
 };
 
 fn model(name: &str) -> Model {
-    let design = maille_io::read_design(name, maille_io::builtin(name).unwrap()).unwrap();
-    Model::compile(&design, Cell::PRIMITIVE).unwrap()
+    Model::compile(&builtin(name), Cell::PRIMITIVE).unwrap()
 }
 
 fn rows(model: &Model, directions: &[f64], l2: &[f64], across: Across) -> Vec<LimitRow> {
@@ -167,7 +166,7 @@ fn european_4_in_1_reaches_the_published_strains() {
 #[test]
 fn the_least_l1_is_that_of_the_query_and_falls_with_the_cell() {
     let name = "european-4-in-1";
-    let design = maille_io::read_design(name, maille_io::builtin(name).unwrap()).unwrap();
+    let design = builtin(name);
     let models = ["1x1", "2x1", "1x2"].map(|cell| Model::compile(&design, cell.parse().unwrap()).unwrap());
     let cancel = AtomicBool::new(false);
     let free = vec![-unit(0, 0), unit(1, 1), unit(0, 1)];
@@ -249,7 +248,7 @@ fn the_surface_is_that_of_its_rays_and_goes_on() {
 /// 1.1 along x locks with straight chains, l1 = 0.44: F = diag(1.44, 0.875) of the square of side 2.5, in any cell.
 #[test]
 fn a_limit_has_the_lattice_of_the_design_s_own_cell() {
-    let design = maille_io::read_design("1.1", maille_io::builtin("1.1").unwrap()).unwrap();
+    let design = builtin("1.1");
     for (cell, scale) in [([[1, 0], [0, 1]], 1.0), ([[1, 1], [-1, 1]], 1.0), ([[1, 0], [0, 1]], 7.0)] {
         let model = Model::compile(&design.scaled(scale), Cell::new(cell).unwrap()).unwrap();
         let row = rows(&model, &[0.0], &[-0.125], Across::HELD).remove(0);
@@ -264,7 +263,7 @@ fn a_limit_has_the_lattice_of_the_design_s_own_cell() {
 /// a map.
 #[test]
 fn the_least_strain_is_the_compression_of_a_map() {
-    let design = maille_io::read_design("1.1", maille_io::builtin("1.1").unwrap()).unwrap();
+    let design = builtin("1.1");
     let sheet = Sheet::in_cells(&design, Cell::PRIMITIVE.into()).unwrap();
     for (free, across) in [
         (vec![], Across::HELD),

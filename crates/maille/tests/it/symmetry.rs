@@ -1,6 +1,6 @@
 //! Symmetries of designs, and the images of limits under them.
 
-use crate::common::{design, exact_map, map, model, shaken};
+use crate::common::{builtin, design, exact_map, map, model, shaken};
 use maille::{
     design::Design,
     lattice::Cell,
@@ -60,21 +60,13 @@ fn turned(design: &Design, angle_deg: f64, basis: [[f64; 2]; 2]) -> Design {
 #[test]
 fn point_groups_of_designs() {
     for (name, order) in [("1.1", 16), ("3.1", 24), ("european-4-in-1", 8), ("2-oblong", 8)] {
-        assert_eq!(
-            operations(&Model::compile(&design_as_written(name), Cell::PRIMITIVE).unwrap()).len(),
-            order,
-            "{name}"
-        );
+        assert_eq!(operations(&Model::compile(&builtin(name), Cell::PRIMITIVE).unwrap()).len(), order, "{name}");
     }
     // Circles alone are symmetric about their centres; two in general position are not.
     assert_eq!(operations(&in_cell(&oblique(false), "1x1")).len(), 1);
     let half_turn = operations(&in_cell(&oblique(true), "1x1"));
     assert_eq!(half_turn.len(), 2);
     assert_eq!((half_turn[1].direction_deg(20.0), half_turn[1].mirrors()), (20.0, false));
-}
-
-fn design_as_written(name: &str) -> Design {
-    maille_io::read_design(name, maille_io::builtin(name).unwrap()).unwrap()
 }
 
 #[test]
@@ -158,7 +150,7 @@ fn images_of_random_states_keep_all_distances() {
         ("european-4-in-1", "2x2"),
         ("5.1", "1x1"),
     ] {
-        let design = design_as_written(name);
+        let design = builtin(name);
         let from = in_cell(&design, cell);
         let state = shaken(&from, 0.2, 5);
         let state =
@@ -232,7 +224,7 @@ fn images_of_limits_are_limits() {
         ("european-4-in-1", -0.15, true),
     ];
     for (name, l2, auto) in cases {
-        let design = design_as_written(name);
+        let design = builtin(name);
         let method = Method::Exact(ExactOptions { starts: Some(2), ..ExactOptions::default() });
         let cell = if auto { CellChoice::Auto } else { CellChoice::from(Cell::PRIMITIVE) };
         let models: Vec<Model> = cell

@@ -1,6 +1,7 @@
 //! Waves through the sheet against larger cells built as a whole: with the forces of one cell in every copy, the curvatures of the
 //! large cell are those of the waves that fit into it, zero modes included.
 
+use crate::common::builtin;
 use faer::{Mat, Side};
 use maille::{
     Answer, CellChoice, Question, Sheet,
@@ -32,10 +33,7 @@ const CELLS: [(&str, &[[f64; 2]]); 4] = [
 ];
 
 fn designs() -> Vec<Design> {
-    let builtin = ["1.1", "2", "3.1", "european-6-in-1", "5.1"].map(|name| {
-        maille_io::read_design(name, maille_io::builtin(name).expect("a built-in design"))
-            .expect("built-in designs are valid")
-    });
+    let builtin = ["1.1", "2", "3.1", "european-6-in-1", "5.1"].map(builtin);
     let random = std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/random")).expect("a folder of designs");
     let mut paths: Vec<_> = random.map(|entry| entry.expect("an entry").path()).collect();
     paths.sort();
@@ -297,10 +295,6 @@ fn curvatures_of_waves_are_those_of_larger_cells() {
     }
     println!("{compared} limits, {negative} unstable waves");
     assert!(compared >= 30 && negative >= 10, "{compared} limits, {negative} unstable waves");
-}
-
-fn builtin(name: &str) -> Design {
-    maille_io::read_design(name, maille_io::builtin(name).expect("a built-in design")).expect("a valid design")
 }
 
 fn limit(design: &Design, cells: CellChoice, direction_deg: f64, l2: f64) -> Answer {

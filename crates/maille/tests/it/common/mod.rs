@@ -13,10 +13,15 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::sync::{Mutex, atomic::AtomicBool};
 
+/// A built-in design.
+pub fn builtin(name: &str) -> Design {
+    let text = maille_io::builtin(name).expect("a built-in design");
+    maille_io::read_design(name, text).expect("built-in designs are valid")
+}
+
 /// A built-in design with the given minor radius.
 pub fn design(name: &str, minor_radius: f64) -> Design {
-    let text = maille_io::builtin(name).expect("a built-in design");
-    maille_io::read_design(name, text).expect("built-in designs are valid").with_minor_radius(minor_radius)
+    builtin(name).with_minor_radius(minor_radius)
 }
 
 /// The same design compiled for its own cell.

@@ -3,6 +3,7 @@
 mod builtin;
 mod compare;
 
+use crate::common::builtin;
 use compare::{Case, Tally, compare, limit, loaded, raw_numbers};
 use maille::{
     Across, Answer, Cell, Design, Goal, Question, Sense, Sheet, Strain,
@@ -11,10 +12,6 @@ use maille::{
 use maille_geometry::Vec3;
 use nalgebra::UnitQuaternion;
 use std::{sync::atomic::AtomicBool, time::Instant};
-
-fn builtin(name: &str) -> Design {
-    maille_io::read_design(name, maille_io::builtin(name).unwrap()).unwrap()
-}
 
 fn solved(design: &Design, question: &Question) -> (Sheet, Answer) {
     let sheet = Sheet::in_cells(design, Cell::PRIMITIVE.into()).unwrap();
