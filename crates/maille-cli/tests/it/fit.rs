@@ -1,20 +1,7 @@
 //! `maille fit` as a user meets it: its folder, the same command again, several designs, and what cannot begin.
 
-use std::{
-    fs,
-    path::Path,
-    process::{Command, Output},
-};
-
-fn maille(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_maille")).args(arguments).current_dir(folder).output().unwrap()
-}
-
-fn done(folder: &Path, arguments: &[&str]) -> String {
-    let ran = maille(folder, arguments);
-    assert!(ran.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&ran.stderr));
-    String::from_utf8(ran.stdout).unwrap()
-}
+use crate::common::{done_with, maille_with};
+use std::{fs, path::Path};
 
 const RINGS: &str = "elements.standing-*.rings.major_radius=25%";
 
@@ -24,28 +11,29 @@ fn a_fit_is_a_folder_that_other_commands_read() {
     let folder = folder.path();
     fs::write(folder.join("wanted.csv"), "direction_deg,l1\n0,0.40\n90,0.48\n").unwrap();
     let command = ["fit", "1.1", "--target", "wanted.csv", "--free-each", RINGS];
-    let said = done(folder, &command);
+    let said = done_with(folder, &command);
     assert!(said.starts_with("1.1: every target is reached; 1 start"), "{said}");
     let fit = folder.join("maille-out/1.1-fit");
     let design = fs::read_to_string(fit.join("fitted.toml")).unwrap();
     // Along each chain l1 = 0.8 (1 + R - 2 r) - 1.
     assert!(design.contains("major_radius = 0.95,") && design.contains("major_radius = 1.05,"), "{design}");
     assert!(design.contains("source = \"own\""));
-    let proved = done(folder, &["verify", "maille-out/1.1-fit/fitted"]);
+    let proved = done_with(folder, &["verify", "maille-out/1.1-fit/fitted"]);
     assert!(proved.contains("13 of 13 certified ones proved"), "{proved}");
-    done(folder, &["plot", "1.1-fit", "-o", "again.svg"]);
+    done_with(folder, &["plot", "1.1-fit", "-o", "again.svg"]);
     assert_eq!(fs::read(folder.join("again.svg")).unwrap(), fs::read(fit.join("fit.svg")).unwrap());
     // The same command finds all of it there, and makes what was lost.
     fs::remove_dir_all(fit.join("fitted")).unwrap();
-    let json: serde_json::Value = serde_json::from_str(&done(folder, &[&command[..], &["--json"]].concat())).unwrap();
+    let json: serde_json::Value =
+        serde_json::from_str(&done_with(folder, &[&command[..], &["--json"]].concat())).unwrap();
     assert_eq!((json["ended"].as_str(), json["designs"].as_u64()), (Some("reached"), Some(3)));
-    assert!(done(folder, &["verify", "maille-out/1.1-fit/fitted"]).contains("13 of 13"));
-    let other = maille(folder, &[&command[..], &["--norm", "minimax"]].concat());
+    assert!(done_with(folder, &["verify", "maille-out/1.1-fit/fitted"]).contains("13 of 13"));
+    let other = maille_with(folder, &[&command[..], &["--norm", "minimax"]].concat());
     assert_eq!(other.status.code(), Some(4));
     assert!(String::from_utf8_lossy(&other.stderr).contains("a fit of other inputs"));
     // A record is a target: the built-in design is fitted to the limits that were found.
     let limits = "maille-out/1.1-fit/fitted/limits.csv";
-    let back = done(folder, &["fit", "1.1", "--target", limits, "--free-each", RINGS, "--out", "back"]);
+    let back = done_with(folder, &["fit", "1.1", "--target", limits, "--free-each", RINGS, "--out", "back"]);
     assert!(back.contains("every target is reached"), "{back}");
 }
 
@@ -59,7 +47,7 @@ fn designs_are_ranked() {
     fs::write(folder.join("mine/a.toml"), design).unwrap();
     fs::write(folder.join("mine/broken.toml"), "name = 3\n").unwrap();
     let arguments = ["fit", "--target", "wanted.csv", "--restarts", "1", "--over", "1.1", "mine"];
-    let ran = maille(folder, &arguments);
+    let ran = maille_with(folder, &arguments);
     assert_eq!(ran.status.code(), Some(6));
     assert!(String::from_utf8_lossy(&ran.stderr).contains("broken.toml could not be used"));
     let table = fs::read_to_string(folder.join("maille-out/fits/ranking.csv")).unwrap();
@@ -74,7 +62,8 @@ fn what_cannot_begin_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     fs::write(folder.join("wide.csv"), "direction_deg,l2,l1\n0,5,0.4\n").unwrap();
-    let ran = maille(folder, &["fit", "1.1", "--target", "wide.csv", "--free", "minor_radius=20%", "--out", "gone"]);
+    let ran =
+        maille_with(folder, &["fit", "1.1", "--target", "wide.csv", "--free", "minor_radius=20%", "--out", "gone"]);
     assert_eq!(ran.status.code(), Some(5));
     assert!(String::from_utf8_lossy(&ran.stderr).contains("at l2 5 of the given design is l2-unreachable"));
     assert!(!folder.join("gone").exists());

@@ -3,6 +3,7 @@
 mod adversarial;
 #[cfg(unix)]
 mod blocks;
+mod common;
 mod errors;
 mod faults;
 mod fit;

@@ -1,23 +1,9 @@
 //! Records that an older program wrote (`tests/records`) are read by this one, and their rows come out the same.
 
-use std::{
-    fs,
-    path::Path,
-    process::{Command, Output},
-};
+use crate::common::done;
+use std::{fs, path::Path};
 
 const FILES: [&str; 3] = ["run.json", "limits.csv", "states.jsonl"];
-
-fn maille(folder: &Path, line: &str) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_maille")).args(line.split_whitespace()).current_dir(folder).output().unwrap()
-}
-
-/// What a command prints, which must succeed.
-fn done(folder: &Path, line: &str) -> String {
-    let Output { status, stdout, stderr } = maille(folder, line);
-    assert!(status.success(), "{line}: {}", String::from_utf8_lossy(&stderr));
-    String::from_utf8(stdout).unwrap()
-}
 
 /// Reads the record `name`; `caption` stands in its plot, and the limit at `at` is solved again.
 fn read_by_every_command(name: &str, caption: &str, at: &str) {

@@ -1,19 +1,8 @@
 //! `maille prove` and what `maille verify` says of its files.
 
+use crate::common::{code, maille};
 use serde_json::Value;
-use std::{
-    fs,
-    path::Path,
-    process::{Command, Output},
-};
-
-fn maille(folder: &Path, line: &str) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_maille")).args(line.split_whitespace()).current_dir(folder).output().unwrap()
-}
-
-fn code(output: &Output) -> i32 {
-    output.status.code().unwrap()
-}
+use std::{fs, process::Output};
 
 fn json(output: &Output) -> Value {
     serde_json::from_slice(&output.stdout)

@@ -1,15 +1,9 @@
 //! `maille roll`: its record goes on where it stopped, and no planted fault passes `maille verify`.
 
+use crate::common::outcome;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
-use std::{fs, path::Path, process::Command};
-
-fn maille(folder: &Path, line: &str) -> (i32, String, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_maille"));
-    let done = command.current_dir(folder).args(line.split_whitespace()).output().unwrap();
-    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-    (done.status.code().unwrap(), text(&done.stdout), text(&done.stderr))
-}
+use std::{fs, path::Path};
 
 fn read(folder: &Path, name: &str) -> String {
     fs::read_to_string(folder.join(name)).unwrap()
@@ -32,7 +26,7 @@ const ROLL: &str = "roll european-4-in-1 --out r --threads 1 --quiet --direction
 fn rolls_go_on_and_are_read() {
     let dir = tempfile::tempdir().unwrap();
     let folder = dir.path();
-    assert_eq!(maille(folder, &format!("{ROLL} 0,90")).0, 0);
+    assert_eq!(outcome(folder, &format!("{ROLL} 0,90")).0, 0);
     let first = table(folder);
     assert_eq!(first.len(), 5);
     // Cut off within its third roll.
@@ -40,31 +34,31 @@ fn rolls_go_on_and_are_read() {
     let third: usize = states.split_inclusive('\n').take(3).map(str::len).sum();
     fs::write(folder.join("r/rolls.jsonl"), &states[..third + 20]).unwrap();
     fs::remove_file(folder.join("r/roll.json")).unwrap();
-    let (code, _, problem) = maille(folder, "table r");
+    let (code, _, problem) = outcome(folder, "table r");
     assert!(code == 4 && problem.contains("the same `maille roll` command writes it"), "{problem}");
-    assert_eq!(maille(folder, &format!("{ROLL} 0,90")).0, 0);
+    assert_eq!(outcome(folder, &format!("{ROLL} 0,90")).0, 0);
     assert_eq!(table(folder), first);
     // More directions: what is there stays, in its place.
-    assert_eq!(maille(folder, &format!("{ROLL} 45")).0, 0);
+    assert_eq!(outcome(folder, &format!("{ROLL} 45")).0, 0);
     let more = table(folder);
     assert_eq!((more.len(), &more[..3], &more[5..]), (7, &first[..3], &first[3..]));
-    let (code, said, _) = maille(folder, "verify r");
+    let (code, said, _) = outcome(folder, "verify r");
     assert!(code == 0 && said.contains("6 of 6 certified ones proved"), "{said}");
-    assert_eq!(maille(folder, "table r --format csv").1, read(folder, "r/rolls.csv"));
-    let json: Value = serde_json::from_str(&maille(folder, "table r --format json --rows 2").1).unwrap();
+    assert_eq!(outcome(folder, "table r --format csv").1, read(folder, "r/rolls.csv"));
+    let json: Value = serde_json::from_str(&outcome(folder, "table r --format json --rows 2").1).unwrap();
     assert_eq!(json["rolls"].as_array().unwrap().len(), 2);
-    assert_eq!(maille(folder, "plot r -o again.svg").0, 0);
+    assert_eq!(outcome(folder, "plot r -o again.svg").0, 0);
     assert_eq!(read(folder, "again.svg"), read(folder, "r/roll.svg"));
     // Printed and shown.
     let place = "--from r --at direction=90,axis=below --tile 2x3 --quiet";
-    assert_eq!(maille(folder, &format!("export {place} --out roll.stl")).0, 0);
-    assert_eq!(maille(folder, &format!("render {place} --size 80x60 --out roll.png")).0, 0);
-    let (code, _, problem) = maille(folder, "export --from r --at direction=90 --out two.stl");
+    assert_eq!(outcome(folder, &format!("export {place} --out roll.stl")).0, 0);
+    assert_eq!(outcome(folder, &format!("render {place} --size 80x60 --out roll.png")).0, 0);
+    let (code, _, problem) = outcome(folder, "export --from r --at direction=90 --out two.stl");
     assert!(code == 2 && problem.contains("--at direction=90,axis=above"), "{problem}");
     // Others of the same name are not mixed in.
-    let (code, _, problem) = maille(folder, &format!("{ROLL} 0 --free width"));
+    let (code, _, problem) = outcome(folder, &format!("{ROLL} 0 --free width"));
     assert!(code == 4 && problem.contains("--overwrite"), "{problem}");
-    assert_eq!(maille(folder, &format!("{ROLL} 0 --free width --overwrite")).0, 0);
+    assert_eq!(outcome(folder, &format!("{ROLL} 0 --free width --overwrite")).0, 0);
     assert_eq!(table(folder).len(), 3);
 }
 
@@ -113,7 +107,7 @@ fn forge_roll(folder: &Path, place: usize, change: impl Fn(&mut Value)) {
 
 /// The checks that are false, each once.
 fn refuted(folder: &Path) -> Vec<String> {
-    let (code, said, problem) = maille(folder, "verify r --json");
+    let (code, said, problem) = outcome(folder, "verify r --json");
     let found: Value = serde_json::from_str(&said).unwrap_or_else(|_| panic!("{problem}"));
     let mut out = Vec::new();
     for roll in found["rolls"][0]["rolls"].as_array().unwrap() {
@@ -134,7 +128,7 @@ fn add(value: &mut Value, more: f64) {
 fn no_planted_fault_passes() {
     let dir = tempfile::tempdir().unwrap();
     let folder = dir.path();
-    assert_eq!(maille(folder, &format!("{ROLL} 90 --axis below")).0, 0);
+    assert_eq!(outcome(folder, &format!("{ROLL} 90 --axis below")).0, 0);
     for (name, copy) in [("rolls.jsonl", "good.jsonl"), ("rolls.csv", "good.csv"), ("roll.json", "good.json")] {
         fs::copy(folder.join("r").join(name), folder.join(copy)).unwrap();
     }
@@ -181,7 +175,7 @@ fn no_planted_fault_passes() {
             fs::write(folder.join("r").join(name), text).unwrap();
         }
         fs::write(folder.join("r/roll.json"), value.to_string()).unwrap();
-        maille(folder, "verify r").0
+        outcome(folder, "verify r").0
     };
     let same = |text: &str| text.to_owned();
     assert_eq!(files(&|_| (), &same, &same), 0);
@@ -214,28 +208,28 @@ fn sizes(stl: &[u8]) -> [f32; 3] {
 fn tubes_close_and_no_planted_fault_passes() {
     let dir = tempfile::tempdir().unwrap();
     let folder = dir.path();
-    let (code, _, problem) = maille(folder, "roll european-4-in-1 --wrap 8 --directions 20 --out r");
+    let (code, _, problem) = outcome(folder, "roll european-4-in-1 --wrap 8 --directions 20 --out r");
     assert!(
         code == 2 && problem.contains("no lattice vector lies along 20") && !folder.join("r").exists(),
         "{problem}"
     );
-    assert_eq!(maille(folder, "roll european-4-in-1 --wrap 2.5 --out r").0, 2);
-    assert_eq!(maille(folder, "roll european-4-in-1 --wrap 9 --cell 2x1 --out r").0, 2);
-    assert_eq!(maille(folder, "roll european-4-in-1 --wrap 8 --free width --out r").0, 2);
+    assert_eq!(outcome(folder, "roll european-4-in-1 --wrap 2.5 --out r").0, 2);
+    assert_eq!(outcome(folder, "roll european-4-in-1 --wrap 9 --cell 2x1 --out r").0, 2);
+    assert_eq!(outcome(folder, "roll european-4-in-1 --wrap 8 --free width --out r").0, 2);
     let tubes = "roll european-4-in-1 --out r --threads 1 --axis below --quiet --wrap";
-    assert_eq!(maille(folder, &format!("{tubes} 8")).0, 0);
+    assert_eq!(outcome(folder, &format!("{tubes} 8")).0, 0);
     // Goes on; a tube that was not found is no error of the record.
-    assert_eq!(maille(folder, &format!("{tubes} 4,8")).0, 5);
-    let (code, said, _) = maille(folder, "verify r");
+    assert_eq!(outcome(folder, &format!("{tubes} 4,8")).0, 5);
+    let (code, said, _) = outcome(folder, "verify r");
     assert!(code == 0 && said.contains("5 of 5 certified ones proved"), "{said}");
-    let (code, _, problem) = maille(folder, "plot r");
+    let (code, _, problem) = outcome(folder, "plot r");
     assert!(code == 2 && problem.contains("tubes"), "{problem}");
     // All cells round, in a mesh that is as deep as it is wide, by the radius and the rings.
-    assert_eq!(maille(folder, "export --from r --at wrap=8 --out tube.stl --quiet").0, 0);
+    assert_eq!(outcome(folder, "export --from r --at wrap=8 --out tube.stl --quiet").0, 0);
     let [x, _, z] = sizes(&fs::read(folder.join("tube.stl")).unwrap());
     assert!((x - z).abs() < 0.3 && x > 2.0 * 15.2 && x < 2.0 * (15.2 + 4.9 + 1.15), "{x} {z}");
-    assert_eq!(maille(folder, "render --from r --at wrap=8,sought=longest --size 80x60 --out tube.png --quiet").0, 0);
-    assert_eq!(maille(folder, &format!("{tubes} 8 --overwrite")).0, 0);
+    assert_eq!(outcome(folder, "render --from r --at wrap=8,sought=longest --size 80x60 --out tube.png --quiet").0, 0);
+    assert_eq!(outcome(folder, &format!("{tubes} 8 --overwrite")).0, 0);
     for (name, copy) in [("rolls.jsonl", "good.jsonl"), ("rolls.csv", "good.csv"), ("roll.json", "good.json")] {
         fs::copy(folder.join("r").join(name), folder.join(copy)).unwrap();
     }
@@ -256,7 +250,7 @@ fn tubes_close_and_no_planted_fault_passes() {
     // Another number of cells, and another end of the range, than those of the state.
     for (name, value) in [("wrap", Value::from(9)), ("sought", "longest".into())] {
         forge_roll(folder, shortest, |roll| roll[name] = value.clone());
-        let (code, said, _) = maille(folder, "verify r");
+        let (code, said, _) = outcome(folder, "verify r");
         assert!(code == 4 && said.to_lowercase().contains("false"), "{name}: {said}");
     }
 }
@@ -266,14 +260,14 @@ fn sheets_of_given_curvature_and_strains_and_no_planted_fault_passes() {
     let dir = tempfile::tempdir().unwrap();
     let folder = dir.path();
     for wrong in ["--curvature=-0.1", "--curvature 0", "--l2 -2", "--l2 0.1 --free width", "--wrap 8 --shear 0.1"] {
-        let (code, _, problem) = maille(folder, &format!("roll european-4-in-1 {wrong} --out r"));
+        let (code, _, problem) = outcome(folder, &format!("roll european-4-in-1 {wrong} --out r"));
         assert!(code == 2 && !problem.is_empty() && !folder.join("r").exists(), "{wrong}: {problem}");
     }
     // 0.03 is no number times R by R.
     let rolls = "roll european-4-in-1 --directions 0,30 --threads 1 --quiet --out r --overwrite";
-    assert_eq!(maille(folder, &format!("{rolls} --curvature 0.03 --l2 -0.02 --shear 0.03")).0, 0);
-    assert_eq!(maille(folder, "export --from r --at direction=30,axis=below,curvature=0.03 --out a.stl --quiet").0, 0);
-    let (code, said, _) = maille(folder, "verify r");
+    assert_eq!(outcome(folder, &format!("{rolls} --curvature 0.03 --l2 -0.02 --shear 0.03")).0, 0);
+    assert_eq!(outcome(folder, "export --from r --at direction=30,axis=below,curvature=0.03 --out a.stl --quiet").0, 0);
+    let (code, said, _) = outcome(folder, "verify r");
     assert!(code == 0 && said.contains("12 of 12 certified ones proved"), "{said}");
     for (name, copy) in [("rolls.jsonl", "good.jsonl"), ("rolls.csv", "good.csv"), ("roll.json", "good.json")] {
         fs::copy(folder.join("r").join(name), folder.join(copy)).unwrap();
@@ -282,7 +276,7 @@ fn sheets_of_given_curvature_and_strains_and_no_planted_fault_passes() {
     assert!(refuted(folder).iter().any(|name| name == "deformation"));
     for (name, value) in [("at_curvature", Value::from(0.031)), ("sought", "longest".into())] {
         forge_roll(folder, 3, |roll| roll[name] = value.clone());
-        let (code, said, _) = maille(folder, "verify r");
+        let (code, said, _) = outcome(folder, "verify r");
         assert!(code == 4 && said.to_lowercase().contains("false"), "{name}: {said}");
     }
     // The strains of the head, in rolls.csv and the states too.
@@ -292,10 +286,10 @@ fn sheets_of_given_curvature_and_strains_and_no_planted_fault_passes() {
         fs::copy(folder.join(name.replace("rolls", "good")), folder.join("r").join(name)).unwrap();
     }
     fs::write(folder.join("r/roll.json"), head.to_string()).unwrap();
-    assert_eq!(maille(folder, "verify r").0, 4);
+    assert_eq!(outcome(folder, "verify r").0, 4);
     // With the width free its ends are sought, too.
-    assert_eq!(maille(folder, &format!("{rolls} --curvature 0.02,0.03 --free width --axis above")).0, 0);
-    let (code, said, _) = maille(folder, "verify r");
+    assert_eq!(outcome(folder, &format!("{rolls} --curvature 0.02,0.03 --free width --axis above")).0, 0);
+    let (code, said, _) = outcome(folder, "verify r");
     assert!(code == 0 && said.contains("20 of 20 certified ones proved"), "{said}");
 }
 
@@ -312,25 +306,25 @@ fn a_chain_has_a_length_and_a_bend_and_no_width() {
         "limit cable --maximize exx --free eyy",
         "boundary cable",
     ] {
-        let (code, _, problem) = maille(folder, refused);
+        let (code, _, problem) = outcome(folder, refused);
         assert!(code == 2 && problem.contains("chain"), "{refused}: {code} {problem}");
     }
-    let (code, said, problem) = maille(folder, "check cable curb");
+    let (code, said, problem) = outcome(folder, "check cable curb");
     assert!(code == 0 && said.matches(": OK;").count() == 2 && problem.is_empty(), "{said} {problem}");
-    assert_eq!(maille(folder, "characterize cable --out c --quiet").0, 0);
+    assert_eq!(outcome(folder, "characterize cable --out c --quiet").0, 0);
     assert!(read(folder, "c/limits.csv").contains(",global,"), "{}", read(folder, "c/limits.csv"));
-    assert_eq!(maille(folder, "roll cable --out r --quiet --threads 1").0, 0);
-    assert_eq!(maille(folder, "roll cable --out t --quiet --threads 1 --wrap 4,6 --axis below").0, 0);
+    assert_eq!(outcome(folder, "roll cable --out r --quiet --threads 1").0, 0);
+    assert_eq!(outcome(folder, "roll cable --out t --quiet --threads 1 --wrap 4,6 --axis below").0, 0);
     for record in ["c", "r", "t"] {
-        let (code, said, _) = maille(folder, &format!("verify {record}"));
+        let (code, said, _) = outcome(folder, &format!("verify {record}"));
         assert!(code == 0 && !said.contains("0 of 0"), "{record}: {said}");
     }
     // A piece is eight cells long and one chain wide: 13.2 mm for each cell, and rings of 12.1 mm.
-    assert_eq!(maille(folder, "export cable --out a.stl --quiet").0, 0);
+    assert_eq!(outcome(folder, "export cable --out a.stl --quiet").0, 0);
     let [x, y, z] = sizes(&fs::read(folder.join("a.stl")).unwrap());
     assert!((x - (7.5 * 13.2 + 12.1)).abs() < 0.3 && (y - z).abs() < 0.3 && y < 12.2, "{x} {y} {z}");
     // Closed, four cells go round.
-    assert_eq!(maille(folder, "export --from t --at wrap=4,sought=widest --out ring.stl --quiet").0, 0);
+    assert_eq!(outcome(folder, "export --from t --at wrap=4,sought=widest --out ring.stl --quiet").0, 0);
     let [x, y, z] = sizes(&fs::read(folder.join("ring.stl")).unwrap());
     assert!((x - z).abs() < 1.0 && y < 12.2 && x > 2.0 * 9.5, "{x} {y} {z}");
 }
@@ -341,7 +335,7 @@ fn a_chain_has_a_length_and_a_bend_and_no_width() {
 fn states_of_a_tube_help_each_other() {
     let dir = tempfile::tempdir().unwrap();
     let folder = dir.path();
-    assert_eq!(maille(folder, "roll 3.1 --wrap 4 --axis below --threads 1 --quiet --out r").0, 0);
+    assert_eq!(outcome(folder, "roll 3.1 --wrap 4 --axis below --threads 1 --quiet --out r").0, 0);
     let states = read(folder, "r/rolls.jsonl");
     let longest: Value = states
         .lines()
@@ -363,7 +357,7 @@ fn what_comes_apart_has_no_gap() {
     let head = "name = \"far\"\nminor_radius = 0.1\nreference_radius = 1.0\n[lattice]\na1 = [6.0, 0.0, 0.0]\n";
     fs::write(dir.path().join("far.toml"), format!("{head}{ring}")).unwrap();
     let line = "roll far.toml --axis above --effort low --allow-incomplete --out r --quiet";
-    assert_eq!(maille(dir.path(), line).0, 0);
+    assert_eq!(outcome(dir.path(), line).0, 0);
     let rolls: Vec<Value> =
         read(dir.path(), "r/rolls.jsonl").lines().skip(1).map(|line| serde_json::from_str(line).unwrap()).collect();
     assert!(rolls[0]["status"] == "uncertified" && rolls[0]["certificate"]["min_gap"].is_null());

@@ -1,20 +1,7 @@
 //! `maille sweep`: what it writes, what stops nothing, and how it ends; `maille table` and `maille plot` of its folder.
 
-use std::{
-    fs,
-    path::Path,
-    process::{Command, Output},
-};
-
-fn maille(folder: &Path, line: &str) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_maille")).args(line.split_whitespace()).current_dir(folder).output().unwrap()
-}
-
-fn done(folder: &Path, line: &str) -> String {
-    let output = maille(folder, line);
-    assert_eq!(output.status.code(), Some(0), "{line}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
-}
+use crate::common::{done, maille};
+use std::{fs, path::Path};
 
 /// A study is many records and one table; a variant that cannot be used is named, and does not stop the others.
 #[test]

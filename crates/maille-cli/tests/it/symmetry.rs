@@ -1,15 +1,8 @@
 //! Directions that a design's symmetries make images of each other: rows that agree, are proved by `verify`, and are told.
 
+use crate::common::maille;
 use serde_json::Value;
-use std::{
-    path::Path,
-    process::{Command, Output},
-};
-
-fn maille(folder: &Path, line: &str) -> Output {
-    let words = line.split_whitespace();
-    Command::new(env!("CARGO_BIN_EXE_maille")).args(words).current_dir(folder).output().unwrap()
-}
+use std::path::Path;
 
 /// The rows of a record, as `table` writes them.
 fn rows(folder: &Path, record: &str) -> Vec<Value> {

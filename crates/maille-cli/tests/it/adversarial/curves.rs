@@ -1,6 +1,7 @@
 //! Curves at the edge of what a curve can be: spikes, hairpins, fillets of zero, thousands of pieces, knots, hooks.
 
-use super::{maille, rows};
+use super::rows;
+use crate::common::outcome;
 use std::{f64::consts::TAU, fmt::Write as _, fs};
 
 /// A chain with this repeat of elements along x, each with the form and minor radius of its curve and the direction of its normal.
@@ -29,10 +30,10 @@ fn locked(design: &str, repeat: f64) -> (String, f64) {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("design.toml"), design).unwrap();
     let (code, _, said) =
-        maille(folder.path(), "characterize design.toml --cell 1x1 --effort low --out record --quiet");
+        outcome(folder.path(), "characterize design.toml --cell 1x1 --effort low --out record --quiet");
     assert_eq!(code, 0, "{said}");
     let row = &rows(folder.path())[0];
-    let (verified, out, _) = maille(folder.path(), "verify record");
+    let (verified, out, _) = outcome(folder.path(), "verify record");
     assert_eq!(verified, 0, "{out}");
     assert!(out.contains("1 of 1 certified ones proved"), "{out}");
     (row["status"].as_str().unwrap().to_owned(), repeat * (1.0 + row["l1"].as_f64().unwrap()))
@@ -41,7 +42,7 @@ fn locked(design: &str, repeat: f64) -> (String, f64) {
 fn refused(design: &str, words: &str) {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("design.toml"), design).unwrap();
-    let (code, _, said) = maille(folder.path(), "inspect design.toml");
+    let (code, _, said) = outcome(folder.path(), "inspect design.toml");
     assert!(code != 0 && said.contains(words), "{code} {said}");
 }
 

@@ -2,8 +2,9 @@
 
 mod curves;
 
+use crate::common::outcome;
 use serde_json::Value;
-use std::{fmt::Write as _, fs, path::Path, process::Command};
+use std::{fmt::Write as _, fs, path::Path};
 
 /// Direction, l2, status and l1 of the rows of a design in its own cell, at 0°, 45° and 90° with these l2; the exit codes of `characterize`
 /// and of `verify`.
@@ -13,16 +14,9 @@ struct Answer {
     said: String,
 }
 
-fn maille(folder: &Path, line: &str) -> (i32, String, String) {
-    let words = line.split_whitespace();
-    let output = Command::new(env!("CARGO_BIN_EXE_maille")).args(words).current_dir(folder).output().unwrap();
-    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-    (output.status.code().unwrap(), text(&output.stdout), text(&output.stderr))
-}
-
 /// The rows of the record in a folder.
 fn rows(folder: &Path) -> Vec<Value> {
-    let table: Value = serde_json::from_str(&maille(folder, "table record --format json").1).unwrap();
+    let table: Value = serde_json::from_str(&outcome(folder, "table record --format json").1).unwrap();
     table["rows"].as_array().unwrap().clone()
 }
 
@@ -30,7 +24,7 @@ fn answer(design: &str, l2: &str) -> Answer {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("design.toml"), design).unwrap();
     let line = format!("characterize design.toml --directions 0,45,90 --l2={l2} --cell 1x1 --out record --quiet");
-    let (code, _, said) = maille(folder.path(), &line);
+    let (code, _, said) = outcome(folder.path(), &line);
     if !folder.path().join("record/limits.csv").exists() {
         return Answer { rows: Vec::new(), codes: (code, None), said };
     }
@@ -40,7 +34,7 @@ fn answer(design: &str, l2: &str) -> Answer {
         (at("direction_deg"), at("l2"), row["status"].as_str().unwrap().to_owned(), number(row, "l1"))
     };
     let rows = rows(folder.path()).iter().map(row).collect();
-    let (verified, said, _) = maille(folder.path(), "verify record --quiet");
+    let (verified, said, _) = outcome(folder.path(), "verify record --quiet");
     Answer { rows, codes: (code, Some(verified)), said }
 }
 
@@ -136,14 +130,14 @@ fn far_designs_keep_their_place() {
     fs::write(folder.path().join("far.toml"), grid(2.5, 0.1, 1.0, 1e6, 0.0)).unwrap();
     let drop = |floor: &str| {
         let line = format!("simulate far.toml --tile 1x1 --gravity 0,0,-1 --floor {floor} --steps 1 --out down --json");
-        maille(folder.path(), &line)
+        outcome(folder.path(), &line)
     };
     let (code, _, said) = drop("1000000");
     assert_eq!((code, said.contains("1000000 is above the lowest point of")), (2, true), "{said}");
     let (code, out, said) = drop("999997");
     assert_eq!(code, 0, "{said}");
     assert_eq!(serde_json::from_str::<Value>(&out).unwrap()["outcome"]["end"], "reached");
-    let (code, out, said) = maille(folder.path(), "roomiest far.toml --json --save roomy.toml");
+    let (code, out, said) = outcome(folder.path(), "roomiest far.toml --json --save roomy.toml");
     assert_eq!(code, 0, "{out}{said}");
     let roomy = fs::read_to_string(folder.path().join("roomy.toml")).unwrap();
     let center = roomy.lines().find_map(|line| line.strip_prefix("center = [")?.strip_suffix(']')).unwrap();
@@ -283,14 +277,14 @@ fn what_is_neither_held_nor_apart_has_no_number() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("stack.toml"), stack).unwrap();
     let (code, _, said) =
-        maille(folder.path(), "characterize stack.toml --directions 90.01 --l2 0 --cell 1x1 --out record --quiet");
+        outcome(folder.path(), "characterize stack.toml --directions 90.01 --l2 0 --cell 1x1 --out record --quiet");
     assert_eq!(code, 5, "{said}");
     let row = &rows(folder.path())[0];
     assert_eq!(
         (&row["status"], &row["l1"], &row["l1_uncertified"]),
         (&"uncertified".into(), &Value::Null, &Value::Null)
     );
-    assert_eq!(maille(folder.path(), "verify record --quiet").0, 0);
+    assert_eq!(outcome(folder.path(), "verify record --quiet").0, 0);
     assert!(fs::read_to_string(folder.path().join("record/states.jsonl")).unwrap().contains("no contact held it"));
 }
 
@@ -301,13 +295,13 @@ fn a_strain_that_nothing_holds_has_no_largest_value() {
     let folder = tempfile::tempdir().unwrap();
     let chains = design([[2.5, 0.0, 0.0], [0.0, 2.5, 0.0]], 0.1, 1.0, &rings);
     fs::write(folder.path().join("chains.toml"), chains).unwrap();
-    let (code, out, _) = maille(folder.path(), "limit chains.toml --maximize eyy");
+    let (code, out, _) = outcome(folder.path(), "limit chains.toml --maximize eyy");
     assert_eq!(code, 5);
     assert!(out.contains("unbounded") && out.contains("nothing holds the sheet along this direction"), "{out}");
-    let (code, out, said) = maille(folder.path(), "limit chains.toml --maximize eyy --json");
+    let (code, out, said) = outcome(folder.path(), "limit chains.toml --maximize eyy --json");
     let found: Value = serde_json::from_str(&out).unwrap();
     assert_eq!((code, &found["value"]), (5, &Value::Null), "{said}");
-    let (code, out, said) = maille(folder.path(), "limit chains.toml --maximize exx --json");
+    let (code, out, said) = outcome(folder.path(), "limit chains.toml --maximize exx --json");
     let found: Value = serde_json::from_str(&out).unwrap();
     assert_eq!(code, 0, "{said}");
     assert!((found["value"].as_f64().unwrap() - 0.5368).abs() < 1e-12, "{found}");
@@ -353,7 +347,7 @@ fn a_cell_that_is_written_out_has_the_limits_of_its_own_cell() {
 fn thousands_of_rings_in_a_cell_are_read_and_bounded() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("design.toml"), written_out(32)).unwrap();
-    let (code, out, said) = maille(folder.path(), "inspect design.toml --json");
+    let (code, out, said) = outcome(folder.path(), "inspect design.toml --json");
     assert_eq!(code, 0, "{said}");
     let found: Value = serde_json::from_str(&out).unwrap();
     assert_eq!(found["rings"].as_u64(), Some(3072));

@@ -3,9 +3,10 @@
 mod specimen;
 mod waves;
 
+use crate::common::{code, maille};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
-use specimen::{Specimen, all_proved, code, maille, said, verified};
+use specimen::{Specimen, all_proved, said, verified};
 use std::fs;
 
 #[test]

@@ -1,21 +1,12 @@
 //! Records that can be tampered with, and what `verify` says of them.
 
+use crate::common::{code, maille};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 use std::{
     fs,
     path::{Path, PathBuf},
-    process::{Command, Output},
 };
-
-pub fn maille(folder: &Path, line: &str) -> Output {
-    let words = line.split_whitespace();
-    Command::new(env!("CARGO_BIN_EXE_maille")).args(words).current_dir(folder).output().unwrap()
-}
-
-pub fn code(output: &Output) -> i32 {
-    output.status.code().unwrap()
-}
 
 /// What `verify` finds in a record, with its exit code.
 pub fn verified(folder: &Path, record: &str) -> (i32, Value) {
