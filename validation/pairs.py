@@ -1,7 +1,7 @@
 """The hardest of the adversarial pairs of circles, and of segments and arcs, solved with 50 digits.
 
-    MAILLE_PAIRS=1000000 MAILLE_HARDEST=/tmp/hardest.csv cargo test --release -p maille-geometry --test adversarial
-    MAILLE_HARDEST=/tmp/pieces.csv cargo test --release -p maille-geometry --test pieces -- --ignored
+    MAILLE_PAIRS=1000000 MAILLE_HARDEST=/tmp/hardest.csv cargo test --release -p maille-geometry --test it adversarial::
+    MAILLE_HARDEST=/tmp/pieces.csv cargo test --release -p maille-geometry --test it pieces:: -- --ignored
     python validation/pairs.py /tmp/hardest.csv
     python validation/pairs.py /tmp/pieces.csv
 

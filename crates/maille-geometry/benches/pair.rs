@@ -3,7 +3,8 @@
 //! `cargo bench -p maille-geometry`. A sample is 1,000 pairs: read milliseconds as microseconds per pair, and
 //! microseconds as nanoseconds per pair.
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../tests/it/common/mod.rs"]
+#[expect(dead_code, reason = "it uses a part")]
 mod common;
 
 use common::{Family, Pair, circle, degenerate, direction, linked, near_degenerate, rng, symmetric, thin_gap, uniform};

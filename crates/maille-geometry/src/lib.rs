@@ -67,7 +67,7 @@
 //!
 //! Distances are accurate to about `1e-15` of the pair's largest length (radii and distance of the centres), in
 //! degenerate positions too. Tested on 120,000 random pairs of six families against dense sampling: no minimum
-//! missed, no false one, and no distance more than `7e-16` above the sampled one (`tests/completeness.rs`). Random
+//! missed, no false one, and no distance more than `7e-16` above the sampled one (`tests/it/completeness.rs`). Random
 //! pairs have met at most two minima; at most three isolated ones are possible.
 //!
 //! # Degenerate positions

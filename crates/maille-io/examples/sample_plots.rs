@@ -2,7 +2,8 @@
 //!
 //! The limits are the chain bound of a square grid, with two directions left out.
 
-#[path = "../tests/common/rows.rs"]
+#[path = "../tests/it/common/rows.rs"]
+#[expect(dead_code, reason = "it uses a part")]
 mod rows;
 
 use maille::record::{LimitRow, Status};

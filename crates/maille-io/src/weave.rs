@@ -2,7 +2,7 @@
 //!
 //! All rings of a weave are alike, so that a placement is a set of ratios to the major radius R. Those here leave the
 //! smallest gap as large as it can be: where one distance between two rings grows, another falls. The rings fit if
-//! their wire is thinner than that distance. `crates/maille-io/tests/weaves.rs` checks this, and the links.
+//! their wire is thinner than that distance. `crates/maille-io/tests/it/weaves.rs` checks this, and the links.
 
 use crate::write_design;
 use maille::{

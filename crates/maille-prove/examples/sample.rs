@@ -4,7 +4,7 @@
 //!
 //! Prints the number of feasible states, the largest l1 among them, and whether it is above the bound; exit code 1 if so.
 
-#[path = "../tests/sampler/mod.rs"]
+#[path = "../tests/it/sampler.rs"]
 mod sampler;
 
 use maille_io::{DesignSource, builtin};

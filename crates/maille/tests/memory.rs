@@ -1,4 +1,6 @@
 //! A long run needs no more memory than a short one, a large sheet so much for each ring and contact.
+//!
+//! Measured of the whole process, so these tests are a program of their own.
 #![cfg(target_os = "linux")]
 
 use maille::{

@@ -1,4 +1,4 @@
-// Written from the Rust types by `MAILLE_BLESS=1 cargo test -p maille-view --test types`.
+// Written from the Rust types by `MAILLE_BLESS=1 cargo test -p maille-view --test it types::`.
 
 export interface Activity {
   solves: number;

@@ -1,0 +1,20 @@
+//! All tests of this crate that use it from outside, in one program.
+
+mod common;
+mod design_files;
+mod errors;
+mod fit;
+#[cfg(feature = "mesh")]
+mod mesh;
+#[cfg(feature = "mesh")]
+mod mesh_foreign;
+mod parameters;
+#[cfg(feature = "plot")]
+mod plots;
+mod records;
+#[cfg(feature = "render")]
+mod render;
+mod schema;
+mod table_foreign;
+mod tables;
+mod weaves;
