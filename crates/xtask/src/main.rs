@@ -1,6 +1,6 @@
 //! Chores of the repository: `cargo xtask test`, `cargo xtask ci`, and the checks that `ci` is made of.
 //!
-//! It depends on little, so that the first command after a clone starts soon.
+//! It depends on little and has a profile of its own, so that the first command after a clone starts soon.
 
 mod atlas;
 mod bench;
