@@ -6,6 +6,7 @@ mod atlas;
 mod bench;
 mod certify;
 mod circles;
+mod crates;
 mod features;
 mod folder;
 mod gallery;

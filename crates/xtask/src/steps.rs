@@ -1,6 +1,8 @@
 //! The steps of `ci`, each announced and timed.
 
-use crate::{certify, circles, features, layers, paths, program, repository::Finding, site, view, wheel::Environment};
+use crate::{
+    certify, circles, crates, features, layers, paths, program, repository::Finding, site, view, wheel::Environment,
+};
 use std::{
     path::Path,
     process::{Command, Stdio},
@@ -79,7 +81,8 @@ pub fn failed(done: Result<(), String>) -> Result<(), Failed> {
 pub fn layers(root: &Path) -> Result<(), Failed> {
     println!("{}", layers::order_of_crates());
     println!("{}", layers::order_of_modules());
-    report([layers::check(root), circles::check(root)].concat())
+    let crates = crates::read(root);
+    report([layers::check(root, &crates), circles::check(&crates)].concat())
 }
 
 /// The check that libraries are compiled once.
