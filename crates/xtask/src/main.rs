@@ -30,7 +30,7 @@ const HELP: &str = "\
 cargo xtask COMMAND
 
   test     every test there is: of Rust, of the Python package, of the viewer in a browser; first says what it will
-           install, and what it skips. Ends with 0 if all ran and passed, 1 if something failed, 3 if something was skipped
+           install, and what it skips. Ends with 0 if all ran and passed, 1 if something failed, 3 if some were skipped
            --all           those that take minutes as well: ignored tests, certify --quick; keeps their results in
                            validation/long-tests.md
   view     build the viewer's page, and the program with it (target/release/maille); needs Node.js

@@ -2,7 +2,7 @@
 //!
 //! Each step is a process of its own, this program or cargo, and prints into its log. What waits for the network starts
 //! at once, beside the one build of all tests. Cargo lets only one build into a folder at a time, so builds stand one
-//! after the other; all have one profile and one choice of features (`cargo xtask features`), and compile nothing twice.
+//! after the other; all have one profile and one choice of features (`cargo xtask features`): nothing is compiled twice.
 
 mod counts;
 mod found;

@@ -31,8 +31,8 @@ pub fn build(root: &Path) -> Result<PathBuf, String> {
     Ok(target(root).join("release").join(name()))
 }
 
-/// Builds the program with the profile of the tests, and keeps a copy: the other tests build it without the viewer in its
-/// place.
+/// Builds the program with the profile of the tests, and keeps a copy: the other tests build it without the viewer in
+/// its place.
 pub fn test_program(root: &Path) -> Result<(), String> {
     program(root, &[])?;
     let built = target(root).join("debug").join(name());

@@ -164,9 +164,11 @@ mod tests {
         let of =
             |line: &str| counts(Runner::Nextest, &format!("   PASS [0.1s] a b\n{line}\n   FAIL [0.2s] c d\nerror: x"));
         assert_eq!(of("     Summary [  12.345s] 123 tests run: 123 passed, 0 skipped"), Some([123, 0, 0]));
-        let all = "     Summary [   9.1s] 9/12 tests run: 5 passed (3 slow, 1 leaky), 1 failed, 2 exec failed, 1 timed out, 31 skipped";
+        let all = "     Summary [   9.1s] 9/12 tests run: 5 passed (3 slow, 1 leaky), 1 failed, 2 exec failed, \
+            1 timed out, 31 skipped";
         assert_eq!(of(all), Some([5, 4, 31]));
-        let colours = "\x1b[32;1m     Summary\x1b[0m [   0.2s] \x1b[1m1\x1b[0m test run: \x1b[1m1\x1b[0m \x1b[32;1mpassed\x1b[0m, 0 skipped";
+        let colours = "\x1b[32;1m     Summary\x1b[0m [   0.2s] \x1b[1m1\x1b[0m test run: \x1b[1m1\x1b[0m \
+            \x1b[32;1mpassed\x1b[0m, 0 skipped";
         assert_eq!(of(colours), Some([1, 0, 0]));
         assert_eq!(of("error: could not compile `maille`"), None);
     }

@@ -34,7 +34,8 @@ struct House<'a> {
     ended: Vec<Ended>,
 }
 
-/// Runs all steps, and says how each ended, in the order in which they are given. Of those that may start, the first does.
+/// Runs all steps, and says how each ended, in the order in which they are given. Of those that may start, the first
+/// does.
 pub fn run(steps: Vec<Step>, logs: &Path, progress: &mut Progress) -> Vec<Ended> {
     let order: Vec<&str> = steps.iter().map(|step| step.name).collect();
     let mut house = House { logs, progress, waiting: steps, running: Vec::new(), ended: Vec::new() };
