@@ -15,7 +15,7 @@ fn time(kind: Kind) -> &'static str {
     }
 }
 
-const DISK: &str = "about 10 GB in the build folder, 1 GB of it for Python";
+const DISK: &str = "several GB in the build folder, 1 GB of it for Python";
 
 /// The plan.
 pub fn text(found: &Found, steps: &[Step], target: &Path, logs: &Path, kind: Kind) -> String {
