@@ -1,41 +1,38 @@
 //! The circle check: no file of a crate uses itself through others, and no folder of `maille-io` does.
 
 use crate::{
-    repository::{Finding, sources},
-    uses,
+    crates::{Crates, Sources, folder},
+    repository::Finding,
+    uses::Use,
 };
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    path::Path,
-};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Crates whose folders below `src` stand in no circle either; a file there is a folder of one.
 const FOLDERS: &[&str] = &["maille-io"];
 
 /// The circles. Uses between the files of one are not counted apart: what they add is seen only when it draws another file in.
-pub fn check(root: &Path) -> Vec<Finding> {
-    let folders = std::fs::read_dir(root.join("crates")).into_iter().flatten().flatten();
-    let mut names: Vec<String> = folders.map(|f| f.file_name().to_string_lossy().into_owned()).collect();
-    names.sort_unstable();
-    names.iter().flat_map(|name| check_crate(root, name).unwrap_or_else(|finding| vec![finding])).collect()
+pub fn check(crates: &Crates) -> Vec<Finding> {
+    let of = |(name, sources): (&String, &Result<Sources, Finding>)| match sources {
+        Ok(sources) => check_crate(name, &sources.uses),
+        Err(finding) => vec![finding.clone()],
+    };
+    crates.iter().flat_map(of).collect()
 }
 
-fn check_crate(root: &Path, name: &str) -> Result<Vec<Finding>, Finding> {
-    let folder = format!("crates/{name}/src");
-    let uses = uses::uses(&sources(root, &folder)?).map_err(|problem| Finding::new(folder.as_str(), 0, problem))?;
-    let uses = graph(&uses);
+fn check_crate(name: &str, uses: &[Use]) -> Vec<Finding> {
+    let uses = graph(uses);
     let mut graphs = vec![uses.clone()];
     if FOLDERS.contains(&name) {
         graphs.push(between_folders(&uses));
     }
-    Ok(judge(&folder, &graphs))
+    judge(&folder(name), &graphs)
 }
 
 /// A use of one file or folder by another, with the first line that makes it.
 type Graph = BTreeMap<(String, String), usize>;
 
 /// Unit tests may use what they like.
-fn graph(uses: &[uses::Use]) -> Graph {
+fn graph(uses: &[Use]) -> Graph {
     let mut out = Graph::new();
     for u in uses.iter().filter(|u| !u.test) {
         let line = out.entry((u.from.clone(), u.to.clone())).or_insert(u.line);
@@ -101,7 +98,7 @@ mod tests {
 
     fn uses(files: &[(&str, &str)]) -> Graph {
         let files = files.iter().map(|(name, text)| (name.to_string(), text.to_string())).collect();
-        graph(&uses::uses(&files).unwrap())
+        graph(&crate::uses::uses(&files).unwrap())
     }
 
     fn found(files: &[(&str, &str)]) -> Vec<String> {

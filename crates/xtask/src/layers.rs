@@ -5,9 +5,10 @@
 //! first, in `ARCHITECTURE.md` and here.
 
 use crate::{
+    crates::Crates,
     program::cargo,
-    repository::{Finding, read, sources},
-    uses::uses,
+    repository::{Finding, read},
+    uses::Use,
 };
 use serde_json::Value;
 use std::{collections::BTreeMap, path::Path, process::Command};
@@ -44,7 +45,8 @@ const MODULES: &[&[&str]] = &[
 const ASIDE: &str = "solver";
 const ASIDE_USERS: &[&str] = &["program", "bound", "answer", "search", "relaxation", "sensitivity", "survey", "fit"];
 
-/// Where the modules of [`MODULES`] live.
+/// The crate of [`MODULES`], and where they live.
+const OWNER: &str = "maille";
 const SOURCES: &str = "crates/maille/src";
 /// Quotes the order.
 const DRAWING: &str = "ARCHITECTURE.md";
@@ -68,10 +70,15 @@ fn row(rows: &[&[&str]], name: &str) -> Option<usize> {
 }
 
 /// Everything that breaks the order, sorted.
-pub fn check(root: &Path) -> Vec<Finding> {
+pub fn check(root: &Path, crates: &Crates) -> Vec<Finding> {
     let mut out = check_drawing(&read(root, DRAWING).unwrap_or_default());
     out.extend(manifests(root).map_or_else(|e| vec![Finding::new("Cargo.toml", 0, e)], |all| check_crates(&all)));
-    out.extend(sources(root, SOURCES).map_or_else(|finding| vec![finding], |files| check_modules(&files)));
+    match crates.get(OWNER) {
+        Some(Ok(sources)) => out.extend(check_modules(&sources.files, &sources.uses)),
+        // The check of circles reports it.
+        Some(Err(_)) => {}
+        None => out.push(Finding::new(SOURCES, 0, "is not there")),
+    }
     out.sort_unstable();
     // A group of imports names its module more than once.
     out.dedup();
@@ -123,12 +130,8 @@ fn module(file: &str) -> Option<&str> {
 }
 
 /// Checks the sources of `maille`, by their paths below `src`.
-fn check_modules(files: &BTreeMap<String, String>) -> Vec<Finding> {
+fn check_modules(files: &BTreeMap<String, String>, uses: &[Use]) -> Vec<Finding> {
     let found = |file: &str, line, problem| Finding::new(format!("{SOURCES}/{file}"), line, problem);
-    let uses = match uses(files) {
-        Ok(uses) => uses,
-        Err(problem) => return vec![Finding::new(SOURCES, 0, problem)],
-    };
     let mut out = Vec::new();
     for (file, text) in files {
         let Some(own) = module(file) else { continue };
@@ -196,7 +199,8 @@ mod tests {
             files.insert(format!("{top}.rs"), format!("mod {name};"));
         }
         files.insert(file.into(), source.into());
-        check_modules(&files).into_iter().map(|f| (f.line, f.problem)).collect()
+        let uses = crate::uses::uses(&files).unwrap();
+        check_modules(&files, &uses).into_iter().map(|f| (f.line, f.problem)).collect()
     }
 
     fn only(file: &str, source: &str) -> (usize, String) {

@@ -1,11 +1,12 @@
 //! Chores of the repository: `cargo xtask test`, `cargo xtask ci`, and the checks that `ci` is made of.
 //!
-//! It depends on little, so that the first command after a clone starts soon.
+//! It depends on little and has a profile of its own, so that the first command after a clone starts soon.
 
 mod atlas;
 mod bench;
 mod certify;
 mod circles;
+mod crates;
 mod features;
 mod folder;
 mod gallery;
@@ -16,20 +17,25 @@ mod program;
 mod repository;
 mod site;
 mod steps;
+mod suite;
 mod uses;
 mod view;
 mod wheel;
 
 use package::Recipes;
 use std::process::ExitCode;
+use suite::Kind;
 
 const HELP: &str = "\
 cargo xtask COMMAND
 
-  test     every test there is, documentation examples and those of the Python package included
+  test     every test there is: of Rust, of the Python package, of the viewer in a browser; first says what it will
+           install, and what it skips. Ends with 0 if all ran and passed, 1 if something failed, 3 if some were skipped
+           --all           those that take minutes as well: ignored tests, certify --quick; keeps their results in
+                           validation/long-tests.md
   view     build the viewer's page, and the program with it (target/release/maille); needs Node.js
   wheel    build the Python package, install it into a new environment below target, run its examples
-  ci       format, clippy, layers, features, paths, rustdoc, then test
+  ci       format, layers, features, paths, clippy, rustdoc, then test; what is skipped has failed
   layers   no `use` points backward in the order of crates and modules, or in a circle
   features all builds of the tests ask for the same features of each library
   paths    every path named in the documents exists
@@ -71,10 +77,13 @@ fn main() -> ExitCode {
         }
     };
     let done = match words[..] {
-        ["test"] => steps::test(&root),
+        ["test"] => return steps::code(suite::run(&root, Kind::Test)),
+        ["test", "--all"] => return steps::code(suite::run(&root, Kind::All)),
+        ["ci"] => return steps::code(suite::run(&root, Kind::Ci)),
+        // A step of these, which they start.
+        ["step", name] => steps::failed(steps::one(&root, name)),
         ["view"] => steps::view(&root),
         ["wheel"] => steps::wheel(&root),
-        ["ci"] => steps::ci(&root),
         ["layers"] => steps::layers(&root),
         ["features"] => steps::features(&root),
         ["paths"] => steps::paths(&root),

@@ -4,6 +4,7 @@ use std::{
     collections::BTreeMap,
     fmt,
     path::{Path, PathBuf},
+    process::Command,
 };
 
 /// The repository: two folders above this crate. Asked at run time, for a binary may outlive the clone it was built in.
@@ -67,4 +68,17 @@ pub fn read(root: &Path, file: &str) -> Result<String, Finding> {
 pub fn sources(root: &Path, folder: &str) -> Result<BTreeMap<String, String>, Finding> {
     let files = files(root, folder, "rs").map_err(|e| Finding::new(folder, 0, format!("cannot be read: {e}")))?;
     files.into_iter().map(|file| Ok((file[folder.len() + 1..].to_string(), read(root, &file)?))).collect()
+}
+
+/// The commit of the repository, if git tells.
+pub fn commit(root: &Path) -> Option<String> {
+    let arguments = ["describe", "--always", "--dirty", "--exclude=*"];
+    let described = Command::new("git").args(arguments).current_dir(root).output().ok()?;
+    described.status.success().then(|| String::from_utf8_lossy(&described.stdout).trim().to_owned())
+}
+
+/// The day in UTC, as 2026-11-22; nothing where the system does not tell.
+pub fn today() -> String {
+    let told = Command::new("date").args(["-u", "+%F"]).output();
+    told.map_or_else(|_| String::new(), |told| String::from_utf8_lossy(&told.stdout).trim().to_owned())
 }

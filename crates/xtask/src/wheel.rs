@@ -11,9 +11,28 @@ use std::{
 const PACKAGE: &str = "crates/maille-py";
 /// What is installed beside the wheel, the build backend and what the tests need, with versions and hashes.
 const LOCK: &str = "crates/maille-py/requirements.lock";
-/// Programs that may be a Python of 3.10 or later.
+/// The file in an environment that says what is installed.
+const READY: &str = "ready";
+/// The oldest Python that the package runs on, and programs that may be one.
+pub const OLDEST: &str = "3.10";
 const PYTHONS: &[&str] = &["python3", "python", "python3.13", "python3.12", "python3.11", "python3.10"];
-const OLD_ENOUGH: &str = "import sys, venv; sys.exit(sys.version_info < (3, 10))";
+/// Debian has venv without ensurepip where python3-venv is not installed.
+const NEW_ENOUGH: &str = "import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 10))";
+
+/// A Python from which an environment can be made.
+pub fn python() -> Option<&'static str> {
+    let is_new = |name: &&&str| {
+        let probe = Command::new(name).args(["-c", NEW_ENOUGH]).stderr(Stdio::null()).status();
+        probe.is_ok_and(|status| status.success())
+    };
+    PYTHONS.iter().find(is_new).copied()
+}
+
+/// Whether the environment has what the lockfile says.
+pub fn is_ready(root: &Path) -> bool {
+    let installed = std::fs::read_to_string(target(root).join("python").join(READY));
+    installed.is_ok_and(|installed| std::fs::read_to_string(root.join(LOCK)).is_ok_and(|wanted| installed == wanted))
+}
 
 /// An environment with the wheel in it.
 pub struct Environment {
@@ -23,18 +42,21 @@ pub struct Environment {
 }
 
 impl Environment {
-    /// Builds the wheel with the profile of the tests and installs it. With `clean`, the environment is made anew; else
-    /// one that is there is used again.
-    pub fn new(root: &Path, clean: bool) -> Result<Self, String> {
+    /// The environment without the wheel. With `clean` it is made anew; else one that is there is used again.
+    pub fn there(root: &Path, clean: bool) -> Result<Self, String> {
         let target = target(root);
         let out = Environment { root: root.to_owned(), folder: target.join("python"), target };
-        let ready = out.folder.join("ready");
-        let lock = root.join(LOCK);
-        let wanted = std::fs::read_to_string(&lock).map_err(|e| format!("cannot read {}: {e}", lock.display()))?;
-        if clean || std::fs::read_to_string(&ready).ok().as_deref() != Some(&wanted) {
+        if clean || !is_ready(root) {
             out.create()?;
-            std::fs::write(&ready, wanted).map_err(|e| format!("cannot write {}: {e}", ready.display()))?;
+            let (lock, ready) = (root.join(LOCK), out.folder.join(READY));
+            std::fs::copy(&lock, &ready).map_err(|e| format!("cannot write {}: {e}", ready.display()))?;
         }
+        Ok(out)
+    }
+
+    /// Builds the wheel with the profile of the tests and installs it into the environment.
+    pub fn new(root: &Path, clean: bool) -> Result<Self, String> {
+        let out = Self::there(root, clean)?;
         let wheels = out.folder.join("wheels");
         if wheels.is_dir() {
             std::fs::remove_dir_all(&wheels).map_err(|e| format!("cannot empty {}: {e}", wheels.display()))?;
@@ -56,14 +78,11 @@ impl Environment {
     }
 
     fn make(&self) -> Result<(), String> {
-        let is_new = |name: &&&str| {
-            let probe = Command::new(name).args(["-c", OLD_ENOUGH]).stderr(Stdio::null()).status();
-            probe.is_ok_and(|status| status.success())
-        };
-        let Some(python) = PYTHONS.iter().find(is_new) else {
-            return Err("no Python of 3.10 or later with its module venv was found; install one, as python3 and \
-                        python3-venv of the system"
-                .into());
+        let Some(python) = python() else {
+            return Err(format!(
+                "no Python of {OLDEST} or later with its module venv was found; install one, as python3 and python3-venv of \
+                 the system"
+            ));
         };
         self.run(Command::new(python).args(["-m", "venv", "--clear"]).arg(&self.folder), "make an environment")
     }

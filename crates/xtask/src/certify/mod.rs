@@ -6,7 +6,10 @@
 mod symmetry;
 mod tally;
 
-use crate::program;
+use crate::{
+    program,
+    repository::{commit, today},
+};
 use serde_json::Value;
 use std::{
     collections::BTreeMap,
@@ -336,21 +339,8 @@ fn version(program: &Path) -> Result<String, String> {
     said.split_whitespace().last().map(str::to_owned).ok_or(format!("{} has no version", program.display()))
 }
 
-/// The commit of the repository that the program was built from, if git tells.
-fn commit(root: &Path) -> Option<String> {
-    let arguments = ["describe", "--always", "--dirty", "--exclude=*"];
-    let described = Command::new("git").args(arguments).current_dir(root).output().ok()?;
-    described.status.success().then(|| String::from_utf8_lossy(&described.stdout).trim().to_owned())
-}
-
 fn parsed(text: &str, line: &str) -> Result<Value, String> {
     serde_json::from_str(text).map_err(|e| format!("`{line}` printed no JSON: {e}"))
-}
-
-/// The day in UTC, as 2026-11-22; nothing where the system does not tell.
-fn today() -> String {
-    let told = Command::new("date").args(["-u", "+%F"]).output();
-    told.map_or_else(|_| String::new(), |told| String::from_utf8_lossy(&told.stdout).trim().to_owned())
 }
 
 #[cfg(test)]
