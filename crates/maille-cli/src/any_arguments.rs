@@ -2,8 +2,7 @@
 
 use crate::Args;
 use clap::{CommandFactory, Parser};
-use rand::{RngExt, SeedableRng, seq::IndexedRandom};
-use rand_chacha::ChaCha8Rng;
+use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng, seq::IndexedRandom};
 use std::ffi::OsString;
 
 /// Command lines of one run; `MAILLE_COMMAND_LINES` asks for more.

@@ -18,20 +18,41 @@ pub fn flag(quiet: bool) -> Result<Arc<AtomicBool>> {
         return Ok(Arc::clone(flag));
     }
     let flag = Arc::new(AtomicBool::new(false));
-    let set = Arc::clone(&flag);
-    ctrlc::set_handler(move || {
-        if set.swap(true, Ordering::Relaxed) {
-            std::process::exit(i32::from(exit::INTERRUPTED));
-        }
-        if !quiet {
-            eprintln!("\nstopping: what is finished is written (Ctrl-C again ends at once)");
-        }
-    })
-    .into_diagnostic()
-    .wrap_err("cannot listen for Ctrl-C")?;
-    signal_hook::flag::register(signal_hook::consts::SIGTERM, Arc::clone(&flag))
-        .into_diagnostic()
-        .wrap_err("cannot listen for SIGTERM")?;
+    listen(Arc::clone(&flag), quiet).into_diagnostic().wrap_err("cannot listen for Ctrl-C")?;
     *known = Some(Arc::clone(&flag));
     Ok(flag)
+}
+
+/// A thread of its own waits for both signals.
+#[cfg(unix)]
+fn listen(flag: Arc<AtomicBool>, quiet: bool) -> std::io::Result<()> {
+    use signal_hook::{
+        consts::{SIGINT, SIGTERM},
+        iterator::Signals,
+    };
+    let mut signals = Signals::new([SIGINT, SIGTERM])?;
+    std::thread::Builder::new().name("signals".into()).spawn(move || {
+        for signal in signals.forever() {
+            match signal {
+                SIGTERM => flag.store(true, Ordering::Relaxed),
+                _ => pressed(&flag, quiet),
+            }
+        }
+    })?;
+    Ok(())
+}
+
+#[cfg(not(unix))]
+fn listen(flag: Arc<AtomicBool>, quiet: bool) -> Result<(), ctrlc::Error> {
+    ctrlc::set_handler(move || pressed(&flag, quiet))
+}
+
+/// Ctrl-C.
+fn pressed(flag: &AtomicBool, quiet: bool) {
+    if flag.swap(true, Ordering::Relaxed) {
+        std::process::exit(i32::from(exit::INTERRUPTED));
+    }
+    if !quiet {
+        eprintln!("\nstopping: what is finished is written (Ctrl-C again ends at once)");
+    }
 }

@@ -48,6 +48,7 @@ mod source;
 mod summary;
 mod sweep;
 mod table;
+mod terminal;
 mod units;
 mod verify;
 mod verify_proof;
@@ -137,8 +138,7 @@ enum Command {
 static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 
 fn main() -> ExitCode {
-    // Lines of a help are commands to copy: they are not broken.
-    let hook = miette::set_hook(Box::new(|_| Box::new(miette::MietteHandlerOpts::new().wrap_lines(false).build())));
+    let hook = miette::set_hook(Box::new(|_| terminal::handler()));
     debug_assert!(hook.is_ok(), "the hook is set once");
     let args = Args::from_arg_matches(&help::matches(Args::command())).unwrap_or_else(|e| e.exit());
     let ended: Result<ExitCode> = match args.command {

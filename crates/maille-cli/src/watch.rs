@@ -5,24 +5,22 @@ use crate::{
     interrupt, remedy,
 };
 use maille_io::builtin;
-use miette::{IntoDiagnostic, Result, WrapErr};
-use notify_debouncer_mini::{new_debouncer, notify::RecursiveMode};
+use miette::Result;
 use std::{
     path::{Path, PathBuf},
     process::ExitCode,
-    sync::{
-        atomic::Ordering,
-        mpsc::{RecvTimeoutError, channel},
-    },
+    sync::atomic::Ordering,
+    thread::sleep,
     time::Duration,
 };
 
-/// Saves within this time are one.
+/// Time between two looks at the files. Saves within this time are one.
 const SETTLE: Duration = Duration::from_millis(200);
 
 /// Runs `command` now and after each change of one of the files, until Ctrl-C.
 ///
-/// Folders are watched, not files: editors save by renaming. A file that was saved unchanged starts nothing.
+/// The files are read again and again: that sees every way of saving, on every file system. A file that was saved unchanged
+/// starts nothing, and one that still changes is waited for.
 pub fn watch(designs: &[String], mut command: impl FnMut() -> Result<ExitCode>) -> Result<ExitCode> {
     for name in designs {
         if !Path::new(name).is_file() {
@@ -34,30 +32,24 @@ pub fn watch(designs: &[String], mut command: impl FnMut() -> Result<ExitCode>) 
             return Err(wrong(exit::USAGE, what, "give --watch the name of a design file"));
         }
     }
-    let context = || "cannot watch the files; run the command without --watch".to_owned();
     let stop = interrupt::flag(false)?;
-    let (changed, changes) = channel();
-    let mut debouncer = new_debouncer(SETTLE, changed).into_diagnostic().wrap_err_with(context)?;
-    for name in designs {
-        let folder = Path::new(name).parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        debouncer.watcher().watch(folder, RecursiveMode::NonRecursive).into_diagnostic().wrap_err_with(context)?;
-    }
     loop {
         let seen = contents(designs);
         if let Err(report) = command() {
             eprintln!("{:?}", remedy::added(report));
         }
         eprintln!("watching {}; Ctrl-C ends", designs.join(", "));
+        let mut last = seen.clone();
         loop {
             if stop.load(Ordering::Relaxed) {
                 return Ok(ExitCode::from(exit::INTERRUPTED));
             }
-            match changes.recv_timeout(SETTLE) {
-                Ok(Ok(_)) if contents(designs) != seen => break,
-                Ok(Ok(_)) | Err(RecvTimeoutError::Timeout) => {}
-                Ok(Err(e)) => return Err(e).into_diagnostic().wrap_err_with(context),
-                Err(RecvTimeoutError::Disconnected) => return Ok(ExitCode::from(exit::FAILED)),
+            sleep(SETTLE);
+            let now = contents(designs);
+            if now == last && now != seen {
+                break;
             }
+            last = now;
         }
     }
 }

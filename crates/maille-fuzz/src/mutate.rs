@@ -1,7 +1,7 @@
 //! Inputs made from sound ones.
 
+use rand::rngs::ChaCha8Rng as Rng;
 use rand::{RngExt, SeedableRng, seq::IndexedRandom};
-use rand_chacha::ChaCha8Rng as Rng;
 
 /// Longest input.
 pub const MOST: usize = 16 * 1024;

@@ -15,8 +15,7 @@ use maille::{
 };
 use maille_geometry::Vec3;
 use maille_io::write_design;
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use std::{path::Path, process::ExitCode};
 
 const USAGE: &str = "random_designs [--seed N] [--count N] [--doubled N] FOLDER";

@@ -19,6 +19,7 @@ mod quantity;
 pub mod record;
 #[cfg(feature = "render")]
 pub mod render;
+pub mod report;
 pub mod roll;
 pub mod run;
 pub mod sensitivity;

@@ -1,21 +1,32 @@
 //! What is wrong with a text that a person wrote: a study, targets.
 
 use crate::design_toml::line_column;
-use miette::{Diagnostic, NamedSource, SourceSpan};
-use std::{ops::Range, sync::Arc};
+use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode, SourceSpan};
+use std::{fmt, iter, ops::Range, sync::Arc};
 use thiserror::Error;
 
 /// What is wrong, shown at its place in the text.
-#[derive(Debug, Error, Diagnostic)]
+#[derive(Debug, Error)]
 #[error("{problem}")]
 pub struct TextError {
-    #[source_code]
     source_code: Arc<NamedSource<String>>,
     problem: String,
-    #[help]
     help: String,
-    #[label]
     span: SourceSpan,
+}
+
+impl Diagnostic for TextError {
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        Some(Box::new(&self.help))
+    }
+
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        Some(&self.source_code)
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        Some(Box::new(iter::once(LabeledSpan::new_with_span(None, self.span))))
+    }
 }
 
 impl TextError {

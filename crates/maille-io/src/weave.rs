@@ -12,7 +12,7 @@ use maille::{
     topology,
 };
 use miette::Diagnostic;
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, fmt};
 use thiserror::Error;
 
 /// A weave with a name.
@@ -46,13 +46,10 @@ pub struct Rings {
 }
 
 /// Proportions of which a weave cannot be assembled.
-#[derive(Clone, Debug, PartialEq, Error, Diagnostic)]
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum WeaveError {
     /// A radius is no length, or the ring has no hole.
     #[error("rings of major radius {major} and minor radius {minor} have no hole, or no wire")]
-    #[diagnostic(help(
-        "the major radius goes to the middle of the wire, the minor radius is half of the wire: 0 < minor < major"
-    ))]
     NoRing {
         /// Major radius.
         major: f64,
@@ -61,10 +58,6 @@ pub enum WeaveError {
     },
     /// The wire is too thick.
     #[error("{weave} does not assemble: {} and {} would fuse, {overlap}{unit} deep", rings[0], rings[1])]
-    #[diagnostic(help(
-        "rings of major radius {major}{unit} take a minor radius below {thickest}{unit}; a minor radius of {minor}{unit} \
-         takes rings of major radius above {smallest}{unit}"
-    ))]
     TooThick {
         /// Name of the weave.
         weave: &'static str,
@@ -83,6 +76,21 @@ pub enum WeaveError {
         /// What follows each of these lengths: a space and their unit, or nothing.
         unit: Box<str>,
     },
+}
+
+impl Diagnostic for WeaveError {
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        Some(Box::new(match self {
+            Self::NoRing { .. } => {
+                "the major radius goes to the middle of the wire, the minor radius is half of the wire: 0 < minor < major"
+                    .to_owned()
+            }
+            Self::TooThick { major, minor, thickest, smallest, unit, .. } => format!(
+                "rings of major radius {major}{unit} take a minor radius below {thickest}{unit}; a minor radius of \
+                 {minor}{unit} takes rings of major radius above {smallest}{unit}"
+            ),
+        }))
+    }
 }
 
 /// Centre, normal and name of a ring, in units of R.

@@ -8,8 +8,7 @@
 mod sampler;
 
 use maille_io::{DesignSource, builtin};
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
+use rand::{SeedableRng, rngs::ChaCha8Rng};
 use sampler::Weave;
 use std::process::ExitCode;
 

@@ -162,8 +162,7 @@ fn distance_at(a: &Circle, b: &Circle, angle: f64) -> f64 {
 mod tests {
     use super::*;
     use nalgebra::Unit;
-    use rand::{RngExt, SeedableRng};
-    use rand_chacha::ChaCha8Rng;
+    use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
     fn circle(center: [f64; 3], normal: [f64; 3], radius: f64) -> Circle {
         Circle::new(center.into(), Unit::new_normalize(normal.into()), radius)

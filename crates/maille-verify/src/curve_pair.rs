@@ -400,8 +400,7 @@ impl CurveContact {
 mod tests {
     use super::*;
     use crate::{record::Form, sheet::frame};
-    use rand::{RngExt, SeedableRng};
-    use rand_chacha::ChaCha8Rng;
+    use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
     fn forms() -> Vec<Form> {
         vec![

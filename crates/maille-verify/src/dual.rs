@@ -272,8 +272,7 @@ pub(crate) fn edges(start: Linked<'_>) -> Vec<(Place, Place, f64)> {
 mod tests {
     use super::*;
     use nalgebra::{Rotation3, Vector3};
-    use rand::{RngExt, SeedableRng};
-    use rand_chacha::ChaCha8Rng;
+    use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
     /// σ against many rotations: never passed, and nearly reached.
     #[test]

@@ -66,8 +66,7 @@ fn triangle(a: &Vec3, b: &Vec3, c: &Vec3) -> f64 {
 mod tests {
     use super::*;
     use nalgebra::Unit;
-    use rand::{RngExt, SeedableRng};
-    use rand_chacha::ChaCha8Rng;
+    use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
     fn circle(center: Vec3, normal: Vec3, radius: f64) -> Circle {
         Circle::new(center, Unit::new_normalize(normal), radius)

@@ -401,7 +401,7 @@ mod tests {
     #[test]
     fn the_least_with_non_negative_entries() {
         use rand::{RngExt, SeedableRng};
-        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(11);
+        let mut rng = rand::rngs::ChaCha8Rng::seed_from_u64(11);
         for _ in 0..200 {
             let (rows, columns) = (rng.random_range(1..9), rng.random_range(1..12));
             let a = DMatrix::from_fn(rows, columns, |_, _| rng.random_range(-1.0..1.0));

@@ -112,8 +112,7 @@ fn climbed(forces: &[Vec3], mut n: Vec3) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rand::{RngExt, SeedableRng};
-    use rand_chacha::ChaCha8Rng;
+    use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
     /// Never passed by random normals, and met where the largest is known.
     #[test]

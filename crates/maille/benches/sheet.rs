@@ -38,7 +38,7 @@ impl Sheet {
         let design = read_design("1.1", builtin("1.1").expect("built in")).expect("valid").with_minor_radius(0.1);
         let model = Model::compile_sheet(&design, tile.parse::<Cell>().expect("a cell")).expect("compiles");
         let contacts = EnergyOptions::default().contacts(&model);
-        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(7);
+        let mut rng = rand::rngs::ChaCha8Rng::seed_from_u64(7);
         let mut shake = || Vec3::from_fn(|_, _| 1e-3 * rng.random_range(-1.0..1.0));
         let mut state = model.start.clone();
         for pose in &mut state.poses {

@@ -3,8 +3,7 @@
 
 use maille_geometry::{Approaches, Circle, MAX_MINIMA, Vec3, circle_distance_approaches, point_circle_distance};
 use nalgebra::UnitVector3;
-use rand::{Rng, RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use rand::{Rng, RngExt, SeedableRng, rngs::ChaCha8Rng};
 use rayon::prelude::*;
 use std::time::Instant;
 

@@ -24,8 +24,7 @@ use maille::{
     topology::{links_kept, smallest_gap},
 };
 use maille_geometry::Vec3;
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use std::{sync::atomic::AtomicBool, time::Instant};
 
 static NO_CANCEL: AtomicBool = AtomicBool::new(false);

@@ -52,7 +52,7 @@ fn a_thousand_limits_leave_nothing_behind() {
 fn taut_sheet(tile: &str) -> (Model, Configuration) {
     let design = maille_io::read_design("1.1", maille_io::builtin("1.1").unwrap()).unwrap().with_minor_radius(0.1);
     let model = Model::compile_sheet(&design, tile.parse().unwrap()).unwrap();
-    let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(7);
+    let mut rng = rand::rngs::ChaCha8Rng::seed_from_u64(7);
     let mut shake = || Vec3::from_fn(|_, _| 1e-3 * rng.random_range(-1.0..1.0));
     let mut state = model.start.clone();
     for pose in &mut state.poses {

@@ -375,7 +375,6 @@ fn the_clearance_is_that_of_the_mesh_that_is_written() {
     let export = |more: &str| {
         let line = format!("export thr.toml --tile 2x2 --out thr.stl --overwrite --quiet {more}");
         let output = maille(folder, &line, b"");
-        // miette folds lines.
         let said = String::from_utf8_lossy(&output.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
         (output.status.code(), said)
     };

@@ -57,7 +57,7 @@ mod tests {
     /// Never above the distance, on random, coplanar, coaxial and parallel pairs; and often more than half of it.
     #[test]
     fn stays_below_the_distance() {
-        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(11);
+        let mut rng = rand::rngs::ChaCha8Rng::seed_from_u64(11);
         let mut tight = 0;
         for k in 0..40_000 {
             let mut vector = |size: f64| Vec3::from_fn(|_, _| size * rng.random_range(-1.0..1.0));

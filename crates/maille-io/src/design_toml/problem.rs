@@ -11,15 +11,23 @@ use std::sync::Arc;
 use thiserror::Error;
 
 /// One thing that is wrong with a design file.
-#[derive(Clone, Debug, PartialEq, Eq, Error, Diagnostic)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{field}{}{problem}", if field.is_empty() { "" } else { ": " })]
 pub struct DesignProblem {
     field: String,
     problem: String,
-    #[help]
     help: String,
-    #[label(collection)]
     place: Option<LabeledSpan>,
+}
+
+impl Diagnostic for DesignProblem {
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        Some(Box::new(&self.help))
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        Some(Box::new(self.place.iter().cloned()))
+    }
 }
 
 impl DesignProblem {

@@ -164,8 +164,7 @@ fn segments_sq([p, p_end]: [Vec3; 2], [q, q_end]: [Vec3; 2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rand::{RngExt, SeedableRng};
-    use rand_chacha::ChaCha8Rng;
+    use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
     fn random(rng: &mut ChaCha8Rng, size: f64) -> Triangle {
         let at = Vec3::from_fn(|_, _| rng.random_range(-2.0..2.0));

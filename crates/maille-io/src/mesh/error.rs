@@ -5,7 +5,7 @@ use std::io;
 use thiserror::Error;
 
 /// What keeps a mesh from being made or written.
-#[derive(Debug, Error, Diagnostic)]
+#[derive(Debug, Error)]
 pub enum MeshError {
     /// The tolerance asks for too many segments.
     #[error("the tolerance asks for {segments} segments of a circle; {most} are possible")]
@@ -44,3 +44,5 @@ pub enum MeshError {
     #[error(transparent)]
     Write(#[from] io::Error),
 }
+
+impl Diagnostic for MeshError {}

@@ -1,11 +1,11 @@
 //! What can be wrong with a record.
 
 use miette::Diagnostic;
-use std::path::PathBuf;
+use std::{fmt, path::PathBuf};
 use thiserror::Error;
 
 /// A record that cannot be read, written or continued.
-#[derive(Debug, Error, Diagnostic)]
+#[derive(Debug, Error)]
 pub enum RecordError {
     /// The file system refused.
     #[error("cannot {action} {}", path.display())]
@@ -63,9 +63,6 @@ pub enum RecordError {
     },
     /// A number that JSON and the table's readers cannot hold.
     #[error("direction {direction_deg}°, l2 {l2}: {field} is {value}")]
-    #[diagnostic(help(
-        "a record holds finite numbers only, and nothing where a number could not be computed; please report this"
-    ))]
     NotFinite {
         /// Direction of the row.
         direction_deg: f64,
@@ -76,6 +73,14 @@ pub enum RecordError {
         /// The number.
         value: f64,
     },
+}
+
+impl Diagnostic for RecordError {
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        let help =
+            "a record holds finite numbers only, and nothing where a number could not be computed; please report this";
+        matches!(self, Self::NotFinite { .. }).then(|| Box::new(help) as _)
+    }
 }
 
 impl RecordError {

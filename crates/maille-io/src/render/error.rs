@@ -1,17 +1,17 @@
 //! What can go wrong.
 
 use miette::Diagnostic;
+use std::fmt;
 use thiserror::Error;
 
 /// Most pixels on one side.
 pub(super) const MOST_SIDE: u32 = 16_384;
 
 /// What keeps a picture from being drawn.
-#[derive(Debug, Error, Diagnostic, PartialEq)]
+#[derive(Debug, Error, PartialEq)]
 pub enum RenderError {
     /// The picture has no pixels, or too many.
     #[error("a picture of {width} × {height} pixels cannot be drawn")]
-    #[diagnostic(help("take from 16 to {MOST_SIDE} pixels a side"))]
     Size {
         /// Pixels across.
         width: u32,
@@ -20,11 +20,9 @@ pub enum RenderError {
     },
     /// No ring is in the patch.
     #[error("no ring is in the picture")]
-    #[diagnostic(help("take a larger patch or tile"))]
     Nothing,
     /// The patch has too many rings.
     #[error("the picture would show {rings:.0} rings; {most} are possible")]
-    #[diagnostic(help("take a smaller patch or tile"))]
     TooManyRings {
         /// Rings, about.
         rings: f64,
@@ -37,4 +35,15 @@ pub enum RenderError {
     /// The pixels could not be written as PNG.
     #[error("the picture cannot be written as PNG: {0}")]
     Encode(String),
+}
+
+impl Diagnostic for RenderError {
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        match self {
+            Self::Size { .. } => Some(Box::new(format!("take from 16 to {MOST_SIDE} pixels a side"))),
+            Self::Nothing => Some(Box::new("take a larger patch or tile")),
+            Self::TooManyRings { .. } => Some(Box::new("take a smaller patch or tile")),
+            Self::NoForces | Self::Encode(_) => None,
+        }
+    }
 }

@@ -1,8 +1,8 @@
 //! Every wrong design of `tests/errors/` gives the text that lies beside it. `MAILLE_BLESS=1` writes the texts anew.
 
 use maille::error::InvalidInput;
-use maille_io::{DesignSource, builtin, read_design};
-use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
+use maille_io::{DesignSource, builtin, read_design, report::Drawing};
+use miette::Diagnostic;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -11,9 +11,7 @@ fn folder() -> PathBuf {
 }
 
 fn render(error: &dyn Diagnostic) -> String {
-    let handler = GraphicalReportHandler::new_themed(GraphicalTheme::none()).with_width(100).with_links(false);
-    let mut out = String::new();
-    handler.render_report(&mut out, error).unwrap();
+    let out = Drawing { unicode: false, colours: false }.draw(error);
     let lines: Vec<_> = out.lines().map(str::trim_end).collect();
     lines.join("\n").trim_matches('\n').to_owned() + "\n"
 }

@@ -7,8 +7,7 @@ use maille::{
     sensitivity::Sensitivity,
 };
 use maille_io::{DesignSource, NumberPath, read_design, sensitivity::ranked, set_parameters, write_design};
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
 const SQUARE: &str = include_str!("../../../../examples/parameters/square.toml");
 

@@ -5,10 +5,28 @@ use maille_io::{DESIGN_JSON_SCHEMA, builtin_designs, read_design};
 use serde_json::{Map, Value};
 use std::{fs, path::Path};
 
-fn validator() -> jsonschema::Validator {
-    let schema: Value = serde_json::from_str(DESIGN_JSON_SCHEMA).unwrap();
-    jsonschema::meta::validate(&schema).unwrap();
-    jsonschema::validator_for(&schema).unwrap()
+struct Validator {
+    schemas: boon::Schemas,
+    design: boon::SchemaIndex,
+}
+
+/// What compiles is a valid schema.
+fn validator() -> Validator {
+    let (mut schemas, mut compiler) = (boon::Schemas::new(), boon::Compiler::new());
+    let name = "https://maille/design.json"; // looked up nowhere
+    compiler.add_resource(name, serde_json::from_str(DESIGN_JSON_SCHEMA).unwrap()).unwrap();
+    let design = compiler.compile(name, &mut schemas).unwrap();
+    Validator { schemas, design }
+}
+
+impl Validator {
+    fn errors(&self, instance: &Value) -> Option<String> {
+        self.schemas.validate(instance, self.design).err().map(|e| e.to_string())
+    }
+
+    fn is_valid(&self, instance: &Value) -> bool {
+        self.errors(instance).is_none()
+    }
 }
 
 /// TOML as JSON; NaN and infinity, which JSON has not, become strings.
@@ -32,9 +50,7 @@ fn every_builtin_design_fits_the_schema() {
     let validator = validator();
     for design in builtin_designs() {
         let instance = parsed(design.toml).unwrap();
-        let errors: Vec<String> =
-            validator.iter_errors(&instance).map(|e| format!("{}: {e}", e.instance_path())).collect();
-        assert!(errors.is_empty(), "{}: {errors:?}", design.name);
+        assert_eq!(validator.errors(&instance), None, "{}", design.name);
     }
 }
 
@@ -50,7 +66,7 @@ fn examples_with_curves_fit_the_schema() {
 }
 
 /// What is written reads back the same.
-fn fits_and_reads_back(validator: &jsonschema::Validator, text: &str) {
+fn fits_and_reads_back(validator: &Validator, text: &str) {
     assert!(validator.is_valid(&parsed(text).unwrap()), "{text}");
     let design = maille_io::read_design("example", text).unwrap();
     let written = maille_io::write_design(&design);

@@ -97,7 +97,7 @@ fn closed_forms() {
 /// the weave is kept by moving only what `placement` has as a parameter: the lattice's two lengths and the lean.
 #[test]
 fn no_small_change_of_the_placement_widens_the_smallest_gap() {
-    let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(1);
+    let mut rng = rand::rngs::ChaCha8Rng::seed_from_u64(1);
     for weave in Weave::ALL {
         let design = of_unit_radius(weave, 0.01).unwrap();
         let (_, best) = links_and_gap(&design);

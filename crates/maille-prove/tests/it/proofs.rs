@@ -6,8 +6,7 @@ use maille_geometry::Vec3;
 use maille_io::{DesignSource, builtin};
 use maille_prove::{Options, Outcome, search};
 use maille_verify::proof::{Cell, Claim, Node, Piece, Proof, Reason, Rings, piece::Side, write};
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use std::{sync::atomic::AtomicBool, time::Duration};
 
 fn design(name: &str, minor_radius: f64) -> Design {

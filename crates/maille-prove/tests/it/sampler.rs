@@ -4,8 +4,7 @@
 use maille::design::Design;
 use maille_geometry::{Circle, Vec3, circle_distance_minima, linking_number};
 use nalgebra::Unit;
-use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
+use rand::{RngExt, rngs::ChaCha8Rng};
 
 /// Copies of the cell to each side in which pairs are looked at.
 const COPIES: i32 = 2;

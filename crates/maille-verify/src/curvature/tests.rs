@@ -1,7 +1,6 @@
 use super::*;
 use crate::{apart::Arc, sheet::Body, sheet::Ring};
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
 /// Two elements of one ring each, in a cell that is too wide for images.
 fn sheet(poses: [(Vec3, Vec3, Vec3); 2]) -> Sheet {

@@ -1,8 +1,7 @@
 //! Forms enclose what they stand for: compared in arithmetic of twice the digits.
 
 use super::form::{Form, UNKNOWNS};
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
 /// A sum of two doubles, to some 1e-32.
 #[derive(Clone, Copy)]

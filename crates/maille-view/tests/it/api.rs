@@ -9,8 +9,7 @@ use axum::{
 use maille::record::Status;
 use maille_io::builtin;
 use maille_view::{App, api::*, router};
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use serde::{Serialize, de::DeserializeOwned};
 use serde_json::{Value, json};
 use std::{

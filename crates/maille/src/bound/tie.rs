@@ -230,8 +230,7 @@ pub fn crossing_pairs_length(major_radius: f64, minor_radius: f64) -> Option<f64
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rand::{RngExt, SeedableRng};
-    use rand_chacha::ChaCha8Rng;
+    use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
     #[test]
     fn closed_form_is_the_least_of_its_family() {

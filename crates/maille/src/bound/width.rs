@@ -106,8 +106,7 @@ pub(super) fn largest_width(forces: &[Vec3]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rand::{RngExt, SeedableRng};
-    use rand_chacha::ChaCha8Rng;
+    use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
     fn random(rng: &mut ChaCha8Rng) -> Vec3 {
         Vec3::from_fn(|_, _| rng.random_range(-1.0..1.0))

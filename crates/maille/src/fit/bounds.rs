@@ -113,8 +113,7 @@ mod tests {
         bound::{BoundKind, LinkSolution},
         lattice::Cell,
     };
-    use rand::{RngExt, SeedableRng};
-    use rand_chacha::ChaCha8Rng;
+    use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
     /// Against differences to both sides, at random radii: by chains, links and strand pairs, with elements of one ring and of several.
     #[test]

@@ -9,8 +9,7 @@ use super::{
     target::Measure,
 };
 use crate::sensitivity::RingVector;
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use std::{cell::Cell, sync::atomic::Ordering};
 
 /// How far from the best a start near it is drawn, as a share of each range.

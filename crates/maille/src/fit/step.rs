@@ -129,8 +129,7 @@ pub(super) fn best_step(model: &[Pieces], norm: Norm, lower: &[f64], upper: &[f6
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rand::{RngExt, SeedableRng};
-    use rand_chacha::ChaCha8Rng;
+    use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
     fn random(rng: &mut ChaCha8Rng, n: usize, wanted: Wanted) -> Pieces {
         let slope = DVector::from_fn(n, |_, _| rng.random_range(-1.0..1.0));

@@ -104,8 +104,7 @@ mod tests {
     use super::*;
     use maille_geometry::{Circle, Piece};
     use nalgebra::UnitQuaternion;
-    use rand::{RngExt, SeedableRng};
-    use rand_chacha::ChaCha8Rng;
+    use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
     /// A circle near the origin of its frame.
     fn circle(rng: &mut ChaCha8Rng) -> Piece {

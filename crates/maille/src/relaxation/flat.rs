@@ -167,8 +167,7 @@ fn exchanged(j: &Jet) -> Jet {
 mod tests {
     use super::*;
     use nalgebra::{SVector, Unit, UnitQuaternion};
-    use rand::{RngExt, SeedableRng};
-    use rand_chacha::ChaCha8Rng;
+    use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
     const TOUCHING: f64 = 0.2;
 

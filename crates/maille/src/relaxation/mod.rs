@@ -27,8 +27,7 @@ use crate::{
 use faer::Mat;
 use load::Loads;
 use maille_geometry::Vec3;
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use serde::{Deserialize, Serialize};
 use target::Target;
 

@@ -22,7 +22,7 @@ use crate::{
     state::State,
     topology,
 };
-use rand_chacha::ChaCha8Rng;
+use rand::rngs::ChaCha8Rng;
 use std::{
     collections::BTreeSet,
     sync::atomic::{AtomicBool, Ordering},

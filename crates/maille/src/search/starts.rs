@@ -11,8 +11,7 @@ use crate::{
 };
 use maille_geometry::Vec3;
 use nalgebra::{Matrix2, Vector2};
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use std::f64::consts::TAU;
 
 /// A state from which a search begins, with the strains of its lattice where it is stretched along a direction.

@@ -11,8 +11,7 @@ use maille::{
 };
 use maille_geometry::{Circle, Vec3, circle_distance_minima, linking_number};
 use nalgebra::{UnitVector3, Vector2};
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
 const DESIGNS: [&str; 15] =
     ["1.1", "1.2", "1.3", "1.3-small", "2", "2-oblong", "3.1", "3.2", "3.3", "3.4", "4.1", "4.2", "4.3", "5.1", "5.2"];

@@ -18,8 +18,7 @@ use maille::{
 };
 use maille_geometry::{Vec3, piece_distance_minima};
 use nalgebra::UnitQuaternion;
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use std::f64::consts::{SQRT_2, TAU};
 
 /// A chain of two links, the second turned by 90°.

@@ -15,8 +15,7 @@ use maille::{
 };
 use maille_geometry::Vec3;
 use nalgebra::UnitQuaternion;
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
 type Count = std::cell::Cell<usize>;
 

@@ -8,8 +8,7 @@ use maille::{
     },
 };
 use maille_io::{builtin, design_toml::NumberPath, read_design};
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use std::{sync::atomic::AtomicBool, time::Instant};
 
 fn design(name: &str) -> Design {

@@ -3,8 +3,7 @@
 use crate::common;
 use maille::{bound::ImageBound, model::Model};
 use maille_geometry::{Circle, Vec3, linking_number};
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
 fn gyroscopes(minor_radius: f64) -> Model {
     common::model("1.3-small", minor_radius)

@@ -3,8 +3,7 @@
 use maille::program::gap_kernel::{Grad, Hess, PairFrame, PointJet, RootMotion};
 use maille_geometry::{Circle, Vec3, circle_distance_minima};
 use nalgebra::{Unit, UnitQuaternion};
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
 /// Two rings with offsets in their elements, at poses that can be moved by y = (x, α, β).
 struct Pair {

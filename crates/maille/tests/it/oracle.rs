@@ -16,8 +16,7 @@ use maille::solver::{
     symmetric::Symmetric,
 };
 use nalgebra::{DMatrix, DVector, Matrix4};
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
 fn sparse(m: &DMatrix<f64>, upper: bool) -> CscMatrix<f64> {
     let entries = (0..m.nrows()).flat_map(|i| (0..m.ncols()).map(move |j| (i, j)));

@@ -14,8 +14,7 @@ use maille::{
 };
 use maille_geometry::Vec3;
 use nalgebra::{Rotation3, UnitQuaternion};
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
 /// κ, l1, l2 and γ of a roll along a direction, none of them weighted but κ.
 fn family(model: &Model, direction_deg: f64) -> LatticeFamily {

@@ -121,7 +121,7 @@ mod tests {
     /// Every verdict on random intervals of random pairs agrees with 400 samples inside.
     #[test]
     fn verdicts_hold_on_dense_samples() {
-        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(3);
+        let mut rng = rand::rngs::ChaCha8Rng::seed_from_u64(3);
         let mut seen = [0; 3];
         for _ in 0..40_000 {
             let mut vector = |size: f64| Vec3::from_fn(|_, _| size * rng.random_range(-1.0..1.0));

@@ -198,7 +198,7 @@ mod tests {
     /// The coefficients on each arc and on its halves are those of H: the Bernstein sums give its values.
     #[test]
     fn coefficients_are_those_of_the_product() {
-        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(5);
+        let mut rng = rand::rngs::ChaCha8Rng::seed_from_u64(5);
         for _ in 0..200 {
             let mut vector = |size: f64| Vec3::from_fn(|_, _| size * rng.random_range(-1.0..1.0));
             let unit = nalgebra::UnitVector3::new_normalize;

@@ -137,7 +137,7 @@ mod tests {
     /// The results in SIMD registers and in plain `f64` agree up to rounding.
     #[test]
     fn registers_change_nothing_but_rounding() {
-        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(17);
+        let mut rng = rand::rngs::ChaCha8Rng::seed_from_u64(17);
         let mut in_registers = 0;
         for _ in 0..20_000 {
             let mut vector = |size: f64| Vec3::from_fn(|_, _| size * rng.random_range(-1.0..1.0));

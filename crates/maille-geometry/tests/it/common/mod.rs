@@ -4,8 +4,8 @@ use std::f64::consts::{PI, TAU};
 
 use maille_geometry::{Circle, Vec3, linking_number};
 use nalgebra::{Rotation3, UnitVector3};
+pub use rand::rngs::ChaCha8Rng as Rng;
 use rand::{RngExt, SeedableRng};
-pub use rand_chacha::ChaCha8Rng as Rng;
 
 pub fn rng(seed: u64) -> Rng {
     Rng::seed_from_u64(seed)

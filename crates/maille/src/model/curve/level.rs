@@ -69,8 +69,7 @@ impl Middle {
 mod tests {
     use super::*;
     use maille_geometry::Arc;
-    use rand::{RngExt, SeedableRng};
-    use rand_chacha::ChaCha8Rng;
+    use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
     use std::f64::consts::TAU;
 
     /// No pair that has a point where both slopes vanish is ruled out: short arcs and long ones whose middles are off that point by up to half of

@@ -9,8 +9,7 @@ use maille::{
     survey::{CellChoice, Finished, MapQuestion, Method, characterize},
 };
 use maille_geometry::Vec3;
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use std::sync::{Mutex, atomic::AtomicBool};
 
 /// A built-in design.
