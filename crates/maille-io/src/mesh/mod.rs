@@ -15,7 +15,6 @@
 //! The rings of one element are closed bodies that may overlap where they are joined. The formats do not cut them to one
 //! surface: slicers unite overlapping bodies of one object, and most do so for bodies of one file.
 
-mod archive;
 mod clearance;
 mod colour;
 mod curve;

@@ -3,9 +3,10 @@
 //! The package is the least that the core specification 1.3 asks for. Objects are placed from the origin into the positive
 //! octant, as the specification recommends.
 
-use super::{archive::Archive, number::singles, scene::Scene};
+use super::{number::singles, scene::Scene};
 use nalgebra::{Isometry3, Translation3, Vector3};
 use std::io::{self, Seek, Write};
+use zip::{CompressionMethod, ZipWriter, write::SimpleFileOptions};
 
 /// What is one object of a 3MF file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -33,15 +34,20 @@ const RELATIONSHIPS: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
 "#;
 
 pub(super) fn write(scene: &Scene, objects: Objects, out: &mut (impl Write + Seek)) -> io::Result<()> {
-    let mut archive = Archive::new(out);
-    archive.add("[Content_Types].xml", false, |out| out.write_all(CONTENT_TYPES.as_bytes()))?;
-    archive.add("_rels/.rels", false, |out| out.write_all(RELATIONSHIPS.as_bytes()))?;
-    archive.add("3D/3dmodel.model", true, |out| {
-        let mut model = io::BufWriter::with_capacity(1 << 16, out);
-        write_model(scene, objects, &mut model)?;
-        model.flush()
-    })?;
-    archive.finish()
+    let mut zip = ZipWriter::new(out);
+    // No time of day: the same scene gives the same bytes.
+    let options = SimpleFileOptions::default().compression_method(CompressionMethod::Deflated);
+    zip.start_file("[Content_Types].xml", options)?;
+    zip.write_all(CONTENT_TYPES.as_bytes())?;
+    zip.start_file("_rels/.rels", options)?;
+    zip.write_all(RELATIONSHIPS.as_bytes())?;
+    zip.start_file("3D/3dmodel.model", options.large_file(true))?;
+    let mut model = io::BufWriter::with_capacity(1 << 16, &mut zip);
+    write_model(scene, objects, &mut model)?;
+    model.flush()?;
+    drop(model);
+    zip.finish()?;
+    Ok(())
 }
 
 fn write_model(scene: &Scene, objects: Objects, out: &mut impl Write) -> io::Result<()> {
