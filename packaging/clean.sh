@@ -1,7 +1,7 @@
 #!/bin/sh
 # Installs a release into a Debian that has nothing but Python, and runs it there.
 #
-#   sh packaging/clean.sh target/dist [FOLDER]
+#   sh packaging/clean.sh target/release-files [FOLDER]
 #
 # FOLDER becomes the root of that Debian; it is made by debootstrap, or used again if it is there. Needs root.
 set -eu

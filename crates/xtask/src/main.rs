@@ -55,7 +55,7 @@ cargo xtask COMMAND
   site     write target/site/book: documents, viewers of all designs, notebooks and reference as static pages, and check
            them in a browser; installs mdBook below target
            --program PATH  this program, with the viewer; otherwise it is built
-  package  build what a release consists of, into target/dist: archive, Debian package, wheel, source, installer,
+  package  build what a release consists of, into target/release-files: archive, Debian package, wheel, source, installer,
            checksums
            --try           install that into a Debian without Rust, and run it there; needs root
   recipes  fill in the recipes for conda-forge and Homebrew, after `package`, into target/recipes

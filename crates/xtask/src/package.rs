@@ -19,6 +19,10 @@ const LOCK: &str = "packaging/requirements.lock";
 const GLIBC: &str = "2.28";
 /// What makes the Debian package.
 const CARGO_DEB: &str = "cargo-deb@3.8.0";
+/// Folder of what is made, below the build folder.
+const FILES: &str = "release-files";
+/// The profile of cargo that packages are built with: optimised across crates.
+const PROFILE: &str = "dist";
 /// Crates in the order in which they are published.
 const CRATES: &[&str] = &[
     "maille-geometry",
@@ -34,7 +38,7 @@ const CRATES: &[&str] = &[
 
 /// Builds all below the build folder.
 pub fn write(root: &Path) -> Result<(), String> {
-    let out = target(root).join("dist");
+    let out = target(root).join(FILES);
     remove(&out)?;
     view::page(root)?;
     let tools = Environment::of_tools(root, "packaging", LOCK)?;
@@ -58,7 +62,7 @@ pub enum Recipes<'a> {
 
 /// The source of the Python package among what `write` has made.
 fn source(root: &Path) -> Result<PathBuf, String> {
-    let sdist = target(root).join("dist").join(format!("maille-{}.tar.gz", env!("CARGO_PKG_VERSION")));
+    let sdist = target(root).join(FILES).join(format!("maille-{}.tar.gz", env!("CARGO_PKG_VERSION")));
     match sdist.is_file() {
         true => Ok(sdist),
         false => Err(format!("{} is not there; make it with `cargo xtask package`", sdist.display())),
@@ -98,16 +102,16 @@ pub fn publish(root: &Path) -> Result<(), String> {
 fn archive(root: &Path, tools: &Environment, out: &Path) -> Result<(), String> {
     let os = env::consts::OS;
     let mut command = tools.tool(cargo());
-    let build = ["--release", "--locked", "--package", "maille-cli", "--features", "view"];
+    let build = ["--profile", PROFILE, "--locked", "--package", "maille-cli", "--features", "view"];
     let program = match os {
         "linux" => {
             let triple = format!("{}-unknown-linux-gnu", env::consts::ARCH);
             command.arg("zigbuild").args(build).args(["--target", &format!("{triple}.{GLIBC}")]);
-            target(root).join(triple).join("release/maille")
+            target(root).join(triple).join(PROFILE).join("maille")
         }
         _ => {
             command.arg("build").args(build);
-            target(root).join("release").join(format!("maille{}", env::consts::EXE_SUFFIX))
+            target(root).join(PROFILE).join(format!("maille{}", env::consts::EXE_SUFFIX))
         }
     };
     done(command.current_dir(root), "build the program")?;
@@ -145,7 +149,7 @@ fn debian(root: &Path, program: &Path, archive: &Path, out: &Path) -> Result<(),
         copy(&archive.join(part), &parts.join(part))?;
     }
     let mut command = Command::new(installed(root, CARGO_DEB)?);
-    command.args(["--package", "maille-cli", "--no-build", "--no-strip", "--target"]);
+    command.args(["--package", "maille-cli", "--no-build", "--no-strip", "--profile", PROFILE, "--target"]);
     command.arg(format!("{}-unknown-linux-gnu", env::consts::ARCH)).arg("--output").arg(out);
     done(command.current_dir(root), "write the Debian package")
 }
@@ -159,7 +163,7 @@ fn python(root: &Path, tools: &Environment, out: &Path) -> Result<(), String> {
         tool
     };
     let mut wheel = maturin("build");
-    wheel.args(["--release", "--locked"]);
+    wheel.args(["--profile", PROFILE, "--locked"]);
     if env::consts::OS == "linux" {
         wheel.args(["--zig", "--compatibility", &format!("manylinux_{}", GLIBC.replace('.', "_"))]);
     }
@@ -171,5 +175,5 @@ fn python(root: &Path, tools: &Environment, out: &Path) -> Result<(), String> {
 pub fn try_clean(root: &Path) -> Result<(), String> {
     source(root)?;
     let script = root.join("packaging/clean.sh");
-    done(Command::new("sh").arg(script).arg(target(root).join("dist")), "try the packages in a clean Debian")
+    done(Command::new("sh").arg(script).arg(target(root).join(FILES)), "try the packages in a clean Debian")
 }

@@ -58,6 +58,11 @@ pub fn installed(root: &Path, package: &str) -> Result<PathBuf, String> {
     Ok(program)
 }
 
+/// Where cargo puts the program, by the name of the profile's folder.
+pub fn of(root: &Path, profile: &str) -> PathBuf {
+    target(root).join(profile).join(format!("maille{}", std::env::consts::EXE_SUFFIX))
+}
+
 /// Where cargo builds.
 pub fn target(root: &Path) -> PathBuf {
     std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), |path| root.join(path))

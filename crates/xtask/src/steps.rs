@@ -15,7 +15,6 @@ pub fn one(root: &Path, name: &str) -> Result<(), String> {
         "Python tests" => Environment::there(root, false)?.test(),
         "page" => view::page(root),
         "Chromium" => view::installed_browser().map(drop),
-        "program" => view::test_program(root),
         "types of the page" => view::check_types(root),
         "browser tests" => view::test(root),
         _ => Err(format!("there is no step `{name}`")),

@@ -70,7 +70,8 @@ fn cheap(root: &Path, own: &Path) -> Vec<Step> {
 
 /// Checks that compile. Both read libraries' metadata, which the first of them makes.
 fn checks(root: &Path) -> Vec<Step> {
-    let clippy = command(root, cargo(), &["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]);
+    let all = ["clippy", "--workspace", "--all-targets", "--features", "maille-cli/view", "--", "-D", "warnings"];
+    let clippy = command(root, cargo(), &all);
     let mut rustdoc = command(root, cargo(), &["doc", "--workspace", "--no-deps"]);
     rustdoc.env("RUSTDOCFLAGS", "-D warnings");
     vec![Step::new("clippy", clippy).cores(2), Step::new("rustdoc", rustdoc).cores(2)]
@@ -83,32 +84,34 @@ fn tests(root: &Path, own: &Path, found: &Found, kind: Kind) -> Vec<Step> {
     // Nextest runs no documentation examples; neither does cargo here.
     let (build, run, runner): (&[&str], &[&str], _) = match found.nextest {
         true => (&["nextest", "run"], &["nextest", "run", "--failure-output", "final"], Runner::Nextest),
-        false => (&["test"], &["test", "--lib", "--bins", "--tests"], Runner::Cargo),
+        false => (&["test"], &["test"], Runner::Cargo),
     };
     let (rust_tests, ignored): (_, &[&str]) = match (kind, found.nextest) {
         (Kind::Ci | Kind::Test, _) => ("Rust tests", &[]),
         (Kind::All, true) => ("all Rust tests", &["--run-ignored", "all"]),
         (Kind::All, false) => ("all Rust tests", &["--", "--include-ignored"]),
     };
-    let no_run: &[&str] = &["--workspace", "--no-run"];
+    // Without examples, which are programs of their own: clippy compiles them.
+    let all: &[&str] = match found.node.is_ok() {
+        true => &["--workspace", "--features", "maille-cli/view"],
+        false => &["--workspace"],
+    };
     let mut out = vec![
         own_step("Python environment").cores(0).lacking(&found.python),
         own_step("page").cores(0).lacking(&found.node),
         own_step("Chromium").cores(0).lacking(&found.browser),
-        // The viewer has the page inside, which is not there yet.
-        cargo("build", &[build, no_run, &["--exclude", "maille-view"]]).cores(2),
-        own_step("program").cores(2).needs(&["page"]).after(&["build"]),
-        cargo("build of the rest", &[build, no_run]).cores(2).needs(&["build"]).after(&["page", "program"]),
+        // The viewer has the page inside.
+        cargo("build", &[build, all, &["--tests", "--no-run"]]).cores(2).after(&["page"]),
         own_step("wheel").cores(2).needs(&["Python environment"]).after(&["build"]),
         own_step("types of the page").cores(0).needs(&["page"]),
         own_step("Python tests").needs(&["wheel", "build"]).tests(Runner::Pytest),
-        cargo("documentation examples", &[&["test", "--workspace", "--doc", "--no-fail-fast"]])
-            .needs(&["build of the rest"])
+        cargo("documentation examples", &[&["test"], all, &["--doc", "--no-fail-fast"]])
+            .needs(&["build"])
             .tests(Runner::Cargo),
-        own_step("browser tests").needs(&["program", "Chromium"]).tests(Runner::Playwright),
-        cargo(rust_tests, &[run, &["--workspace", "--no-fail-fast"], ignored])
+        own_step("browser tests").needs(&["page", "build", "Chromium"]).tests(Runner::Playwright),
+        cargo(rust_tests, &[run, all, &["--tests", "--no-fail-fast"], ignored])
             .cores(2)
-            .needs(&["build of the rest"])
+            .needs(&["build"])
             .tests(runner),
     ];
     // Without Node.js nothing drives a browser: none is installed.

@@ -1,6 +1,6 @@
 //! The viewer: its page, the program with the page inside, and what a user does with it in a browser.
 
-use crate::program::{cargo, done, target};
+use crate::program::{self, cargo, done};
 use std::{
     env, fs,
     hash::{DefaultHasher, Hash, Hasher},
@@ -27,20 +27,9 @@ const BROWSERS: &[&str] = &["chromium", "chromium-browser", "google-chrome-stabl
 /// Builds the page and the program; says where the program lies.
 pub fn build(root: &Path) -> Result<PathBuf, String> {
     page(root)?;
-    program(root, &["--release"])?;
-    Ok(target(root).join("release").join(name()))
-}
-
-/// Builds the program with the profile of the tests, and keeps a copy: the other tests build it without the viewer in
-/// its place.
-pub fn test_program(root: &Path) -> Result<(), String> {
-    program(root, &[])?;
-    let built = target(root).join("debug").join(name());
-    fs::copy(&built, copy(root)).map(drop).map_err(|e| format!("cannot copy {}: {e}", built.display()))
-}
-
-fn copy(root: &Path) -> PathBuf {
-    target(root).join("debug").join(format!("view-{}", name()))
+    let build = ["build", "--release", "--package", "maille-cli", "--features", "view", "--locked"];
+    done(Command::new(cargo()).args(build).current_dir(root), "build the program with the viewer")?;
+    Ok(program::of(root, "release"))
 }
 
 /// Checks the page's types.
@@ -48,11 +37,11 @@ pub fn check_types(root: &Path) -> Result<(), String> {
     npm(root, &["run", "check"])
 }
 
-/// Runs the page's tests in a browser, with the program that `test_program` has built.
+/// Runs the page's tests in a browser, with the program that the step `build` has built.
 pub fn test(root: &Path) -> Result<(), String> {
     let mut command = Command::new("npm");
     command.args(["run", "test"]).current_dir(root.join(PAGE));
-    done(command.env("MAILLE", copy(root)).env("CHROMIUM", installed_browser()?), "test the viewer")
+    done(command.env("MAILLE", program::of(root, "debug")).env("CHROMIUM", installed_browser()?), "test the viewer")
 }
 
 /// Builds the script of the atlas's page.
@@ -141,15 +130,6 @@ fn npm(root: &Path, arguments: &[&str]) -> Result<(), String> {
     let mut command = Command::new("npm");
     command.arg("--silent").args(arguments).current_dir(root.join(PAGE)).env("PLAYWRIGHT_SKIP_BROWSER_DOWNLOAD", "1");
     done(&mut command, &format!("run npm {}", arguments.join(" ")))
-}
-
-fn program(root: &Path, profile: &[&str]) -> Result<(), String> {
-    let build = ["build", "--package", "maille-cli", "--features", "view", "--locked"];
-    done(Command::new(cargo()).args(build).args(profile).current_dir(root), "build the program with the viewer")
-}
-
-fn name() -> String {
-    format!("maille{}", env::consts::EXE_SUFFIX)
 }
 
 /// What there is to be driven by the tests.

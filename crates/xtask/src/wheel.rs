@@ -1,6 +1,6 @@
 //! The Python package: its wheel, built, installed into an environment of its own, tried and tested.
 
-use crate::program::{cargo, done, target};
+use crate::program::{self, done, target};
 use std::{
     ffi::OsStr,
     path::{Path, PathBuf},
@@ -38,14 +38,12 @@ pub fn is_ready(root: &Path) -> bool {
 pub struct Environment {
     root: PathBuf,
     folder: PathBuf,
-    target: PathBuf,
 }
 
 impl Environment {
     /// The environment without the wheel. With `clean` it is made anew; else one that is there is used again.
     pub fn there(root: &Path, clean: bool) -> Result<Self, String> {
-        let target = target(root);
-        let out = Environment { root: root.to_owned(), folder: target.join("python"), target };
+        let out = Environment { root: root.to_owned(), folder: target(root).join("python") };
         if clean || !is_ready(root) {
             out.create()?;
             let (lock, ready) = (root.join(LOCK), out.folder.join(READY));
@@ -89,8 +87,7 @@ impl Environment {
 
     /// An environment below the build folder with the programs of a lockfile alone.
     pub fn of_tools(root: &Path, name: &str, lock: &str) -> Result<Self, String> {
-        let target = target(root);
-        let out = Environment { root: root.to_owned(), folder: target.join(format!("python-{name}")), target };
+        let out = Environment { root: root.to_owned(), folder: target(root).join(format!("python-{name}")) };
         out.make()?;
         out.add(lock)?;
         Ok(out)
@@ -138,11 +135,10 @@ impl Environment {
         Ok(())
     }
 
-    /// Runs the tests of the package and the examples of its docstrings. The program is built first: maps are compared.
+    /// Runs the tests of the package and the examples of its docstrings. Maps are compared with those of the program, which
+    /// the step `build` has built.
     pub fn test(&self) -> Result<(), String> {
-        let build = ["build", "--package", "maille-cli", "--locked"];
-        self.run(Command::new(cargo()).args(build).current_dir(&self.root), "build the program")?;
-        let program = self.target.join("debug").join(format!("maille{}", std::env::consts::EXE_SUFFIX));
+        let program = program::of(&self.root, "debug");
         let pytest = ["-m", "pytest", "-q", "-p", "no:cacheprovider", "--doctest-modules", "--pyargs", "maille"];
         let tests = self.root.join(PACKAGE).join("tests");
         let mut command = self.python();
