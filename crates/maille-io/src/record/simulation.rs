@@ -23,7 +23,10 @@ use std::{fs, path::Path};
 pub const SIMULATION: [&str; 3] = ["simulation.json", "frames.jsonl", "forces.csv"];
 
 /// What was done to a finite sheet, and what came out.
+///
+/// A key that it has not is refused: a checksum with a wrong name would be none.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct SimulationRecord {
     /// Version of the format, 1.
     pub schema: u32,
