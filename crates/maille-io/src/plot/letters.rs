@@ -1,7 +1,6 @@
 //! Texts of an SVG as outlines of letters that come with the program: pictures need no font, and are the same everywhere.
 
-use super::png::PlotError;
-use roxmltree::{Document, Node};
+use roxmltree::{Document, Error, Node};
 use std::{collections::HashMap, fmt::Write, ops::Range, sync::OnceLock};
 
 /// Characters with their outlines; `fonts/README.md` says how they were made.
@@ -43,8 +42,8 @@ fn letter(line: &'static str) -> Option<(char, Letter)> {
 }
 
 /// The SVG with each text as paths. A character that the fonts have not is an empty box.
-pub(super) fn outlined(svg: &str) -> Result<String, PlotError> {
-    let document = Document::parse(svg).map_err(|e| PlotError::Svg(e.to_string()))?;
+pub(super) fn outlined(svg: &str) -> Result<String, Error> {
+    let document = Document::parse(svg)?;
     let mut out = String::with_capacity(svg.len());
     let mut done = 0;
     for text in document.descendants().filter(|node| node.has_tag_name((SVG, "text"))) {

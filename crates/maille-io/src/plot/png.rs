@@ -63,7 +63,8 @@ fn with_title(mut png: Vec<u8>, title: &str) -> Vec<u8> {
 
 /// The SVG, its letters as outlines.
 pub(super) fn tree(svg: &str) -> Result<Tree, PlotError> {
-    Tree::from_str(&letters::outlined(svg)?, &Options::default()).map_err(|e| PlotError::Svg(e.to_string()))
+    let outlined = letters::outlined(svg).map_err(|e| PlotError::Svg(e.to_string()))?;
+    Tree::from_str(&outlined, &Options::default()).map_err(|e| PlotError::Svg(e.to_string()))
 }
 
 /// Pixels that a palette is trained on: all of them. It takes longer for large pictures, and is always the same.

@@ -111,10 +111,10 @@ mod tests {
             ]
         );
         let steps = line(&text, "Steps")[0];
-        assert!(!steps.contains("Python") && steps.contains("Rust tests") && steps.contains("program"), "{steps}");
+        assert!(!steps.contains("Python") && steps.contains("Rust tests") && steps.contains("build"), "{steps}");
         assert!(line(&text, "Rust")[0].contains("cargo test"));
         let no_node = Found { nextest: true, python: Ok(true), node: Err(lack("no Node")), browser: Ok(false) };
-        let expected = "browser tests, page, program, types of the page, for there is no Node: get it";
+        let expected = "browser tests, page, types of the page, for there is no Node: get it";
         assert_eq!(line(&text_of(&no_node), "Skips"), [expected]);
         assert_eq!(line(&text_of(&no_node), "Installs"), [""; 0], "no browser that nothing drives");
     }
