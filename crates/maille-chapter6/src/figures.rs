@@ -12,8 +12,8 @@ use maille_io::{
         Cost, Layout, OfStep, PolarPlot, Ray, RayKind, cost_svg, difference_svg, parameter_words, polar_svg, run_svg,
     },
     record::NamedRecord,
-    render::{Extent, RenderError, RenderOptions, Subject, View, render},
 };
+use maille_render::{Extent, RenderError, RenderOptions, Subject, View, render};
 
 /// A figure of the thesis, computed anew.
 pub(crate) struct Figure {

@@ -8,7 +8,8 @@ use crate::{
     statements::{Finding, statements},
 };
 use maille::{error::InvalidInput, lattice::Cell, model::Model};
-use maille_io::{record::NamedRecord, render::RenderError};
+use maille_io::record::NamedRecord;
+use maille_render::RenderError;
 use serde_json::json;
 
 /// What keeps the report from being made.

@@ -10,13 +10,10 @@ use crate::{
     units,
 };
 use maille::lattice::Direction;
-use maille_io::{
-    Tile,
-    plot::with_palette,
-    render::{
-        Background, Caption, ColorBy, Extent, Forces, Picture, RenderError, RenderOptions, Subject, View, film,
-        render_frames,
-    },
+use maille_io::{Tile, plot::with_palette};
+use maille_render::{
+    Background, Caption, ColorBy, Extent, Forces, Picture, RenderError, RenderOptions, Subject, View, film,
+    render_frames,
 };
 use miette::{IntoDiagnostic, Report, Result, WrapErr};
 use std::{

@@ -1,4 +1,4 @@
-//! Formats of maille: design files, studies, records, tables, plots, meshes, pictures; and maps from a design to its record.
+//! Formats of maille: design files, studies, records, tables, plots, meshes; and maps from a design to its record.
 //!
 //! Nearly everything here works on text, bytes and readers: front ends open paths. The exceptions are the folders of records and
 //! of surfaces, whose writes must be atomic, and [`files`].
@@ -17,8 +17,6 @@ pub mod numbers;
 pub mod plot;
 mod quantity;
 pub mod record;
-#[cfg(feature = "render")]
-pub mod render;
 pub mod report;
 pub mod roll;
 pub mod run;

@@ -32,9 +32,7 @@ pub use effort::{Cost, cost_svg};
 pub use force::{NamedSimulation, force_svg};
 pub use frame::{Layout, Paper};
 pub use pdf::{outlined_svg, svg_to_pdf};
-#[cfg(feature = "render")]
-pub(crate) use png::{COLOURS, SAMPLE};
-pub use png::{PlotError, svg_to_png, with_palette};
+pub use png::{COLOURS, PlotError, SAMPLE, svg_to_png, with_palette};
 pub use poisson::poisson_svg;
 pub use polar::{PolarPlot, Ray, RayKind, polar_svg, roll_svg};
 pub use radius::radius_svg;

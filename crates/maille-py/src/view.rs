@@ -10,8 +10,8 @@ use maille_geometry::Vec3;
 use maille_io::{
     Tile,
     mesh::{Fineness, Kind, Scene, state_of},
-    render::{ColorBy, Extent, Forces, RenderOptions, Subject, View, render},
 };
+use maille_render::{ColorBy, Extent, Forces, RenderOptions, Subject, View, render};
 use nalgebra::Isometry3;
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
 use pyo3::{prelude::*, types::PyBytes};

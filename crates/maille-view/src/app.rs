@@ -8,11 +8,8 @@ use crate::{
     rolled, sheet, simulated,
     work::Work,
 };
-use maille_io::{
-    builtin_designs, read_design,
-    render::{FORCE, KINDS, LOADS, UNLOADED},
-    weave::Weave,
-};
+use maille_io::{builtin_designs, read_design, weave::Weave};
+use maille_render::{FORCE, KINDS, LOADS, UNLOADED};
 use std::{path::PathBuf, sync::Arc};
 
 /// What a server knows.

@@ -7,8 +7,8 @@ use maille_io::{
     mesh::{self, Colours, Fineness, Format, Scene, WriteOptions},
     plot::{Layout, PolarPlot, polar_svg},
     record::write_limits,
-    render::{Extent, Forces, RenderOptions, Subject, render},
 };
+use maille_render::{Extent, Forces, RenderOptions, Subject, render};
 use std::io::Cursor;
 
 /// Triangles of one file, at most.
@@ -73,7 +73,7 @@ fn picture(model: &Model, state: &State, contacts: &[ContactRecord], request: &E
     let subject = Subject { model, state, contacts, unit: None };
     let forces = if contacts.is_empty() { Forces::None } else { Forces::Arrows };
     let options = RenderOptions { forces, ..RenderOptions::new(Extent::Cells(request.tile)) };
-    let wrong = |e: maille_io::render::RenderError| Refusal::wrong(e.to_string(), "take another tile");
+    let wrong = |e: maille_render::RenderError| Refusal::wrong(e.to_string(), "take another tile");
     let bytes = render(&subject, &options).and_then(|picture| picture.to_png()).map_err(wrong)?;
     Ok(File { kind: "image/png", bytes })
 }

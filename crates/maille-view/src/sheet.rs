@@ -10,7 +10,7 @@ use maille::{
     state::State,
     topology,
 };
-use maille_io::{DesignSource, mesh, record::Record, render, set_parameters};
+use maille_io::{DesignSource, mesh, record::Record, set_parameters};
 
 /// Pairs of rings are listed if their gap is below this many of the largest major radius.
 const NEAR: f64 = 0.5;
@@ -161,7 +161,7 @@ pub fn sheet(model: &Model, design: &Design) -> Sheet {
         reference_radius: design.reference_radius,
         a1: length(model.start.a1),
         a2: length(model.start.a2),
-        kinds: render::kinds(model),
+        kinds: maille_render::kinds(model),
         first_ring: model.elements.iter().map(|e| e.rings.start).collect(),
         poses: pose_records(model, &model.start),
         rings: model.rings.iter().map(ring).collect(),

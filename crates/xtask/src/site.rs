@@ -24,8 +24,16 @@ const MDBOOK: &str = "mdbook@0.5.4";
 /// What the reference pages and notebooks are made with, beside what the Python package is tested with.
 const LOCK: &str = "site/requirements.lock";
 /// Crates with a reference page.
-const CRATES: &[&str] =
-    &["maille-geometry", "maille", "maille-verify", "maille-prove", "maille-io", "maille-view", "maille-chapter6"];
+const CRATES: &[&str] = &[
+    "maille-geometry",
+    "maille",
+    "maille-verify",
+    "maille-prove",
+    "maille-io",
+    "maille-render",
+    "maille-view",
+    "maille-chapter6",
+];
 
 /// Limits of the viewers; of one cell and few starts, as the gallery of all designs must be made in minutes.
 const PULLS: &str =

@@ -162,7 +162,7 @@ fn a_killed_run_leaves_no_lock() {
 fn a_full_disk_is_an_error_after_which_a_run_goes_on() {
     for line in COMMANDS {
         let whole = whole(line);
-        for blocks in [0, 1, 4, 16, 60] {
+        for blocks in [0, 4, 60] {
             let folder = tempfile::tempdir().unwrap();
             fs::write(folder.path().join("study.toml"), STUDY).unwrap();
             let words = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$MAILLE\" {line}");

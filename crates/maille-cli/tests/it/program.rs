@@ -415,15 +415,22 @@ fn rings(obj: &str) -> Vec<Vec<[f64; 3]>> {
     rings
 }
 
+/// By one walk over all vertices in the order of x.
 fn smallest_distance(rings: &[Vec<[f64; 3]>]) -> f64 {
-    let sq = |a: &[f64; 3], b: &[f64; 3]| (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>();
-    let mut least = f64::INFINITY;
-    for (k, a) in rings.iter().enumerate() {
-        for b in &rings[k + 1..] {
-            for p in a {
-                least = b.iter().fold(least, |least, q| least.min(sq(p, q)));
+    let mut all: Vec<(usize, [f64; 3])> =
+        rings.iter().enumerate().flat_map(|(ring, vertices)| vertices.iter().map(move |v| (ring, *v))).collect();
+    all.sort_by(|(_, a), (_, b)| a[0].total_cmp(&b[0]));
+    let mut least_sq = f64::INFINITY;
+    for (k, (ring, a)) in all.iter().enumerate() {
+        for (other, b) in &all[k + 1..] {
+            let along_sq = (b[0] - a[0]).powi(2);
+            if along_sq >= least_sq {
+                break;
+            }
+            if other != ring {
+                least_sq = least_sq.min(along_sq + (b[1] - a[1]).powi(2) + (b[2] - a[2]).powi(2));
             }
         }
     }
-    least.sqrt()
+    least_sq.sqrt()
 }

@@ -68,8 +68,9 @@ pub(super) fn tree(svg: &str) -> Result<Tree, PlotError> {
 }
 
 /// Pixels that a palette is trained on: all of them. It takes longer for large pictures, and is always the same.
-pub(crate) const SAMPLE: i32 = 1;
-pub(crate) const COLOURS: usize = 256;
+pub const SAMPLE: i32 = 1;
+/// Colours of a palette.
+pub const COLOURS: usize = 256;
 
 /// The picture in a PNG of 8 bits a channel as a PNG of 256 colours, chosen for it.
 pub fn with_palette(png: &[u8]) -> Result<Vec<u8>, PlotError> {

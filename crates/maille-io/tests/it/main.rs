@@ -12,8 +12,6 @@ mod parameters;
 #[cfg(feature = "plot")]
 mod plots;
 mod records;
-#[cfg(feature = "render")]
-mod render;
 mod schema;
 mod table_foreign;
 mod tables;

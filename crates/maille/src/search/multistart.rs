@@ -11,7 +11,7 @@ use super::{
         LARGER_CELL_RESTARTS, OWN_IMAGE_FORCE, RESTARTS, SAME_VALUE, WIRE_PAUSE,
     },
     starts::{Start, Use, explored, perturbed, rng, tiled},
-    stop::{StopRule, better_chance},
+    stop::{StopRule, WITHOUT_CERTIFICATE, better_chance},
 };
 use crate::{
     answer::{Answer, CellTrend, WaveCurvature},
@@ -166,8 +166,10 @@ impl<T: Target> Multistart<'_, T> {
         let (mut given, mut drawn) = (given.into_iter(), 0);
         while !self.cancelled() && !result.attains(self.upper_bound) {
             let mut starts: Vec<Start> = given.by_ref().take(batch).collect();
-            // States without a certificate are no reason to stop.
-            let chance = if result.lacks_certificate() { 1.0 } else { result.better_chance() };
+            let chance = match result.lacks_certificate() {
+                true => WITHOUT_CERTIFICATE,
+                false => result.better_chance(),
+            };
             let left = rule.left(result.starts, chance, began.elapsed().as_secs_f64());
             let found_twice = starts.is_empty() && result.times_of_best() > 1;
             let own = match rule.until_found_twice && (found_twice || !starts.is_empty()) {

@@ -71,6 +71,7 @@ fn starts_explore() {
 
 /// The first 19 starts reach the limit with residuals too large for a certificate, and the search goes on until one has it.
 #[test]
+#[ignore = "a minute"]
 fn states_without_a_certificate_do_not_end_a_search() {
     let model = model("5.2", 0.1);
     let row = map(&[model], &[30.0], &[-0.25], &ExactOptions::default()).remove(0).row;

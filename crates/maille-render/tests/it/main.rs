@@ -2,7 +2,7 @@
 
 use maille::{lattice::Cell, model::Model, record::ContactRecord};
 use maille_geometry::{Circle, Torus, Vec3};
-use maille_io::render::{
+use maille_render::{
     Background, ColorBy, Extent, Forces, Picture, Ray, RenderError, RenderOptions, Subject, View, first_hit, render,
     render_frames,
 };
@@ -155,7 +155,7 @@ fn a_film_has_one_camera_and_all_frames() {
     for picture in &pictures {
         assert!((covered(picture) - area).abs() < 0.02 * area, "{} instead of {area}", covered(picture));
     }
-    let bytes = maille_io::render::film(&pictures, 8).unwrap();
+    let bytes = maille_render::film(&pictures, 8).unwrap();
     let mut film = gif::DecodeOptions::new().read_info(&bytes[..]).unwrap();
     let size = pictures[0].size().map(|side| side as u16);
     assert_eq!([film.width(), film.height()], size);
@@ -166,7 +166,7 @@ fn a_film_has_one_camera_and_all_frames() {
     }
     assert_eq!(first_rows.len(), 3);
     assert!(first_rows[0] > first_rows[1] && first_rows[1] > first_rows[2], "it rises: {first_rows:?}");
-    assert!(maille_io::render::film(&[], 8).is_err());
+    assert!(maille_render::film(&[], 8).is_err());
 }
 
 #[test]

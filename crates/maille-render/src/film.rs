@@ -1,8 +1,8 @@
 //! Films as GIF.
 
 use super::picture::Picture;
-use crate::plot::{COLOURS, PlotError, SAMPLE};
 use color_quant::NeuQuant;
+use maille_io::plot::{COLOURS, PlotError, SAMPLE};
 
 /// A film as GIF that repeats for ever, all frames in one palette, which is that of the first, middle and last one.
 ///
