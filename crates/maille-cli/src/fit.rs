@@ -22,7 +22,7 @@ use maille::{
 };
 use maille_io::{
     Tile,
-    fit::{self, FitRecord, FitRequest, FreeSpec, fitted_design, read_targets},
+    fit::{self, FIT, FitRecord, FitRequest, FreeSpec, fitted_design, read_targets},
     record::{FolderLock, RecordError},
 };
 use miette::{IntoDiagnostic, Report, Result, WrapErr};
@@ -197,7 +197,7 @@ fn one(
 ) -> Result<(FitRecord, bool)> {
     let request = request(args, input, free, targets)?;
     output::folder(out, "a fit is a folder")?;
-    let lock = FolderLock::take(out)?;
+    let lock = FolderLock::take(out, &[FIT])?;
     let earlier = fit_record::earlier(out, &request, args.overwrite)?;
     let record = match earlier {
         Some(record) if record.is_final(&request) => record,

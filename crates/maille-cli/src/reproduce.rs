@@ -54,8 +54,6 @@ pub struct Args {
     /// A folder of TOML files named as in the thesis, 1.1.toml to 5.2.toml: their coordinates are taken in place of ours
     #[arg(long, value_name = "FOLDER")]
     designs: Option<PathBuf>,
-    #[command(flatten)]
-    replace: output::Replace,
     /// No progress and no summary
     #[arg(long, short)]
     quiet: bool,
@@ -67,12 +65,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let usual = if args.quick { "reproduction-quick" } else { "reproduction" };
     let out = args.out.clone().unwrap_or_else(|| usual.into());
     output::folder(&out, "a folder is written")?;
-    // A folder with records of its own is continued; what it has been made into is made again.
-    if !out.join(RECORDS).is_dir() {
-        ["index.html", "statements.json"].iter().try_for_each(|name| args.replace.check(&out.join(name)))?;
-    }
     let plan = plan(&chosen, args.quick, &out.join(RECORDS)).map_err(|e| miette!("{e:?}"))?;
-    let _lock = FolderLock::take(&out)?;
+    // Records that are there are continued; what they have been made into is made again.
+    let _lock = FolderLock::take(&out, &[RECORDS])?;
     let open = |p: &Planned| map::open(&p.map, &Input::of(p.design.clone()));
     let open = plan.iter().map(|p| Ok((p.name.as_str(), open(p)?))).collect::<Result<Vec<_>>>()?;
     let Solved { tally: Tally { there, now, unanswered }, total, interrupted, .. } =

@@ -22,7 +22,7 @@ use maille::{
 use maille_geometry::Vec3;
 use maille_io::{
     Tile,
-    record::{ForceTable, LoadedPlace, PulledPlace, SIMULATION, SheetPlan, SimulationRecord, save_simulation},
+    record::{ForceTable, LoadedPlace, PulledPlace, SIMULATION, SheetPlan, SimulationFolder, SimulationRecord},
 };
 use miette::{Report, Result};
 use serde_json::json;
@@ -210,6 +210,8 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let model = input.compile_sheet(&input.design, cells)?;
     let plan = plan(args)?;
     let setup = plan.setup(&model).map_err(refused)?;
+    let folder = SimulationFolder::open(&out)?;
+    let frames = args.frames.as_ref().map(|folder| SimulationFolder::open(folder)).transpose()?;
     let begun = Instant::now();
     let mut all = Vec::new();
     let progress = Spinner::new(args.quiet);
@@ -236,9 +238,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     // A run that failed at once has reached nothing: its last state is shown.
     let last = || FrameRecord { run: 0, share: end.share, energy: end.energy, poses: pose_records(&model, &end.state) };
     let rests = if end.path.is_empty() { vec![last()] } else { end.path.clone() };
-    save_simulation(&out, record.clone(), &rests, Some(&forces))?;
-    if let Some(folder) = &args.frames {
-        save_simulation(folder, record.clone(), &all, None)?;
+    folder.save(record.clone(), &rests, Some(&forces))?;
+    if let Some(folder) = frames {
+        folder.save(record.clone(), &all, None)?;
     }
     let wall_s = begun.elapsed().as_secs_f64();
     let last = forces.rows.last();

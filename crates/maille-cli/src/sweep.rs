@@ -116,7 +116,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         return Ok(ExitCode::from(exit::LEFT_OUT));
     }
     output::folder(&out, "a folder is written")?;
-    let _lock = FolderLock::take(&out)?;
+    let _lock = FolderLock::take(&out, &["records"])?;
     let mut open: Vec<(&str, OpenMap)> = Vec::new();
     for planned in &maps {
         match map::open(&planned.map, &planned.input) {

@@ -13,8 +13,8 @@ use maille::{
 use maille_io::{
     Tile,
     record::{
-        ForceTable, SIMULATION, SheetPlan, SimulationRecord, read_forces, read_frames, read_simulation, write_forces,
-        write_frames, write_simulation,
+        ForceTable, SIMULATION, SheetPlan, SimulationFolder, SimulationRecord, read_forces, read_frames,
+        read_simulation, write_forces, write_frames, write_simulation,
     },
 };
 use pyo3::prelude::*;
@@ -78,5 +78,6 @@ pub fn save_simulation(folder: PathBuf, record: &str, frames: &str, forces: Opti
     let record = read_simulation(SIMULATION[0], record).map_err(|e| error::record(&e))?;
     let frames = read_frames(SIMULATION[1], frames).map_err(|e| error::record(&e))?;
     let forces = forces.map(|text| read_forces(SIMULATION[2], text)).transpose().map_err(|e| error::record(&e))?;
-    maille_io::record::save_simulation(&folder, record, &frames, forces.as_ref()).map_err(|e| error::record(&e))
+    let folder = SimulationFolder::open(&folder).map_err(|e| error::record(&e))?;
+    folder.save(record, &frames, forces.as_ref()).map_err(|e| error::record(&e))
 }

@@ -10,6 +10,7 @@ mod fit;
 mod guide;
 mod makers;
 mod old_record;
+mod overwrite;
 mod plot;
 mod program;
 mod prove;

@@ -88,7 +88,7 @@ impl SurfaceFolder {
         head: &BoundaryHead,
         overwrite: bool,
     ) -> Result<(Self, Vec<BoundaryVertex>), RecordError> {
-        let lock = FolderLock::take(folder)?;
+        let lock = FolderLock::take(folder, &[JOURNAL, super::folder::SURFACE])?;
         let path = folder.join(JOURNAL);
         let mut known = Vec::new();
         if !overwrite && path.exists() {

@@ -18,11 +18,11 @@
 use super::error::RecordError;
 use super::journal::{self, Journal};
 use super::limits::{read_limits, write_limits};
-use super::lock::{FolderLock, LOCK};
+use super::lock::{FolderLock, names, some_names};
 use super::run::{Counters, RunRecord, read_run, sha256, write_run};
 use super::sensitivities::{SensitivityRow, read_sensitivities, write_sensitivities};
 use super::states::{read_states, write_states};
-use crate::files::{self, is_temporary};
+use crate::files;
 use maille::design::Design;
 use maille::record::{LimitRow, StateRecord, Status};
 use serde::{Deserialize, Serialize};
@@ -129,18 +129,11 @@ impl RecordFolder {
         overwrite: bool,
     ) -> Result<(Self, Vec<LimitRow>, Vec<StateRecord>), RecordError> {
         let run = RunRecord::new(design, parameters, program_version);
-        fs::create_dir_all(path).map_err(RecordError::io("create", path))?;
-        let found = names(path)?;
-        if !found.is_empty() && !found.iter().any(|name| name == RUN) {
-            return Err(RecordError::NotARecord { folder: path.into(), found: some_names(&found) });
-        }
-        let lock = FolderLock::take(path)?;
+        let lock = FolderLock::take(path, &[RUN])?;
         let found = names(path)?;
         let mut folder = Self { path: path.to_owned(), run, journal: None, _lock: lock };
         if !found.is_empty() {
-            if overwrite {
-                folder.may_replace(&found)?;
-            } else {
+            if !overwrite {
                 let record = Record::read(path)?;
                 folder.same_inputs(&record.run)?;
                 for name in [LIMITS, STATES, SENSITIVITIES] {
@@ -278,16 +271,6 @@ impl RecordFolder {
         };
         Err(RecordError::OtherInputs { folder: self.path.clone(), difference })
     }
-
-    /// Whether the files may be replaced: those of a record, even of a damaged one, if its `run.json` was ours.
-    fn may_replace(&self, found: &[String]) -> Result<(), RecordError> {
-        let run = fs::read(self.path.join(RUN)).unwrap_or_default();
-        let head = String::from_utf8_lossy(&run[..run.len().min(200)]).into_owned();
-        if head.contains("\"schema\"") && head.contains("\"program_version\"") {
-            return Ok(());
-        }
-        Err(RecordError::NotARecord { folder: self.path.clone(), found: some_names(found) })
-    }
 }
 
 /// The first fields in which the inputs of two runs differ.
@@ -383,24 +366,5 @@ struct Limit<R, S> {
 }
 
 /// What is in a folder, but for what a run needs while it writes.
-fn names(folder: &Path) -> Result<Vec<String>, RecordError> {
-    let read = || -> std::io::Result<Vec<String>> {
-        let names = fs::read_dir(folder)?.map(|e| Ok(e?.file_name().to_string_lossy().into_owned()));
-        let mut names = names.collect::<std::io::Result<Vec<_>>>()?;
-        names.retain(|name| name != LOCK && !is_temporary(name));
-        names.sort();
-        Ok(names)
-    };
-    read().map_err(RecordError::io("read", folder))
-}
-
-fn some_names(names: &[String]) -> String {
-    match names {
-        [] => "nothing".to_owned(),
-        few if few.len() <= 3 => few.join(", "),
-        many => format!("{}, … {} files", many[..3].join(", "), many.len()),
-    }
-}
-
 #[cfg(test)]
 mod tests;

@@ -1,10 +1,10 @@
-//! One run at a time in a folder.
+//! One run at a time in a folder, and only in folders of its kind.
 
 use super::error::RecordError;
-use crate::files;
+use crate::files::{self, is_temporary};
 use std::{
     fs::{self, File, OpenOptions, TryLockError},
-    io::ErrorKind,
+    io::{ErrorKind, Read},
     path::Path,
 };
 
@@ -22,9 +22,17 @@ pub struct FolderLock {
 
 impl FolderLock {
     /// Takes the right to write to a folder, which is created if it is not there, and removes what a killed run left half
-    /// written in it; [`RecordError::InUse`] if another run has it.
-    pub fn take(folder: &Path) -> Result<Self, RecordError> {
+    /// written in it. `marks`: names of files or folders of which an earlier run of this kind has left one.
+    ///
+    /// # Errors
+    /// [`RecordError::NotARecord`] where files are there and none of the marks: nothing is written there, and nothing of
+    /// others is ever replaced. [`RecordError::InUse`] if another run has the folder.
+    pub fn take(folder: &Path, marks: &[&str]) -> Result<Self, RecordError> {
         fs::create_dir_all(folder).map_err(RecordError::io("create", folder))?;
+        let found = names(folder)?;
+        if !found.is_empty() && !marks.iter().any(|mark| is_of_maille(&folder.join(mark))) {
+            return Err(RecordError::NotARecord { folder: folder.into(), found: some_names(&found) });
+        }
         let path = folder.join(LOCK);
         let open = OpenOptions::new().create(true).truncate(false).write(true).open(&path);
         let file = open.map_err(RecordError::io("write", &path))?;
@@ -47,5 +55,40 @@ impl FolderLock {
             let _ = fs::remove_file(folder.join(LOCK));
             let _ = fs::remove_dir(folder);
         }
+    }
+}
+
+/// Keys of which each file that marks a folder has one near its beginning.
+const KEYS: [&str; 3] = ["\"schema\"", "\"program_version\"", "\"poses\""];
+
+/// Whether a folder is there, or a file that a run has begun.
+fn is_of_maille(mark: &Path) -> bool {
+    let begins = || -> std::io::Result<bool> {
+        let mut head = Vec::new();
+        File::open(mark)?.take(400).read_to_end(&mut head)?;
+        let text = String::from_utf8_lossy(&head);
+        Ok(text.is_empty() || KEYS.iter().any(|key| text.contains(key)))
+    };
+    mark.is_dir() || begins().unwrap_or(false)
+}
+
+/// The names in a folder, without the lock and what a killed run left half written.
+pub(super) fn names(folder: &Path) -> Result<Vec<String>, RecordError> {
+    let read = || -> std::io::Result<Vec<String>> {
+        let names = fs::read_dir(folder)?.map(|e| Ok(e?.file_name().to_string_lossy().into_owned()));
+        let mut names = names.collect::<std::io::Result<Vec<_>>>()?;
+        names.retain(|name| name != LOCK && !is_temporary(name));
+        names.sort();
+        Ok(names)
+    };
+    read().map_err(RecordError::io("read", folder))
+}
+
+/// The first of some names.
+pub(super) fn some_names(names: &[String]) -> String {
+    match names {
+        [] => "nothing".to_owned(),
+        few if few.len() <= 3 => few.join(", "),
+        many => format!("{}, … {} files", many[..3].join(", "), many.len()),
     }
 }

@@ -17,7 +17,10 @@ use maille::{
     relaxation::simulate::{End, Simulation},
 };
 use serde::{Deserialize, Serialize};
-use std::{fs, path::Path};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
 
 /// Names of the files of the record; the last one only where the frames are states at rest.
 pub const SIMULATION: [&str; 3] = ["simulation.json", "frames.jsonl", "forces.csv"];
@@ -97,14 +100,42 @@ pub struct SimulationFiles {
     pub forces: Option<ForceTable>,
 }
 
-/// Writes a simulation to its folder, which is created if it is not there.
-pub fn save_simulation(
+/// The folder that a simulation is written to; no other run writes there meanwhile.
+#[derive(Debug)]
+pub struct SimulationFolder {
+    path: PathBuf,
+    _lock: FolderLock,
+}
+
+impl SimulationFolder {
+    /// Opens the folder, which is created if it is not there.
+    ///
+    /// # Errors
+    /// Where it holds other files and no simulation, or another run has it.
+    pub fn open(path: &Path) -> Result<Self, RecordError> {
+        Ok(SimulationFolder { path: path.to_owned(), _lock: FolderLock::take(path, &SIMULATION[..2])? })
+    }
+
+    /// Writes a simulation in place of one that is there.
+    ///
+    /// # Errors
+    /// Where a file cannot be written.
+    pub fn save(
+        &self,
+        record: SimulationRecord,
+        frames: &[FrameRecord],
+        forces: Option<&ForceTable>,
+    ) -> Result<(), RecordError> {
+        save(&self.path, record, frames, forces)
+    }
+}
+
+fn save(
     folder: &Path,
     record: SimulationRecord,
     frames: &[FrameRecord],
     forces: Option<&ForceTable>,
 ) -> Result<(), RecordError> {
-    let _lock = FolderLock::take(folder)?;
     let [first, second, third] = SIMULATION.map(|name| folder.join(name));
     // A table of an earlier simulation is none of this one.
     for path in [&first, &third].into_iter().filter(|path| path.exists()) {

@@ -92,7 +92,7 @@ impl<'a> RollFolder<'a> {
         question: &RollQuestion,
         overwrite: bool,
     ) -> Result<(Self, Vec<Roll>), RecordError> {
-        let lock = FolderLock::take(folder)?;
+        let lock = FolderLock::take(folder, &[ROLL, ROLLS])?;
         let (path, head) = (folder.join(ROLLS), Head::new(design, question));
         let mut known = Vec::new();
         if !overwrite && path.exists() {

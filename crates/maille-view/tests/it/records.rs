@@ -14,7 +14,7 @@ use maille::{
 };
 use maille_io::{
     builtin, read_design,
-    record::{SheetPlan, SimulationOutcome, SimulationRecord, save_simulation},
+    record::{SheetPlan, SimulationFolder, SimulationOutcome, SimulationRecord},
     run::Map,
 };
 use maille_view::{App, api::*, router, solve_map};
@@ -77,7 +77,7 @@ fn simulation(folder: &Path) {
         forces_sha256: None,
         sha256: None,
     };
-    save_simulation(folder, record, &[frame(0), frame(1), frame(2)], None).unwrap();
+    SimulationFolder::open(folder).unwrap().save(record, &[frame(0), frame(1), frame(2)], None).unwrap();
 }
 
 #[test]
