@@ -127,8 +127,9 @@ fn line(name: &str, warning: &ListedProblem) -> String {
 fn words(found: &Found) -> String {
     let unit = found.unit.as_ref().map_or(String::new(), |u| format!(" {u}"));
     let gap = match found.smallest_gap {
-        Some(gap) if gap < 0.0 => format!(", overlap {:.6}{unit} (allowed by the file)", -gap),
-        Some(gap) => format!(", smallest gap {gap:.6}{unit}"),
+        // What six decimals show as nothing is the rounding of rings that touch.
+        Some(gap) if gap < -5e-7 => format!(", overlap {:.6}{unit} (allowed by the file)", -gap),
+        Some(gap) => format!(", smallest gap {:.6}{unit}", gap.max(0.0)),
         None => String::new(),
     };
     let warnings = match found.warnings.len() {

@@ -2,7 +2,6 @@
 
 use crate::source::Source;
 use maille::state::State;
-use maille_io::mesh;
 
 /// One state of a series.
 pub struct Frame {
@@ -42,10 +41,10 @@ impl Source {
             return (0..count).map(frame).collect();
         }
         let Some((record, state)) = &self.locked else {
-            let place = self.extreme.as_ref().map_or_else(|| mesh::state_words(None), |(_, words)| words.clone());
+            let place = self.extreme.as_ref().map_or_else(|| maille_mesh::state_words(None), |(_, words)| words.clone());
             return vec![one(&self.model.start, 0.0, format!("{title}; {place}"))];
         };
-        let place = mesh::state_words(Some(record));
+        let place = maille_mesh::state_words(Some(record));
         let Some(count) = count else {
             return vec![one(state, 1.0, format!("{title}; {place}"))];
         };
@@ -53,7 +52,7 @@ impl Source {
         let frame = |k: u32| {
             let time = f64::from(k) / f64::from(count - 1);
             Frame {
-                state: mesh::between(&self.model.start, state, time),
+                state: maille_mesh::between(&self.model.start, state, time),
                 suffix: format!("_f{k:0digits$}"),
                 time,
                 description: format!(

@@ -18,7 +18,7 @@ use maille::{
     model::Model,
     topology,
 };
-use maille_io::mesh::millimetres;
+use maille_io::millimetres;
 use miette::Result;
 use serde::Serialize;
 use std::{f64::consts::TAU, process::ExitCode};

@@ -9,13 +9,13 @@ use crate::{
 };
 use maille::{
     record::{LimitRow, Status},
-    survey::{Task, Work},
+    survey::{Task, Work, thread_pool},
 };
 use maille_io::{
     record::Record,
     run::{Map, MapError, OpenMap, run_all},
 };
-use miette::{IntoDiagnostic, Report, Result, WrapErr};
+use miette::{Report, Result};
 use std::{path::Path, sync::atomic::Ordering};
 
 /// How a run writes and ends, and on how many threads.
@@ -130,9 +130,5 @@ impl Tally {
 
 /// The threads of a run: as many as asked for, or as there are cores.
 pub fn pool(threads: Option<u16>) -> Result<rayon::ThreadPool> {
-    rayon::ThreadPoolBuilder::new()
-        .num_threads(threads.map_or(0, usize::from))
-        .build()
-        .into_diagnostic()
-        .wrap_err("cannot start the threads")
+    thread_pool(threads.map(usize::from)).map_err(|e| refused(&e))
 }

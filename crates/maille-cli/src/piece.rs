@@ -5,7 +5,7 @@ use crate::{
     units::parse_size,
 };
 use maille::{model::Model, state::State};
-use maille_io::{Tile, mesh::millimetres};
+use maille_io::{Tile, millimetres};
 use miette::Result;
 
 /// Cells that are exported and simulated where nothing is said.

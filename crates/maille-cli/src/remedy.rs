@@ -1,7 +1,8 @@
 //! How errors end the program, and what to do about those of the library, in the words of the command line.
 
 use crate::exit::{DESIGN, FAILED, RECORD, USAGE, Wrong};
-use maille_io::{DesignError, TextError, mesh::MeshError, record::RecordError};
+use maille_io::{DesignError, TextError, record::RecordError};
+use maille_mesh::MeshError;
 use maille_render::RenderError;
 use miette::{Diagnostic, Report};
 use std::{error::Error, fmt};

@@ -2,6 +2,7 @@
 
 use crate::{
     exit::{self, wrong},
+    map::pool,
     numbers::positive,
     output,
     piece::{self, known_millimetres},
@@ -15,7 +16,7 @@ use maille_render::{
     Background, Caption, ColorBy, Extent, Forces, Picture, RenderError, RenderOptions, Subject, View, film,
     render_frames,
 };
-use miette::{IntoDiagnostic, Report, Result, WrapErr};
+use miette::{IntoDiagnostic, Report, Result};
 use std::{
     path::{Path, PathBuf},
     time::Instant,
@@ -287,11 +288,7 @@ fn options(args: &Args, size: [u32; 2], extent: Extent, forces: bool) -> RenderO
 
 /// The pictures of all frames; says how far they are.
 fn draw(args: &Args, subjects: &[Subject<'_>], options: &RenderOptions) -> Result<Result<Vec<Picture>, RenderError>> {
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(args.threads.map_or(0, usize::from))
-        .build()
-        .into_diagnostic()
-        .wrap_err("cannot start the threads")?;
+    let pool = pool(args.threads)?;
     let progress = Spinner::new(args.quiet);
     let of_frames = |frame: usize| match subjects.len() {
         1 => String::new(),

@@ -20,8 +20,7 @@ use maille::{
     survey::CellChoice,
 };
 use maille_io::{
-    Tile, mesh,
-    record::{Record, SIMULATION, SimulationFiles, open_simulation},
+    Tile, record::{Record, SIMULATION, SimulationFiles, open_simulation},
     roll::{ROLL, Roll, open_rolls},
 };
 use miette::{Report, Result};
@@ -166,7 +165,7 @@ impl SourceArgs {
             .map_err(|problems| unusable(problems.iter().map(|p| p.problem.clone()).collect::<Vec<_>>().join("; ")))?;
         let state = |frame: FrameRecord| {
             let [a1, a2] = [model.start.a1, model.start.a2].map(|a| (a * model.unit).into());
-            mesh::state_of(&model, &StateRecord { poses: frame.poses, a1, a2, ..StateRecord::default() })
+            maille_mesh::state_of(&model, &StateRecord { poses: frame.poses, a1, a2, ..StateRecord::default() })
         };
         let states: Vec<State> = frames.into_iter().map(state).collect::<Result<_, _>>()?;
         let last = states.len().checked_sub(1).ok_or_else(|| unusable("it has no frames".into()))?;
@@ -242,7 +241,7 @@ impl SourceArgs {
         };
         let cell: Cell = row.map_or("1x1", |r| &r.cell).parse().map_err(|problem| unusable(vec![problem]))?;
         let model = Model::compile(&tolerant(design), cell).map_err(unusable)?;
-        let locked = mesh::state_of(&model, state)?;
+        let locked = maille_mesh::state_of(&model, state)?;
         Ok(Source {
             design: design.clone(),
             locked: Some((state.clone(), locked)),
@@ -285,7 +284,7 @@ impl SourceArgs {
         let cell: Cell = roll.cell.parse().map_err(|e: InvalidInput| unusable(e.problem))?;
         let model = Model::compile(&tolerant(&record.design), cell)
             .map_err(|problems| unusable(problems.iter().map(|p| p.problem.clone()).collect::<Vec<_>>().join("; ")))?;
-        let locked = mesh::state_of(&model, state)?;
+        let locked = maille_mesh::state_of(&model, state)?;
         Ok(Source {
             locked: Some((state.clone(), locked)),
             rolled: Some((*roll).clone()),

@@ -161,8 +161,21 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 
 /// Designs that could not be used are errors: told even if nothing else is, and last.
 pub fn tell(unused: Vec<(String, Report)>) {
+    // One mistake can keep many variants from use: said once.
+    let mut said: Vec<(Vec<String>, String)> = Vec::new();
     for (name, report) in unused {
-        eprintln!("{name} could not be used:\n{:?}", remedy::added(report));
+        let text = format!("{:?}", remedy::added(report));
+        match said.iter_mut().find(|(_, known)| *known == text) {
+            Some((names, _)) => names.push(name),
+            None => said.push((vec![name], text)),
+        }
+    }
+    for (names, text) in said {
+        let others = match names.len() - 1 {
+            0 => String::new(),
+            n => format!(" and {}", counted(n, "other")),
+        };
+        eprintln!("{}{others} could not be used:\n{text}", names[0]);
     }
 }
 

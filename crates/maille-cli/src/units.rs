@@ -1,6 +1,6 @@
 //! Lengths and densities as people write them: units, fractions of an inch, wire gauges.
 
-use maille_io::mesh::millimetres;
+use maille_io::millimetres;
 
 /// Diameters of the British Standard Wire Gauge, numbers 0 to 40, in thousandths of an inch.
 const SWG_MIL: [f64; 41] = [

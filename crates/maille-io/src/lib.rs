@@ -1,4 +1,4 @@
-//! Formats of maille: design files, studies, records, tables, plots, meshes; and maps from a design to its record.
+//! Formats of maille: design files, studies, records, tables, plots; and maps from a design to its record.
 //!
 //! Nearly everything here works on text, bytes and readers: front ends open paths. The exceptions are the folders of records and
 //! of surfaces, whose writes must be atomic, and [`files`].
@@ -9,8 +9,6 @@ pub mod builtin;
 pub mod design_toml;
 pub mod files;
 pub mod fit;
-#[cfg(feature = "mesh")]
-pub mod mesh;
 mod nearest;
 pub mod numbers;
 #[cfg(feature = "plot")]
@@ -36,6 +34,7 @@ pub use design_toml::{
 pub use quantity::Quantity;
 pub use text_error::TextError;
 pub use tile::Tile;
+pub use unit::millimetres;
 
 /// The README's example is run as a test.
 #[cfg(doctest)]

@@ -9,8 +9,8 @@ use maille::{
 use maille_geometry::Vec3;
 use maille_io::{
     Tile,
-    mesh::{Fineness, Kind, Scene, state_of},
-};
+    };
+use maille_mesh::{Fineness, Kind, Scene, state_of};
 use maille_render::{ColorBy, Extent, Forces, RenderOptions, Subject, View, render};
 use nalgebra::Isometry3;
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods};

@@ -1,6 +1,7 @@
 //! Long calls: the work on threads of its own, the interpreter free meanwhile, Ctrl-C and progress heard.
 
 use crate::error;
+use maille::survey::thread_pool;
 use pyo3::prelude::*;
 use std::{
     sync::{
@@ -30,8 +31,7 @@ pub fn wait<T: Send>(
     progress: Option<&Bound<'_, PyAny>>,
     work: impl FnOnce(&AtomicBool, &(dyn Fn(Step) + Sync)) -> T + Send,
 ) -> PyResult<T> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build();
-    let pool = pool.map_err(|e| error::other(&format!("cannot start the threads: {e}")))?;
+    let pool = thread_pool(threads).map_err(|e| error::invalid(&e))?;
     let cancel = AtomicBool::new(false);
     let (send, mut receive) = mpsc::channel::<Step>();
     let mut failure: Option<PyErr> = None;

@@ -92,6 +92,32 @@ def test_unknown_designs():
         Design.load("none.toml")
 
 
+def test_what_is_no_design_is_an_argument_error():
+    for wrong in (None, 3, ["1.1"]):
+        with pytest.raises(maille.ArgumentError) as raised:
+            maille.characterize(wrong, [0], [0])
+        assert raised.value.argument == "design"
+    assert maille.Design.of(b"1.1").name == "1.1"
+
+
+def test_numbers_that_are_too_large_are_argument_errors():
+    for wrong in (dict(threads=1_000_000), dict(seed=2**64), dict(starts=2**40)):
+        with pytest.raises(maille.ArgumentError) as raised:
+            maille.characterize("1.1", [0], [0], **wrong)
+        assert raised.value.argument == next(iter(wrong))
+    for tile in (4, (4,), (1, 2, 3), (2**40, 1)):
+        with pytest.raises(maille.ArgumentError) as raised:
+            maille.simulate("1.1", tile, fix="left", pull={"right": (1, 0, 0)})
+        assert raised.value.argument == "tile"
+
+
+def test_a_bar_that_cannot_be_drawn_stops_nothing(monkeypatch):
+    monkeypatch.setitem(sys.modules, "tqdm.auto", None)
+    with pytest.warns(UserWarning, match="without a bar"):
+        record = maille.characterize("1.1", [0], [0], progress=True)
+    assert len(record) == 1
+
+
 def test_wrong_arguments():
     for wrong, name in (
         (dict(directions="0:90"), "directions"),

@@ -23,7 +23,7 @@ pub enum ViewError {
     },
     /// Threads could not be started.
     #[error("cannot start the threads")]
-    Threads(#[from] rayon::ThreadPoolBuildError),
+    Threads(#[from] maille::InvalidInput),
     /// The server could not be started.
     #[error("cannot run the server")]
     Run(#[from] io::Error),

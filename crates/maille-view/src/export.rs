@@ -4,10 +4,10 @@ use crate::{api::Export, refusal::Refusal, sheet::tolerant};
 use maille::{lattice::Cell, model::Model, record::ContactRecord, state::State};
 use maille_io::{
     Quantity, Tile,
-    mesh::{self, Colours, Fineness, Format, Scene, WriteOptions},
     plot::{Layout, PolarPlot, polar_svg},
     record::write_limits,
 };
+use maille_mesh::{Colours, Fineness, Format, Scene, WriteOptions};
 use maille_render::{Extent, Forces, RenderOptions, Subject, render};
 use std::io::Cursor;
 
@@ -47,7 +47,7 @@ pub fn export(request: &Export) -> Result<File, Refusal> {
     let design = if request.state.is_some() { &tolerant(&read.design) } else { &read.design };
     let model = read.compile_for(design, cell, request.finite)?;
     let state = match &request.state {
-        Some(record) => mesh::state_of(&model, record).map_err(|e| unusable(e.to_string()))?,
+        Some(record) => maille_mesh::state_of(&model, record).map_err(|e| unusable(e.to_string()))?,
         None => model.start.clone(),
     };
     let contacts = request.state.as_ref().map_or(&[][..], |record| &record.contacts);
@@ -86,13 +86,13 @@ fn scene(
     design: &maille::design::Design,
 ) -> Result<File, Refusal> {
     let format = Format::of_ending(&request.format).ok_or_else(|| Refusal::wrong("there is no such format", ""))?;
-    let mm = design.unit.as_deref().and_then(mesh::millimetres).unwrap_or(1.0);
+    let mm = design.unit.as_deref().and_then(maille_mesh::millimetres).unwrap_or(1.0);
     let fineness = Fineness::Tolerance(0.01 * design.reference_radius);
-    let wrong = |e: mesh::MeshError| Refusal::wrong(e.to_string(), "take a smaller tile");
+    let wrong = |e: maille_mesh::MeshError| Refusal::wrong(e.to_string(), "take a smaller tile");
     let mut scene = Scene::new(model, state, Tile(request.tile), fineness, mm).map_err(wrong)?;
     let words = match request.finite {
         true => "a state of a simulated sheet".to_owned(),
-        false => mesh::state_words(request.state.as_ref()),
+        false => maille_mesh::state_words(request.state.as_ref()),
     };
     let tile = Tile(request.tile);
     scene.description = format!("{} {}; {words}; {tile} cells; 1 file unit = {mm} mm", design.name, design.title);

@@ -7,7 +7,6 @@ use crate::{
 };
 use maille::{error::InvalidInput, lattice::Cell, model::Model, record::pose_records, relaxation::simulate::End};
 use maille_io::{
-    mesh,
     roll::{Roll, RollRecordFile},
 };
 
@@ -35,7 +34,7 @@ pub fn shown(source: String, record: &RollRecordFile, rolls: &[Roll]) -> Result<
         let Some(state) = roll.state().filter(|_| roll.wrap == round) else { continue };
         let cell: Cell = roll.cell.parse().map_err(|e: InvalidInput| unusable(e.problem))?;
         let model = Model::compile(&design, cell).map_err(problems)?;
-        let state = mesh::state_of(&model, &state).map_err(|e| unusable(e.to_string()))?;
+        let state = maille_mesh::state_of(&model, &state).map_err(|e| unusable(e.to_string()))?;
         frames.push(Frame {
             number: frames.len(),
             share: 0.0,

@@ -10,7 +10,7 @@ use maille::{
     state::State,
     topology,
 };
-use maille_io::{DesignSource, mesh, record::Record, set_parameters};
+use maille_io::{DesignSource, record::Record, set_parameters};
 
 /// Pairs of rings are listed if their gap is below this many of the largest major radius.
 const NEAR: f64 = 0.5;
@@ -189,7 +189,7 @@ pub fn pairs(model: &Model, state: &State) -> Vec<Pair> {
 /// A row with its state as the page shows it; `models` has its cell.
 pub fn limit(models: &[Model], row: &LimitRow, state: &StateRecord) -> Limit {
     let model = models.iter().find(|model| model.cell.to_string() == row.cell);
-    let at = model.and_then(|model| Some((model, mesh::state_of(model, state).ok()?)));
+    let at = model.and_then(|model| Some((model, maille_mesh::state_of(model, state).ok()?)));
     let pairs = at.map_or(Vec::new(), |(model, state)| pairs(model, &state));
     Limit { row: row.clone(), state: state.clone(), pairs }
 }

@@ -11,7 +11,7 @@ use maille::{
     model::Model,
     record::{ForceRow, StateRecord},
 };
-use maille_io::{mesh, record::SimulationFiles};
+use maille_io::{record::SimulationFiles};
 
 /// Poses of all frames that are sent, at most.
 const MOST_POSES: usize = 200_000;
@@ -64,6 +64,6 @@ pub fn measure(request: &Measure) -> Result<Vec<Pair>, Refusal> {
     let model = read.compile_for(&tolerant(&read.design), cell, request.finite)?;
     let Measure { a1, a2, .. } = *request;
     let record = StateRecord { a1, a2, poses: request.poses.clone(), ..StateRecord::default() };
-    let state = mesh::state_of(&model, &record).map_err(|e| unusable(e.to_string()))?;
+    let state = maille_mesh::state_of(&model, &record).map_err(|e| unusable(e.to_string()))?;
     Ok(pairs(&model, &state))
 }

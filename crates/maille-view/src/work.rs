@@ -2,6 +2,7 @@
 
 use crate::refusal::Refusal;
 use axum::http::StatusCode;
+use maille::{InvalidInput, survey::thread_pool};
 use std::{
     collections::HashMap,
     sync::{
@@ -54,9 +55,9 @@ impl Drop for CancelOnDrop {
 
 impl Work {
     /// With `threads`, or one for each core.
-    pub fn new(threads: Option<usize>) -> Result<Self, rayon::ThreadPoolBuildError> {
+    pub fn new(threads: Option<usize>) -> Result<Self, InvalidInput> {
         Ok(Self {
-            pool: rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build()?,
+            pool: thread_pool(threads)?,
             solves: Arc::new(Semaphore::new(SOLVES)),
             short: Arc::new(Semaphore::new(SHORT)),
             live: AtomicUsize::new(0),

@@ -302,7 +302,9 @@ impl Design {
             out.add("name", "is empty", "give the design a short name");
         }
         let help = "give the major radius that ratios such as r = R/10 refer to";
-        out.positive("reference_radius", self.reference_radius, help);
+        if out.positive("reference_radius", self.reference_radius, help) {
+            self.add_problem_of_reference(&mut out);
+        }
         if self.lacks_minor_radii() && self.elements.iter().any(|e| !e.rings.is_empty() || !e.curves.is_empty()) {
             out.add(
                 "minor_radius",
@@ -310,8 +312,8 @@ impl Design {
                 "add minor_radius = 0.1, the wire's radius, or give each ring its own",
             );
         }
-        if let Some(r) = self.minor_radius {
-            out.positive("minor_radius", r, WIRE_RADIUS);
+        if let Some(r) = self.minor_radius.filter(|r| out.positive("minor_radius", *r, WIRE_RADIUS)) {
+            self.add_problem_of_wire(r, &mut out);
         }
         if let Some(tolerance) = self.curve_tolerance {
             out.positive("curve_tolerance", tolerance, "give the deviation that is allowed, as 1e-6");
@@ -338,6 +340,38 @@ impl Design {
             }
         }
         out.0
+    }
+
+    /// The design's own wire is too thick for some of its rings: one mistake, said once.
+    fn add_problem_of_wire(&self, r: f64, out: &mut Problems) {
+        let rings = self.elements.iter().flat_map(|e| &e.rings).filter(|ring| ring.minor_radius.is_none());
+        let too_small: Vec<f64> = rings.map(|ring| ring.major_radius).filter(|x| is_positive(*x) && *x <= r).collect();
+        let Some(least) = too_small.iter().copied().min_by(f64::total_cmp) else { return };
+        let of = match too_small.len() {
+            1 => format!("the major radius of a ring, {least}"),
+            n => format!("the major radius of {n} rings, {least} of the smallest"),
+        };
+        let mut help = "a ring has a hole only if r < R".to_owned();
+        if 0.5 * r < least {
+            help += &format!("; is this a diameter? Then write {}", 0.5 * r);
+        }
+        out.add("minor_radius", format!("{r} is not smaller than {of}"), &help);
+    }
+
+    /// A reference radius far from the size of everything is a typing error: tolerances, gaps and pictures are relative to it.
+    fn add_problem_of_reference(&self, out: &mut Problems) {
+        let largest = |sizes: &mut dyn Iterator<Item = f64>| sizes.fold(0.0, f64::max);
+        let of_rings = largest(&mut self.elements.iter().flat_map(|e| &e.rings).map(|ring| ring.major_radius));
+        let of_curves = largest(&mut self.elements.iter().flat_map(|e| &e.curves).map(|curve| curve.shape.size()));
+        let (size, what) = match of_rings >= of_curves {
+            true => (of_rings, "the largest major_radius"),
+            false => (of_curves, "the largest length of a curve"),
+        };
+        let ratio = self.reference_radius / size;
+        if is_positive(size) && !(1.0 / REFERENCE_RATIO..=REFERENCE_RATIO).contains(&ratio) {
+            let problem = format!("{} is far from {what}, {size}", self.reference_radius);
+            out.add("reference_radius", problem, "give the major radius of a ring: tolerances are relative to it");
+        }
     }
 
     /// Whether neither the design nor any ring has a minor radius.
@@ -434,13 +468,15 @@ impl Design {
         // That of the design is judged once.
         let minor_radius =
             if own { out.positive(format!("{at}.minor_radius"), r, WIRE_RADIUS) } else { is_positive(r) };
-        if minor_radius && major_radius && r >= ring.major_radius {
-            let field = format!("{at}.{}", if own { "minor_radius" } else { "major_radius" });
+        if minor_radius && major_radius && r >= ring.major_radius && own {
             let problem = format!("minor radius {r} is not smaller than major radius {}", ring.major_radius);
-            out.add(field, problem, "a ring has a hole only if r < R");
+            out.add(format!("{at}.minor_radius"), problem, "a ring has a hole only if r < R");
         }
     }
 }
+
+/// The reference radius is at most so many times the largest size of a design, and at least its inverse.
+const REFERENCE_RATIO: f64 = 100.0;
 
 const WIRE_RADIUS: &str = "give the wire's radius (half of its diameter)";
 

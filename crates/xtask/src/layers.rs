@@ -18,7 +18,7 @@ const CRATES: &[&[&str]] = &[
     &["maille-geometry"],
     &["maille", "maille-verify"],
     &["maille-io", "maille-prove"],
-    &["maille-render"],
+    &["maille-mesh", "maille-render"],
     &["maille-chapter6", "maille-view", "maille-fuzz", "maille-features"],
     &["maille-cli", "maille-py"],
     &["xtask"],

@@ -31,6 +31,7 @@ const CRATES: &[&str] = &[
     "maille-verify",
     "maille-prove",
     "maille-io",
+    "maille-mesh",
     "maille-render",
     "maille-chapter6",
     "maille-view",

@@ -30,6 +30,7 @@ const CRATES: &[&str] = &[
     "maille-verify",
     "maille-prove",
     "maille-io",
+    "maille-mesh",
     "maille-render",
     "maille-view",
     "maille-chapter6",

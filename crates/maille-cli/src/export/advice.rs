@@ -9,12 +9,12 @@ use crate::{
 use maille::{state::State, topology};
 use maille_io::{
     Tile,
-    mesh::{self, Format, Scene},
-};
+    };
+use maille_mesh::{Format, Scene};
 use miette::{Report, Result};
 
 /// What would fuse, and what would help.
-pub fn fuse(close: &mesh::TooClose, clearance: f64, mm: f64, source: &Source) -> Report {
+pub fn fuse(close: &maille_mesh::TooClose, clearance: f64, mm: f64, source: &Source) -> Report {
     let design = &source.design;
     let [a, b] = &close.rings;
     let [x, y, z] = [close.place.x, close.place.y, close.place.z].map(|x| (x * 1e3).round() / 1e3 + 0.0);
@@ -77,7 +77,7 @@ pub fn gaps(scene: &Scene, source: &Source, state: &State, tile: Tile) {
             false => output::say!("smallest gap between rings: {} {unit}, here {} mm", six(gap), six(gap * scene.mm)),
         }
     }
-    match mesh::smallest_clearance(scene, model, state, tile) {
+    match maille_mesh::smallest_clearance(scene, model, state, tile) {
         Some(0.0) => output::say!("clearance 0 mm: meshes of different elements touch or overlap"),
         Some(gap) => output::say!("clearance {} mm between the meshes of different elements", short(gap)),
         None => {}

@@ -7,7 +7,7 @@ use crate::{
     source::Source,
 };
 use clap::ValueEnum;
-use maille_io::mesh::Format;
+use maille_mesh::Format;
 use miette::Result;
 use std::path::{Path, PathBuf};
 

@@ -20,8 +20,8 @@ use destination::{Destination, FormatArg, destination, with_ending};
 use maille::{design::Design, topology};
 use maille_io::{
     Tile,
-    mesh::{self, Colours, Fineness, MeshFile, Objects, Scene, TorusMesh, WriteOptions},
-};
+    };
+use maille_mesh::{Colours, Fineness, MeshFile, Objects, Scene, TorusMesh, WriteOptions};
 use miette::Result;
 use std::{
     fs,
@@ -153,7 +153,7 @@ fn millimetres(args: &Args, unit: Option<&str>, note: impl Fn(String)) -> f64 {
         (None, None) => {
             assumed("the design names no unit: one unit of the file becomes 1 mm (change it with --scale)".into())
         }
-        (None, Some(unit)) => mesh::millimetres(unit).unwrap_or_else(|| {
+        (None, Some(unit)) => maille_mesh::millimetres(unit).unwrap_or_else(|| {
             assumed(format!("the unit \"{unit}\" is not known: one becomes 1 mm (change it with --scale)"))
         }),
     }
@@ -297,7 +297,7 @@ fn write_frames(
         // Frames keep their places to each other.
         scene.origin = *origin.get_or_insert(scene.origin);
         if let Some(wanted) = args.min_clearance
-            && let Some(close) = mesh::too_close(&scene, model, &frame.state, tile, fineness, wanted)
+            && let Some(close) = maille_mesh::too_close(&scene, model, &frame.state, tile, fineness, wanted)
         {
             let problem = fuse(&close, wanted, mm, source);
             match args.warn {
@@ -382,7 +382,7 @@ fn collections(prefix: &Path, series: &[(MeshFile, f64, PathBuf)]) -> Vec<(PathB
     COLLECTIONS
         .map(|(file, ending)| {
             let files: Vec<_> = of(file, 0).chain(of(MeshFile::VtkContacts, 1)).collect();
-            (with_ending(prefix, ending), mesh::write_pvd(&files))
+            (with_ending(prefix, ending), maille_mesh::write_pvd(&files))
         })
         .into()
 }

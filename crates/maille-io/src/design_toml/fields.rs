@@ -71,6 +71,9 @@ pub(super) fn unknown_key_help(key: &str, known: &[&str]) -> String {
     if key == "closed" && known.contains(&"from") {
         return "a path that has `from`, where it starts, is open".into();
     }
+    if key == "a3" && known.contains(&"a2") {
+        return "a third lattice vector is that of a block; maille knows sheets, which repeat along a1 and a2, and chains".into();
+    }
     if let Some(near) = nearest(key, known) {
         return format!("did you mean `{near}`?");
     }

@@ -4,10 +4,6 @@ mod common;
 mod design_files;
 mod errors;
 mod fit;
-#[cfg(feature = "mesh")]
-mod mesh;
-#[cfg(feature = "mesh")]
-mod mesh_foreign;
 mod parameters;
 #[cfg(feature = "plot")]
 mod plots;

@@ -11,7 +11,7 @@ from typing import Any, Union
 
 from . import _native
 from ._files import write_whole
-from .errors import DesignError, UnknownDesignError
+from .errors import ArgumentError, DesignError, UnknownDesignError
 
 __all__ = ["Design", "DesignLike", "Element", "Ring", "designs"]
 
@@ -120,7 +120,11 @@ class Design:
         """A design as it is, a built-in one by its name, or a file by its path."""
         if isinstance(design, Design):
             return design
-        name = os.fspath(design)
+        try:
+            name = os.fsdecode(design)
+        except TypeError:
+            remedy = "give a Design, the name of a built-in one, or the path of a file"
+            raise ArgumentError("design", f"{design!r} is no design", remedy) from None
         if not os.path.isfile(name):
             return cls.builtin(name)
         return cls.load(name)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import os
+import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal, Union
@@ -303,8 +304,10 @@ def _effort(effort: str) -> str:
 
 
 def _whole(name: str, value: int, least: int) -> int:
-    if not isinstance(value, (int, np.integer)) or isinstance(value, bool) or value < least:
-        raise ArgumentError(name, f"{value!r} is no whole number from {least} on", f"give {max(least, 1)} or more")
+    # Seeds have 64 bits in the program, numbers of things 32.
+    most = 2**64 - 1 if name == "seed" else 2**32 - 1
+    if not isinstance(value, (int, np.integer)) or isinstance(value, bool) or not least <= value <= most:
+        raise ArgumentError(name, f"{value!r} is no whole number from {least} to {most}", f"give {max(least, 1)} or more")
     return int(value)
 
 
@@ -336,9 +339,12 @@ class _Bar:
 
     def __enter__(self) -> Callable[[int, int], object] | None:
         if self._progress is True:
-            with extra("progress"):
+            try:
                 from tqdm.auto import tqdm
-
+            except ModuleNotFoundError:
+                problem = 'progress=True draws a bar of tqdm, which is not installed: pip install "maille[progress]"'
+                warnings.warn(f"{problem}. The work goes on without a bar.", stacklevel=3)
+                return None
             self._bar = tqdm(unit=self._unit)
             return self._tell
         return self._progress if callable(self._progress) else None

@@ -200,13 +200,21 @@ def simulate(
         "seed": _whole("seed", seed, 0),
     }
     plan.update({name: _positive(name, x) for name, x in (("alpha", alpha), ("tau", tau)) if x is not None})
-    columns, rows = (_whole("tile", n, 1) for n in tile)
+    columns, rows = _cells(tile)
     with _Bar(progress, unit="step") as told:
         found = _native.simulate(chosen(design, minor_radius)._inner, (columns, rows), json.dumps(plan), told)
     simulation = Simulation._of(*found)
     if out is not None:
         simulation.save(out)
     return simulation
+
+
+def _cells(tile: tuple[int, int]) -> tuple[int, int]:
+    try:
+        columns, rows = tile
+    except (TypeError, ValueError):
+        raise ArgumentError("tile", f"{tile!r} is no pair of numbers", "give the cells along a1 and a2, as (4, 4)") from None
+    return _whole("tile", columns, 1), _whole("tile", rows, 1)
 
 
 def _columns(text: str) -> dict[str, NDArray[np.float64]]:

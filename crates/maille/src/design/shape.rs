@@ -194,6 +194,13 @@ impl Shape {
         lengths.for_each(|(_, number)| *number *= factor);
     }
 
+    /// The largest of its lengths and coordinates.
+    pub(super) fn size(&self) -> f64 {
+        let lengths = self.numbers().into_iter().filter(|(name, _)| !["p", "q"].contains(name)).map(|(_, x)| x);
+        let coordinates = self.points().into_iter().flat_map(|(_, point)| point);
+        lengths.chain(coordinates).fold(0.0, |most, x| most.max(x.abs()))
+    }
+
     /// As [`Self::scale`].
     pub(crate) fn scaled(&self, factor: f64) -> Self {
         let mut out = self.clone();

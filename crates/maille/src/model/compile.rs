@@ -287,10 +287,12 @@ impl Model {
         out
     }
 
-    /// What keeps the starting state from use: core circles that meet, because then there is no topology to keep, and
-    /// overlaps that the design does not allow, as one entry at the deepest.
+    /// What keeps the starting state from use: cores that meet, because then there is no topology to keep, and overlaps that
+    /// the design does not allow; of each one entry, at the first or the deepest.
     fn overlaps(&self, pairs: &[topology::RingPair], design: &Design) -> Vec<InvalidInput> {
         let (mut out, mut deep) = (Vec::new(), Vec::new());
+        // Elements, not rings: two cages that meet do so at many struts.
+        let mut meeting: Vec<(String, String)> = Vec::new();
         let names = |pair: &topology::RingPair| {
             format!("{} and {}", self.ring_label(pair.ring_a, [0, 0]), self.ring_label(pair.ring_b, pair.shift))
         };
@@ -301,14 +303,27 @@ impl Model {
             let distance = topology::core_distance(self, &self.start, pair);
             let gap = (distance - self.contact_distance(pair.ring_a, pair.ring_b)) * self.unit;
             if distance < 1e-9 {
-                out.push(InvalidInput::new(
-                    field(pair),
-                    format!("the core circles of {} meet in the starting state", names(pair)),
-                    "move the elements apart: whether such rings are linked is undefined",
-                ));
+                let elements = format!(
+                    "{} and {}",
+                    self.element_label(self.rings[pair.ring_a].element, [0, 0]),
+                    self.element_label(self.rings[pair.ring_b].element, pair.shift)
+                );
+                if !meeting.iter().any(|(_, known)| *known == elements) {
+                    meeting.push((field(pair), elements));
+                }
             } else if gap < -ROUNDING * self.unit && !design.allow_initial_overlap {
                 deep.push((-gap, pair));
             }
+        }
+        if let Some((field, _)) = meeting.first() {
+            let named: Vec<&str> = meeting.iter().take(MOST_NAMED).map(|(_, names)| names.as_str()).collect();
+            let problem = format!(
+                "the core curves of {} meet in the starting state{}",
+                named.join(", of "),
+                others(meeting.len(), "meets", "meet")
+            );
+            let help = "move the elements apart: whether such elements are linked is undefined";
+            out.push(InvalidInput::new(field.clone(), problem, help));
         }
         deep.sort_by(|a, b| b.0.total_cmp(&a.0));
         if let Some((depth, deepest)) = deep.first() {
@@ -320,11 +335,7 @@ impl Model {
             for (depth, pair) in deep.iter().take(MOST_NAMED).skip(1) {
                 problem += &format!(", {} by {}", names(pair), words(*depth));
             }
-            match deep.len().saturating_sub(MOST_NAMED) {
-                0 => {}
-                1 => problem += ", and 1 other pair overlaps",
-                more => problem += &format!(", and {more} other pairs overlap"),
-            }
+            problem += &others(deep.len(), "overlaps", "overlap");
             let help = "move them apart or take a smaller minor_radius; or write allow_initial_overlap = true at the top of the file";
             out.push(InvalidInput::new(field(deepest), problem, help));
         }
@@ -334,6 +345,15 @@ impl Model {
 
 /// Overlapping pairs that an error names.
 const MOST_NAMED: usize = 3;
+
+/// What is said of pairs beyond those that are named.
+fn others(pairs: usize, does: &str, they_do: &str) -> String {
+    match pairs.saturating_sub(MOST_NAMED) {
+        0 => String::new(),
+        1 => format!(", and 1 other pair {does}"),
+        more => format!(", and {more} other pairs {they_do}"),
+    }
+}
 
 /// Six decimals, or what is left of an overlap that they do not show.
 fn depth_words(depth: f64) -> String {

@@ -185,10 +185,20 @@ impl Model {
         if element.rings.len() > 1 {
             label += &format!(" ring {}", ring - element.rings.start);
         }
-        if shift != [0, 0] {
-            label += &format!(" in cell ({:+},{:+})", shift[0], shift[1]);
-        }
-        label
+        label + &in_cell(shift)
+    }
+
+    /// A name for an image of an element: `"gyroscope" in cell (+1,+0)`.
+    pub(crate) fn element_label(&self, element: usize, shift: Shift) -> String {
+        format!("\"{}\"", self.elements[element].name) + &in_cell(shift)
+    }
+}
+
+/// Of which cell an image is, where it is not the first.
+fn in_cell(shift: Shift) -> String {
+    match shift {
+        [0, 0] => String::new(),
+        [m, n] => format!(" in cell ({m:+},{n:+})"),
     }
 }
 

@@ -7,9 +7,11 @@ mod request;
 mod rolls;
 mod row;
 pub mod surface;
+mod threads;
 
 pub(crate) use map::one;
 pub use map::{chains, characterize};
 pub use request::{CellChoice, Finished, MapQuestion, Method, Task, Work};
 pub(crate) use rolls::rolls;
 pub use rolls::{KnownRoll, RollTask};
+pub use threads::{MOST_THREADS, thread_pool};

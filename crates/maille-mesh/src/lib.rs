@@ -31,7 +31,6 @@ mod three_mf;
 mod torus;
 mod vtk;
 
-pub use crate::unit::millimetres;
 pub use clearance::{TooClose, smallest_clearance, too_close};
 pub use colour::Colours;
 pub use error::MeshError;

@@ -11,7 +11,7 @@ use super::{
     scene::Scene,
     torus::{Fineness, MOST, Segments, polygon},
 };
-use crate::tile::Tile;
+use maille_io::Tile;
 use maille::{
     lattice::Shift,
     model::Model,

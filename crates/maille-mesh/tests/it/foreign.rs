@@ -4,8 +4,8 @@ use crate::common::foreign::{checkers, installed, python, run};
 use maille::{lattice::Cell, model::Model, record::ContactRecord};
 use maille_io::{
     Tile,
-    mesh::{Colours, Fineness, Format, MeshFile, Objects, Scene, TorusMesh, WriteOptions, between, write_pvd},
-};
+    };
+use maille_mesh::{Colours, Fineness, Format, MeshFile, Objects, Scene, TorusMesh, WriteOptions, between, write_pvd};
 use serde_json::{Value, json};
 use std::{
     f64::consts::PI,

@@ -5,7 +5,7 @@ use super::{
     error::MeshError,
     torus::{Fineness, TorusMesh},
 };
-use crate::tile::Tile;
+use maille_io::Tile;
 use maille::{
     model::{Model, Ring},
     record::{ContactRecord, StateRecord},

@@ -216,7 +216,8 @@ fn frames(sections: &[Section], length: Option<f64>) -> Vec<[Vec3; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Tile, mesh::Scene, read_design};
+    use crate::Scene;
+    use maille_io::{Tile, read_design};
     use maille::{Cell, model::Model};
     use std::{
         collections::{BTreeSet, HashMap},
