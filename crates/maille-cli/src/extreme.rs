@@ -21,7 +21,7 @@ use maille::{
     search::extreme::{Extreme, Size},
     sheet::Sheet,
 };
-use maille_io::{millimetres, answer, write_design};
+use maille_io::{answer, millimetres, write_design};
 use miette::{Report, Result};
 use std::{path::PathBuf, process::ExitCode, time::Instant};
 
@@ -294,7 +294,9 @@ impl Found<'_> {
             say!("  smallest gap    {gap:.9}{unit}{}", mm.map_or(String::new(), |mm| format!(" ({:.6} mm)", gap * mm)));
         }
         if self.what.clearance(found, self.model()).is_some_and(|gap| gap < 0.0) {
-            say!("  no start led to a state without overlap, which proves nothing: try --effort thorough, --lattice free, thinner");
+            say!(
+                "  no start led to a state without overlap, which proves nothing: try --effort thorough, --lattice free, thinner"
+            );
             say!("  wire or a larger inner diameter");
         }
         for size in self.what.sizes(found, self.model()) {

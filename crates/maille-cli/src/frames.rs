@@ -41,7 +41,8 @@ impl Source {
             return (0..count).map(frame).collect();
         }
         let Some((record, state)) = &self.locked else {
-            let place = self.extreme.as_ref().map_or_else(|| maille_mesh::state_words(None), |(_, words)| words.clone());
+            let place =
+                self.extreme.as_ref().map_or_else(|| maille_mesh::state_words(None), |(_, words)| words.clone());
             return vec![one(&self.model.start, 0.0, format!("{title}; {place}"))];
         };
         let place = maille_mesh::state_words(Some(record));

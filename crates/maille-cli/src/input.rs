@@ -8,9 +8,9 @@ use maille::{
     design::Design, error::InvalidInput, lattice::Cell, model::Model, sheet::Sheet, survey::CellChoice, topology,
 };
 pub use maille_io::record::file_name;
-use maille_io::{millimetres, 
-    DesignError, DesignSource, ListedProblem, builtin, builtin_designs, nearest_builtin,
-    set_parameters, study::Variant, write_design,
+use maille_io::{
+    DesignError, DesignSource, ListedProblem, builtin, builtin_designs, millimetres, nearest_builtin, set_parameters,
+    study::Variant, write_design,
 };
 use miette::{IntoDiagnostic, Report, Result, WrapErr};
 use serde_json::{Value, json};

@@ -9,8 +9,8 @@ use crate::{
     units::{Length, parse_length, parse_wire, without_rounding},
 };
 use maille::{design::Design, lattice::Cell, model::Model, topology};
-use maille_io::{millimetres, 
-    DESIGN_JSON_SCHEMA,
+use maille_io::{
+    DESIGN_JSON_SCHEMA, millimetres,
     weave::{Rings, Weave, WeaveError},
 };
 use miette::{Report, Result, miette};

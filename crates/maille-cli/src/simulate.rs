@@ -201,9 +201,6 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         .out
         .clone()
         .unwrap_or_else(|| PathBuf::from("maille-out").join(file_name(&input.design.name) + "-simulate"));
-    for folder in [Some(&out), args.frames.as_ref()].into_iter().flatten() {
-        args.replace.check(&folder.join(SIMULATION[0]))?;
-    }
     let tile = tile(args, &input)?;
     let [m, n] = tile.0.map(|k| i32::try_from(k).unwrap_or(i32::MAX));
     let cells = Cell::new([[m, 0], [0, n]]).map_err(|e| refused(InvalidInput { field: "tile".into(), ..e }))?;
@@ -212,6 +209,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let setup = plan.setup(&model).map_err(refused)?;
     let folder = SimulationFolder::open(&out)?;
     let frames = args.frames.as_ref().map(|folder| SimulationFolder::open(folder)).transpose()?;
+    for folder in [Some(&out), args.frames.as_ref()].into_iter().flatten() {
+        args.replace.check(&folder.join(SIMULATION[0]))?;
+    }
     let begun = Instant::now();
     let mut all = Vec::new();
     let progress = Spinner::new(args.quiet);

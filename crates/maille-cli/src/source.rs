@@ -20,7 +20,8 @@ use maille::{
     survey::CellChoice,
 };
 use maille_io::{
-    Tile, record::{Record, SIMULATION, SimulationFiles, open_simulation},
+    Tile,
+    record::{Record, SIMULATION, SimulationFiles, open_simulation},
     roll::{ROLL, Roll, open_rolls},
 };
 use miette::{Report, Result};

@@ -11,7 +11,6 @@ use super::{
     scene::Scene,
     torus::{Fineness, MOST, Segments, polygon},
 };
-use maille_io::Tile;
 use maille::{
     lattice::Shift,
     model::Model,
@@ -19,6 +18,7 @@ use maille::{
     topology::{self, RingPair},
 };
 use maille_geometry::Vec3;
+use maille_io::Tile;
 
 /// Rings whose meshes are closer to each other than a printer can keep apart. Lengths in millimetres.
 #[derive(Clone, Debug, PartialEq)]

@@ -217,8 +217,8 @@ fn frames(sections: &[Section], length: Option<f64>) -> Vec<[Vec3; 2]> {
 mod tests {
     use super::*;
     use crate::Scene;
-    use maille_io::{Tile, read_design};
     use maille::{Cell, model::Model};
+    use maille_io::{Tile, read_design};
     use std::{
         collections::{BTreeSet, HashMap},
         f64::consts::PI,

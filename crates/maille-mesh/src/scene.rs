@@ -5,13 +5,13 @@ use super::{
     error::MeshError,
     torus::{Fineness, TorusMesh},
 };
-use maille_io::Tile;
 use maille::{
     model::{Model, Ring},
     record::{ContactRecord, StateRecord},
     state::{Pose, Roll, State},
 };
 use maille_geometry::Vec3;
+use maille_io::Tile;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
 /// Most rings of one export.

@@ -7,9 +7,7 @@ use maille::{
     state::State,
 };
 use maille_geometry::Vec3;
-use maille_io::{
-    Tile,
-    };
+use maille_io::Tile;
 use maille_mesh::{Fineness, Kind, Scene, state_of};
 use maille_render::{ColorBy, Extent, Forces, RenderOptions, Subject, View, render};
 use nalgebra::Isometry3;

@@ -86,7 +86,7 @@ fn scene(
     design: &maille::design::Design,
 ) -> Result<File, Refusal> {
     let format = Format::of_ending(&request.format).ok_or_else(|| Refusal::wrong("there is no such format", ""))?;
-    let mm = design.unit.as_deref().and_then(maille_mesh::millimetres).unwrap_or(1.0);
+    let mm = design.unit.as_deref().and_then(maille_io::millimetres).unwrap_or(1.0);
     let fineness = Fineness::Tolerance(0.01 * design.reference_radius);
     let wrong = |e: maille_mesh::MeshError| Refusal::wrong(e.to_string(), "take a smaller tile");
     let mut scene = Scene::new(model, state, Tile(request.tile), fineness, mm).map_err(wrong)?;

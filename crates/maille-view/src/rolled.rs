@@ -6,9 +6,7 @@ use crate::{
     sheet::{sheet, tolerant},
 };
 use maille::{error::InvalidInput, lattice::Cell, model::Model, record::pose_records, relaxation::simulate::End};
-use maille_io::{
-    roll::{Roll, RollRecordFile},
-};
+use maille_io::roll::{Roll, RollRecordFile};
 
 /// Cells of a piece along a1 and a2, and of a chain.
 const PIECE: [i32; 2] = [4, 4];

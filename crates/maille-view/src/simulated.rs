@@ -11,7 +11,7 @@ use maille::{
     model::Model,
     record::{ForceRow, StateRecord},
 };
-use maille_io::{record::SimulationFiles};
+use maille_io::record::SimulationFiles;
 
 /// Poses of all frames that are sent, at most.
 const MOST_POSES: usize = 200_000;

@@ -7,9 +7,7 @@ use crate::{
     source::Source,
 };
 use maille::{state::State, topology};
-use maille_io::{
-    Tile,
-    };
+use maille_io::Tile;
 use maille_mesh::{Format, Scene};
 use miette::{Report, Result};
 

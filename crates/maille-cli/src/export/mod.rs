@@ -18,9 +18,7 @@ use crate::{
 use advice::{fuse, gaps, large, size, summary};
 use destination::{Destination, FormatArg, destination, with_ending};
 use maille::{design::Design, topology};
-use maille_io::{
-    Tile,
-    };
+use maille_io::Tile;
 use maille_mesh::{Colours, Fineness, MeshFile, Objects, Scene, TorusMesh, WriteOptions};
 use miette::Result;
 use std::{
@@ -153,7 +151,7 @@ fn millimetres(args: &Args, unit: Option<&str>, note: impl Fn(String)) -> f64 {
         (None, None) => {
             assumed("the design names no unit: one unit of the file becomes 1 mm (change it with --scale)".into())
         }
-        (None, Some(unit)) => maille_mesh::millimetres(unit).unwrap_or_else(|| {
+        (None, Some(unit)) => maille_io::millimetres(unit).unwrap_or_else(|| {
             assumed(format!("the unit \"{unit}\" is not known: one becomes 1 mm (change it with --scale)"))
         }),
     }

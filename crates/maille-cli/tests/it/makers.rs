@@ -117,7 +117,6 @@ fn no_file_is_replaced_unasked() {
         ("roomiest 1.1 --starts 1 --save r.toml", "r.toml"),
         ("tightest european-4-in-1 --starts 2 --save w.toml", "w.toml"),
         ("prove 2 --direction 0 --at-most 9 --out p.proof", "p.proof"),
-        ("simulate 1.1 --tile 1x1 --gravity 0,0,-1 --floor -3 --out sim", "sim/simulation.json"),
     ] {
         let path = folder.join(file);
         fs::create_dir_all(path.parent().unwrap()).unwrap();

@@ -48,7 +48,7 @@ pub enum RecordError {
         difference: String,
     },
     /// The folder holds files, but no record.
-    #[error("{} is not empty and holds no record of maille (found {found})", folder.display())]
+    #[error("{} is not empty and holds no record that this command continues (found {found})", folder.display())]
     NotARecord {
         /// The folder.
         folder: PathBuf,

@@ -58,14 +58,16 @@ impl FolderLock {
     }
 }
 
-/// Keys of which each file that marks a folder has one near its beginning.
-const KEYS: [&str; 3] = ["\"schema\"", "\"program_version\"", "\"poses\""];
+/// Keys of which each file that marks a folder has one.
+const KEYS: [&str; 3] = ["\"program_version\"", "\"outcome\"", "\"poses\""];
+/// They are sought in so many bytes.
+const HEAD: u64 = 1 << 20;
 
 /// Whether a folder is there, or a file that a run has begun.
 fn is_of_maille(mark: &Path) -> bool {
     let begins = || -> std::io::Result<bool> {
         let mut head = Vec::new();
-        File::open(mark)?.take(400).read_to_end(&mut head)?;
+        File::open(mark)?.take(HEAD).read_to_end(&mut head)?;
         let text = String::from_utf8_lossy(&head);
         Ok(text.is_empty() || KEYS.iter().any(|key| text.contains(key)))
     };

@@ -1,10 +1,8 @@
 //! What other programs read in the exported meshes: trimesh, lib3mf, VTK and the glTF validator (`tests/foreign`).
 
-use crate::common::foreign::{checkers, installed, python, run};
+use crate::programs::{checkers, installed, python, run};
 use maille::{lattice::Cell, model::Model, record::ContactRecord};
-use maille_io::{
-    Tile,
-    };
+use maille_io::Tile;
 use maille_mesh::{Colours, Fineness, Format, MeshFile, Objects, Scene, TorusMesh, WriteOptions, between, write_pvd};
 use serde_json::{Value, json};
 use std::{

@@ -8,10 +8,11 @@ use maille::{
     state::State,
 };
 use maille_geometry::{Circle, Vec3, point_circle_distance};
-use maille_io::{
-    Tile,
-    };
-use maille_mesh::{ Colours, Fineness, Format, MeshError, MeshFile, Objects, Scene, Segments, WriteOptions, between, smallest_clearance, state_of, too_close, write_pvd};
+use maille_io::Tile;
+use maille_mesh::{
+    Colours, Fineness, Format, MeshError, MeshFile, Objects, Scene, Segments, WriteOptions, between,
+    smallest_clearance, state_of, too_close, write_pvd,
+};
 use nalgebra::{Isometry3, Matrix4, Point3, Quaternion, Translation3, UnitQuaternion};
 use serde_json::Value;
 use std::{

@@ -90,8 +90,7 @@ fn pull_apart(model: &Model, stretch: &Stretch, from: Start, cancel: &AtomicBool
     let pull = stretch.family(model);
     let program = SheetProgram::new(model, &pull);
     let mut x = program.posed(state, p);
-    let is_free =
-        |state: &State| comes_apart(model, state, stretch.direction) && topology::links_kept(model, state);
+    let is_free = |state: &State| comes_apart(model, state, stretch.direction) && topology::links_kept(model, state);
     // Cells may be apart as they are written; what touches is not looked at by that.
     if topology::smallest_gap(model, &x.state).is_none_or(|(gap, _)| gap >= 0.0) && is_free(&x.state) {
         return (Some(Separated { state: x.state, p: x.p }), iterations);

@@ -11,7 +11,8 @@ pub const MOST_THREADS: usize = 1024;
 /// # Errors
 /// For none and for more than [`MOST_THREADS`], and where the system does not start them.
 pub fn thread_pool(threads: Option<usize>) -> Result<ThreadPool, InvalidInput> {
-    let wrong = |problem: String| InvalidInput::new("threads", problem, format!("give a number from 1 to {MOST_THREADS}"));
+    let wrong =
+        |problem: String| InvalidInput::new("threads", problem, format!("give a number from 1 to {MOST_THREADS}"));
     if let Some(n) = threads.filter(|n| !(1..=MOST_THREADS).contains(n)) {
         return Err(wrong(format!("{n} threads cannot be started")));
     }

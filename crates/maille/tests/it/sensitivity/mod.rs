@@ -76,9 +76,7 @@ fn a_taut_chain_without_force_bounds_the_other_side() {
 /// the best of them. So both sides are the same whichever of them was found, and the value rises to both sides.
 #[test]
 fn images_of_a_limit_tie() {
-    for (name, direction, l2, ties) in
-        [("3.4-chapter6", 33.0, -0.05, 18), ("2-chapter6", 0.0, -0.05, 2)]
-    {
+    for (name, direction, l2, ties) in [("3.4-chapter6", 33.0, -0.05, 18), ("2-chapter6", 0.0, -0.05, 2)] {
         let design = builtin(name);
         let asked = stretch(direction, l2);
         let found = |seed: u64| {
