@@ -5,7 +5,7 @@ use std::{collections::BTreeSet, path::Path, process::Command};
 
 /// Where the features are chosen.
 const CHOICE: &str = "crates/maille-features/Cargo.toml";
-/// What is built beside the tests of the whole workspace.
+/// What is built beside the tests of the whole workspace but this program.
 const BUILDS: [&[&str]; 3] =
     [&["--package", "maille-py"], &["--package", "maille-cli"], &["--package", "maille-cli", "--features", "view"]];
 /// Its own features may differ.
@@ -22,7 +22,7 @@ pub fn check(root: &Path) -> Vec<Finding> {
         };
         Ok(libraries.difference(all).filter(|library| !library.starts_with(TOP)).map(problem).collect())
     };
-    let found = libraries(root, "normal,build,dev", &["--workspace"])
+    let found = libraries(root, "normal,build,dev", &["--workspace", "--exclude", "xtask"])
         .and_then(|all| BUILDS.iter().map(|build| other(&all, build)).collect::<Result<Vec<_>, _>>());
     found.map_or_else(|problem| vec![Finding::new(CHOICE, 0, problem)], |found| found.concat())
 }

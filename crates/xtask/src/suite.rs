@@ -91,10 +91,15 @@ fn tests(root: &Path, own: &Path, found: &Found, kind: Kind) -> Vec<Step> {
         (Kind::All, true) => ("all Rust tests", &["--run-ignored", "all"]),
         (Kind::All, false) => ("all Rust tests", &["--", "--include-ignored"]),
     };
-    // Without examples, which are programs of their own: clippy compiles them.
+    // Without examples, which are programs of their own: clippy compiles them. Without this program: cargo compiles a library
+    // of macros once more where a program uses it too, and with it all that is made by macros.
     let all: &[&str] = match found.node.is_ok() {
-        true => &["--workspace", "--features", "maille-cli/view"],
-        false => &["--workspace"],
+        true => &["--workspace", "--exclude", "xtask", "--features", "maille-cli/view"],
+        false => &["--workspace", "--exclude", "xtask"],
+    };
+    let own_profile: &[&str] = match found.nextest {
+        true => &["--package", "xtask", "--cargo-profile", "xtask"],
+        false => &["--package", "xtask", "--profile", "xtask"],
     };
     let mut out = vec![
         own_step("Python environment").cores(0).lacking(&found.python),
@@ -102,6 +107,7 @@ fn tests(root: &Path, own: &Path, found: &Found, kind: Kind) -> Vec<Step> {
         own_step("Chromium").cores(0).lacking(&found.browser),
         // The viewer has the page inside.
         cargo("build", &[build, all, &["--tests", "--no-run"]]).cores(2).after(&["page"]),
+        cargo("tests of xtask", &[run, own_profile, &["--no-fail-fast"]]).after(&["build"]).tests(runner),
         own_step("wheel").cores(2).needs(&["Python environment"]).after(&["build"]),
         own_step("types of the page").cores(0).needs(&["page"]),
         own_step("Python tests").needs(&["wheel", "build"]).tests(Runner::Pytest),

@@ -242,7 +242,10 @@ fn files_of_others_are_never_replaced() {
 
         fs::remove_file(dir.path().join("run.json")).unwrap();
         let found = message(open(dir.path(), &json!({}), overwrite));
-        assert!(found.ends_with("is not empty and holds no record that this command continues (found limits.csv)"), "{found}");
+        assert!(
+            found.ends_with("is not empty and holds no record that this command continues (found limits.csv)"),
+            "{found}"
+        );
 
         let file = dir.path().join("limits.csv");
         assert!(matches!(open(&file, &json!({}), overwrite), Err(RecordError::Io { action: "create", .. })));
