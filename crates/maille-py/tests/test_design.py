@@ -1,5 +1,6 @@
 """Designs: read, made, varied, saved; and what is wrong with them."""
 
+import sys
 from pathlib import Path
 
 import numpy as np

@@ -358,7 +358,7 @@ impl Design {
         out.add("minor_radius", format!("{r} is not smaller than {of}"), &help);
     }
 
-    /// A reference radius far from the size of everything is a typing error: tolerances, gaps and pictures are relative to it.
+    /// A reference radius far above the size of everything is a typing error: tolerances, gaps and pictures are relative to it.
     fn add_problem_of_reference(&self, out: &mut Problems) {
         let largest = |sizes: &mut dyn Iterator<Item = f64>| sizes.fold(0.0, f64::max);
         let of_rings = largest(&mut self.elements.iter().flat_map(|e| &e.rings).map(|ring| ring.major_radius));
@@ -367,9 +367,8 @@ impl Design {
             true => (of_rings, "the largest major_radius"),
             false => (of_curves, "the largest length of a curve"),
         };
-        let ratio = self.reference_radius / size;
-        if is_positive(size) && !(1.0 / REFERENCE_RATIO..=REFERENCE_RATIO).contains(&ratio) {
-            let problem = format!("{} is far from {what}, {size}", self.reference_radius);
+        if is_positive(size) && self.reference_radius > REFERENCE_RATIO * size {
+            let problem = format!("{} is far above {what}, {size}", self.reference_radius);
             out.add("reference_radius", problem, "give the major radius of a ring: tolerances are relative to it");
         }
     }
@@ -475,7 +474,7 @@ impl Design {
     }
 }
 
-/// The reference radius is at most so many times the largest size of a design, and at least its inverse.
+/// The reference radius is at most so many times the largest size of a design.
 const REFERENCE_RATIO: f64 = 100.0;
 
 const WIRE_RADIUS: &str = "give the wire's radius (half of its diameter)";

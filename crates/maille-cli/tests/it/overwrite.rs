@@ -32,7 +32,7 @@ const FILES: [&str; 11] = [
 ];
 
 const STUDY: &str = "directions = [0]\nl2 = [0]\ncell = \"1x1\"\n[[designs]]\ndesign = \"1.1\"\n";
-const TARGETS: &str = "direction,l1\n0,0.44\n";
+const TARGETS: &str = "direction_deg,l1\n0,0.44\n";
 
 /// Every name that one of these commands writes in its folder, and one that none does.
 const NAMES: [&str; 23] = [

@@ -129,7 +129,7 @@ impl RecordFolder {
         overwrite: bool,
     ) -> Result<(Self, Vec<LimitRow>, Vec<StateRecord>), RecordError> {
         let run = RunRecord::new(design, parameters, program_version);
-        let lock = FolderLock::take(path, &[RUN])?;
+        let lock = FolderLock::take(path, &[RUN, STATES, JOURNAL])?;
         let found = names(path)?;
         let mut folder = Self { path: path.to_owned(), run, journal: None, _lock: lock };
         if !found.is_empty() {

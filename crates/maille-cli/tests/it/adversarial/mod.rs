@@ -315,8 +315,8 @@ fn elements_over_more_cells_than_can_be_listed_are_refused() {
     assert!(wide.said.contains("the rings of \"e0\" reach 1.0e11 R from its center"), "{}", wide.said);
     let narrow = answer(&grid(1e-9, 1e-10, 1.0, 0.0, 0.0), "0");
     assert_eq!(narrow.codes, (3, None), "{}", narrow.said);
-    let away = [([0.0; 3], Z, 1e-3, Some(1e-4)), ([3e3, 0.0, 0.0], X, 1e-3, Some(1e-4))];
-    let away = answer(&design([[3e-3, 0.0, 0.0], [0.0, 3e-3, 0.0]], 0.1, 1.0, &away), "0");
+    let away = [([0.0; 3], Z, 4e-3, Some(1e-4)), ([3e3, 0.0, 0.0], X, 4e-3, Some(1e-4))];
+    let away = answer(&design([[3e-3, 0.0, 0.0], [0.0, 3e-3, 0.0]], 0.1, 0.35, &away), "0");
     assert_eq!(away.codes, (3, None));
     assert!(away.said.contains("\"e1\" lies 1.0e6 cells from the first element"), "{}", away.said);
 }
