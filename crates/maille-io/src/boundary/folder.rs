@@ -1,7 +1,7 @@
 //! A surface as a record: `surface.json` says what it is of and how its rays are joined, `surface.jsonl` has a state for each
 //! row of `boundary.csv`. The journal has ends of rays as they were found first; neighbours can have handed on better ones.
 
-use super::journal::BoundaryHead;
+use super::journal::{BoundaryHead, SURFACE};
 use crate::record::{RecordError, sha256};
 use maille::{
     design::Design,
@@ -10,8 +10,6 @@ use maille::{
 use serde::{Deserialize, Serialize};
 use std::{collections::BTreeMap, fs, path::Path};
 
-/// Name of the file, and of the table.
-pub const SURFACE: &str = "surface.json";
 /// Name of the file of states.
 pub const SURFACE_STATES: &str = "surface.jsonl";
 const TABLE: &str = "boundary.csv";

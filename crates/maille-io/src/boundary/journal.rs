@@ -17,6 +17,8 @@ use std::{fs, path::Path};
 
 /// Name of the file.
 const JOURNAL: &str = "boundary.jsonl";
+/// Name of the file that says what a surface is of.
+pub const SURFACE: &str = "surface.json";
 
 /// First line of a journal.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -88,7 +90,7 @@ impl SurfaceFolder {
         head: &BoundaryHead,
         overwrite: bool,
     ) -> Result<(Self, Vec<BoundaryVertex>), RecordError> {
-        let lock = FolderLock::take(folder, &[JOURNAL, super::folder::SURFACE])?;
+        let lock = FolderLock::take(folder, &[JOURNAL, SURFACE])?;
         let path = folder.join(JOURNAL);
         let mut known = Vec::new();
         if !overwrite && path.exists() {

@@ -132,30 +132,28 @@ impl RecordFolder {
         let lock = FolderLock::take(path, &[RUN, STATES, JOURNAL])?;
         let found = names(path)?;
         let mut folder = Self { path: path.to_owned(), run, journal: None, _lock: lock };
-        if !found.is_empty() {
-            if !overwrite {
-                let record = Record::read(path)?;
-                folder.same_inputs(&record.run)?;
-                for name in [LIMITS, STATES, SENSITIVITIES] {
-                    if let Some(text) = read_if_there(&path.join(name))? {
-                        folder.run.files.insert(name.to_owned(), vec![sha256(text.as_bytes())]);
-                    }
+        if !found.is_empty() && !overwrite {
+            let record = Record::read(path)?;
+            folder.same_inputs(&record.run)?;
+            for name in [LIMITS, STATES, SENSITIVITIES] {
+                if let Some(text) = read_if_there(&path.join(name))? {
+                    folder.run.files.insert(name.to_owned(), vec![sha256(text.as_bytes())]);
                 }
-                let (mut rows, mut states) = record.finished();
-                let journal = path.join(JOURNAL);
-                if journal.exists() {
-                    for Limit { row, state } in journal::read::<Limit<LimitRow, StateRecord>>(&journal)? {
-                        let known = |r: &LimitRow| (r.direction_deg, r.l2) == (row.direction_deg, row.l2);
-                        if row.status != Status::Interrupted && !rows.iter().any(known) {
-                            rows.push(row);
-                            states.push(state);
-                        }
-                    }
-                    folder.write(&rows, &states)?;
-                }
-                folder.run.counters = Counters::of(&rows);
-                return Ok((folder, rows, states));
             }
+            let (mut rows, mut states) = record.finished();
+            let journal = path.join(JOURNAL);
+            if journal.exists() {
+                for Limit { row, state } in journal::read::<Limit<LimitRow, StateRecord>>(&journal)? {
+                    let known = |r: &LimitRow| (r.direction_deg, r.l2) == (row.direction_deg, row.l2);
+                    if row.status != Status::Interrupted && !rows.iter().any(known) {
+                        rows.push(row);
+                        states.push(state);
+                    }
+                }
+                folder.write(&rows, &states)?;
+            }
+            folder.run.counters = Counters::of(&rows);
+            return Ok((folder, rows, states));
         }
         for step in folder.steps_to_replace() {
             folder.apply(step)?;

@@ -247,7 +247,6 @@ fn the_surface_is_that_of_its_rays_and_goes_on() {
 
 /// With room a finer tolerance goes on, and no ray ends earlier.
 #[test]
-#[ignore = "a minute"]
 fn a_surface_is_made_finer() {
     let model = model("1.1");
     let (coarse, ..) = surface(&model, 0.05, 200, &[]);
