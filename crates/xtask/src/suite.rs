@@ -107,8 +107,9 @@ fn tests(root: &Path, own: &Path, found: &Found, kind: Kind) -> Vec<Step> {
         own_step("Chromium").cores(0).lacking(&found.browser),
         // The viewer has the page inside.
         cargo("build", &[build, all, &["--tests", "--no-run"]]).cores(2).after(&["page"]),
-        cargo("tests of xtask", &[run, own_profile, &["--no-fail-fast"]]).after(&["build"]).tests(runner),
         own_step("wheel").cores(2).needs(&["Python environment"]).after(&["build"]),
+        // Not before the wheel, which takes both cores and would wait for what takes the other.
+        cargo("tests of xtask", &[run, own_profile, &["--no-fail-fast"]]).after(&["build", "wheel"]).tests(runner),
         own_step("types of the page").cores(0).needs(&["page"]),
         own_step("Python tests").needs(&["wheel", "build"]).tests(Runner::Pytest),
         cargo("documentation examples", &[&["test"], all, &["--doc", "--no-fail-fast"]])
