@@ -110,7 +110,7 @@ fn check(name: &str, settings: &[Setting]) -> Result<Found, Report> {
         elements: model.elements.len(),
         rings: model.rings.len(),
         links: model.links.len(),
-        smallest_gap: topology::smallest_gap(&model, &model.start).map(|(gap, _)| gap * model.unit),
+        smallest_gap: model.starting_gap().map(|(gap, _)| gap),
         bound: !topology::binding_vectors(&model).is_empty(),
         design: input.design.name,
         unit: input.design.unit,
@@ -127,9 +127,8 @@ fn line(name: &str, warning: &ListedProblem) -> String {
 fn words(found: &Found) -> String {
     let unit = found.unit.as_ref().map_or(String::new(), |u| format!(" {u}"));
     let gap = match found.smallest_gap {
-        // What six decimals show as nothing is the rounding of rings that touch.
-        Some(gap) if gap < -5e-7 => format!(", overlap {:.6}{unit} (allowed by the file)", -gap),
-        Some(gap) => format!(", smallest gap {:.6}{unit}", gap.max(0.0)),
+        Some(gap) if gap < 0.0 => format!(", overlap {:.6}{unit} (allowed by the file)", -gap),
+        Some(gap) => format!(", smallest gap {gap:.6}{unit}"),
         None => String::new(),
     };
     let warnings = match found.warnings.len() {

@@ -294,10 +294,8 @@ impl Found<'_> {
             say!("  smallest gap    {gap:.9}{unit}{}", mm.map_or(String::new(), |mm| format!(" ({:.6} mm)", gap * mm)));
         }
         if self.what.clearance(found, self.model()).is_some_and(|gap| gap < 0.0) {
-            say!(
-                "  no start led to a state without overlap, which proves nothing: try --effort thorough, --lattice free, thinner"
-            );
-            say!("  wire or a larger inner diameter");
+            say!("  the rings overlap: no start led to a state without overlap, which proves nothing");
+            say!("  try --effort thorough, --lattice free, thinner wire or a larger inner diameter");
         }
         for size in self.what.sizes(found, self.model()) {
             let Size { major_radius, minor_radius } = size;

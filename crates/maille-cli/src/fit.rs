@@ -23,7 +23,7 @@ use maille::{
 use maille_io::{
     Tile,
     fit::{self, FIT, FitRecord, FitRequest, FreeSpec, fitted_design, read_targets},
-    record::{FolderLock, RecordError},
+    record::{FolderLock, Mark, RecordError},
 };
 use miette::{IntoDiagnostic, Report, Result, WrapErr};
 use std::{
@@ -197,7 +197,7 @@ fn one(
 ) -> Result<(FitRecord, bool)> {
     let request = request(args, input, free, targets)?;
     output::folder(out, "a fit is a folder")?;
-    let lock = FolderLock::take(out, &[FIT])?;
+    let lock = FolderLock::take(out, &[Mark::File(FIT, &["schema", "request", "outcome"])])?;
     let earlier = fit_record::earlier(out, &request, args.overwrite)?;
     let record = match earlier {
         Some(record) if record.is_final(&request) => record,

@@ -202,6 +202,12 @@ pub fn warn(model: &Model) {
 const MOST: usize = 6;
 
 fn of_change(changed: &str, problems: &[InvalidInput]) -> Report {
+    // A name that the design has not is wrong with any value.
+    if let [InvalidInput { field, problem, help }] = problems
+        && field == "vary"
+    {
+        return wrong(exit::DESIGN, format!("vary: {problem}"), help.clone());
+    }
     let mut list: Vec<String> = problems.iter().take(MOST).map(|p| format!("  {}: {}", p.field, p.problem)).collect();
     list.extend((problems.len() > MOST).then(|| format!("  … and {} more", problems.len() - MOST)));
     let overlap = problems.iter().any(|p| p.help.contains(OVERLAP_FIELD));

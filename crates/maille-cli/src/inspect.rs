@@ -247,8 +247,8 @@ fn inspection(input: &Input, model: &Model, args: &Args) -> Result<Inspection> {
             })
             .collect(),
     };
-    let gap = topology::smallest_gap(model, &model.start).map(|(gap, pair)| Gap {
-        gap: gap * model.unit,
+    let gap = model.starting_gap().map(|(gap, pair)| Gap {
+        gap,
         rings: [ring_name(model, pair.ring_a, [0, 0]), ring_name(model, pair.ring_b, pair.shift)],
     });
     let binding_vectors = topology::binding_vectors(model);

@@ -4,7 +4,7 @@ use crate::exit::{self, wrong};
 use maille::survey::surface::Boundary;
 use maille_io::{
     boundary::{SURFACE, SurfaceRecord, open_surface},
-    record::{NamedRecord, Record},
+    record::{NamedRecord, RECORDS, Record},
     roll::{ROLL, ROLLS, Roll, RollRecordFile, open_rolls},
 };
 use miette::Result;
@@ -91,7 +91,7 @@ pub fn name(folder: &Path) -> String {
 pub fn of_sweep(folder: PathBuf) -> Vec<PathBuf> {
     let inside = match holds_record(&folder) {
         true => None,
-        false => std::fs::read_dir(folder.join("records")).ok(),
+        false => std::fs::read_dir(folder.join(RECORDS)).ok(),
     };
     let mut records: Vec<PathBuf> = inside.into_iter().flatten().flatten().map(|entry| entry.path()).collect();
     records.retain(|path| holds_record(path));

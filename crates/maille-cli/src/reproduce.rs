@@ -9,15 +9,15 @@ use crate::{
 };
 use maille::design::Design;
 use maille_chapter6::{Chosen, DESIGNS, Planned, Verdict, plan, report};
-use maille_io::{DesignSource, chapter6, record::FolderLock};
+use maille_io::{
+    DesignSource, chapter6,
+    record::{FolderLock, Mark, RECORDS},
+};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use std::{
     path::{Path, PathBuf},
     process::ExitCode,
 };
-
-/// The folder of the records.
-const RECORDS: &str = "records";
 
 /// Chapter 6 of the thesis computed anew, as one page
 ///
@@ -67,7 +67,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     output::folder(&out, "a folder is written")?;
     let plan = plan(&chosen, args.quick, &out.join(RECORDS)).map_err(|e| miette!("{e:?}"))?;
     // Records that are there are continued; what they have been made into is made again.
-    let _lock = FolderLock::take(&out, &[RECORDS])?;
+    let _lock = FolderLock::take(&out, &[Mark::Records])?;
     let open = |p: &Planned| map::open(&p.map, &Input::of(p.design.clone()));
     let open = plan.iter().map(|p| Ok((p.name.as_str(), open(p)?))).collect::<Result<Vec<_>>>()?;
     let Solved { tally: Tally { there, now, unanswered }, total, interrupted, .. } =

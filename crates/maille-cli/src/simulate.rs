@@ -207,6 +207,10 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let model = input.compile_sheet(&input.design, cells)?;
     let plan = plan(args)?;
     let setup = plan.setup(&model).map_err(refused)?;
+    if args.frames.as_ref() == Some(&out) {
+        let problem = format!("--frames and --out name the same folder, {}", out.display());
+        return Err(wrong(exit::USAGE, problem, "name another folder for all states"));
+    }
     let folder = SimulationFolder::open(&out)?;
     let frames = args.frames.as_ref().map(|folder| SimulationFolder::open(folder)).transpose()?;
     for folder in [Some(&out), args.frames.as_ref()].into_iter().flatten() {

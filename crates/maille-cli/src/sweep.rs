@@ -9,7 +9,7 @@ use crate::{
 };
 use maille_io::{
     builtin,
-    record::{FolderLock, NamedRecord},
+    record::{FolderLock, Mark, NamedRecord, RECORDS},
     run::{Map, OpenMap},
     study::{Study, StudyDesign},
     table::{Field, Table},
@@ -116,7 +116,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         return Ok(ExitCode::from(exit::LEFT_OUT));
     }
     output::folder(&out, "a folder is written")?;
-    let _lock = FolderLock::take(&out, &["records"])?;
+    let _lock = FolderLock::take(&out, &[Mark::Records])?;
     let mut open: Vec<(&str, OpenMap)> = Vec::new();
     for planned in &maps {
         match map::open(&planned.map, &planned.input) {
@@ -217,7 +217,7 @@ fn plan(study: &Study, folder: &Path, out: &Path, overwrite: bool) -> Result<Pla
             }
             match input.varied(&variant) {
                 Ok(input) => {
-                    let map = of_study.map(Some(out.join("records").join(&name)), overwrite);
+                    let map = of_study.map(Some(out.join(RECORDS).join(&name)), overwrite);
                     plan.maps.push(Planned { name, input, map });
                 }
                 Err(report) => plan.unused.push((name, report)),

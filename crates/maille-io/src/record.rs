@@ -33,7 +33,7 @@ pub use folder::{NamedRecord, Record, RecordFolder, file_name};
 pub use forces::{BEND_COLUMN, FORCE_COLUMNS, ForceTable, PLACE_COLUMNS, read_forces, write_forces};
 pub(crate) use limits::csv_cell;
 pub use limits::{read_limits, write_limits};
-pub use lock::FolderLock;
+pub use lock::{FolderLock, Mark, RECORDS};
 pub use plan::{LoadedPlace, PulledPlace, SheetPlan};
 pub use reference::{Reference, ReferenceCell};
 pub(crate) use run::sha256;

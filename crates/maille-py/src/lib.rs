@@ -36,7 +36,7 @@ mod _native {
     #[pymodule_export]
     use crate::roll::rolls;
     #[pymodule_export]
-    use crate::simulate::{open_simulation, save_simulation, simulate};
+    use crate::simulate::{check_records_folder, check_simulation_folder, open_simulation, save_simulation, simulate};
     #[pymodule_export]
     use crate::study::{folder_name, study};
     #[pymodule_export]

@@ -13,8 +13,8 @@ use maille::{
 use maille_io::{
     Tile,
     record::{
-        ForceTable, SIMULATION, SheetPlan, SimulationFolder, SimulationRecord, read_forces, read_frames,
-        read_simulation, write_forces, write_frames, write_simulation,
+        FolderLock, ForceTable, Mark, SIMULATION, SheetPlan, SimulationFolder, SimulationRecord, read_forces,
+        read_frames, read_simulation, write_forces, write_frames, write_simulation,
     },
 };
 use pyo3::prelude::*;
@@ -80,4 +80,16 @@ pub fn save_simulation(folder: PathBuf, record: &str, frames: &str, forces: Opti
     let forces = forces.map(|text| read_forces(SIMULATION[2], text)).transpose().map_err(|e| error::record(&e))?;
     let folder = SimulationFolder::open(&folder).map_err(|e| error::record(&e))?;
     folder.save(record, &frames, forces.as_ref()).map_err(|e| error::record(&e))
+}
+
+/// Refuses a folder that no simulation may be written to, before one is computed.
+#[pyfunction]
+pub fn check_simulation_folder(folder: PathBuf) -> PyResult<()> {
+    SimulationFolder::open(&folder).map(drop).map_err(|e| error::record(&e))
+}
+
+/// The same of a folder of many records.
+#[pyfunction]
+pub fn check_records_folder(folder: PathBuf) -> PyResult<()> {
+    FolderLock::take(&folder, &[Mark::Records]).map(drop).map_err(|e| error::record(&e))
 }

@@ -196,6 +196,14 @@ def test_what_cannot_be_used_stops_nothing_else(client, tmp_path):
     assert sorted(path.name for path in (tmp_path / "records").iterdir()) == ["1.1", "3.1-r0.05"]
 
 
+def test_files_of_others_are_not_replaced(client, tmp_path):
+    (tmp_path / "limits.csv").write_text("mine\n")
+    with pytest.raises(maille.MailleError, match="holds no record"):
+        maille.dask.characterize("1.1", [0], [0.0], out=tmp_path, client=client, overwrite=True)
+    assert [file.name for file in tmp_path.iterdir()] == ["limits.csv"]
+    assert (tmp_path / "limits.csv").read_text() == "mine\n"
+
+
 def test_other_inputs_are_refused_or_replace_what_differs(client, tmp_path):
     first = maille.dask.characterize("1.1", [0, 45], [0.0], out=tmp_path, client=client)
     with pytest.raises(OtherInputsError, match="directions_deg"):

@@ -131,3 +131,10 @@ def test_a_sheet_is_bent_onto_a_surface():
     assert bent.end == "reached" and bent.forces["bend_force"][-1] < 0.1
     with pytest.raises(maille.ArgumentError, match="two curvatures"):
         maille.simulate("1.1", (3, 3), bend=(0.03,))
+
+
+def test_files_of_others_are_not_replaced(tmp_path):
+    (tmp_path / "forces.csv").write_text("mine\n")
+    with pytest.raises(maille.MailleError, match="holds no record"):
+        maille.simulate("1.1", (2, 1), fix="left", pull={"right": (3, 0, 0)}, steps=3, out=tmp_path)
+    assert [file.name for file in tmp_path.iterdir()] == ["forces.csv"] and (tmp_path / "forces.csv").read_text() == "mine\n"

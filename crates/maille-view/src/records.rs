@@ -2,7 +2,7 @@
 
 use crate::api::Listed;
 use maille_io::{
-    record::{Record, RecordError, SIMULATION, SimulationFiles, open_simulation},
+    record::{RECORDS, Record, RecordError, SIMULATION, SimulationFiles, open_simulation},
     roll::{ROLL, Roll, RollRecordFile, open_rolls},
     write_design,
 };
@@ -13,8 +13,6 @@ use std::{
 
 /// Where records are written unless a folder is named.
 pub const USUAL: &str = "maille-out";
-/// In a sweep's folder: the folder of its records.
-const OF_SWEEP: &str = "records";
 /// File that a record of limits has.
 const RUN: &str = "run.json";
 
@@ -94,7 +92,7 @@ fn within(name: String, path: PathBuf) -> Vec<(String, PathBuf)> {
     if holds(&path).is_some() {
         return vec![(name, path)];
     }
-    let records = folders(&slashed(&name, OF_SWEEP), &path.join(OF_SWEEP));
+    let records = folders(&slashed(&name, RECORDS), &path.join(RECORDS));
     records.into_iter().filter(|(_, path)| holds(path).is_some()).collect()
 }
 

@@ -24,7 +24,7 @@ const FILES: &str = "release-files";
 /// The profile of cargo that packages are built with: optimised across crates.
 const PROFILE: &str = "dist";
 /// Crates in the order in which they are published.
-const CRATES: &[&str] = &[
+pub const CRATES: &[&str] = &[
     "maille-geometry",
     "maille-features",
     "maille",

@@ -7,6 +7,7 @@ mod source;
 use crate::{
     atlas::TABLE,
     folder::{copy, copy_file, remove},
+    package,
     program::{self, cargo, done, installed, target},
     repository::Finding,
     view,
@@ -23,18 +24,8 @@ use std::{
 const MDBOOK: &str = "mdbook@0.5.4";
 /// What the reference pages and notebooks are made with, beside what the Python package is tested with.
 const LOCK: &str = "site/requirements.lock";
-/// Crates with a reference page.
-const CRATES: &[&str] = &[
-    "maille-geometry",
-    "maille",
-    "maille-verify",
-    "maille-prove",
-    "maille-io",
-    "maille-mesh",
-    "maille-render",
-    "maille-view",
-    "maille-chapter6",
-];
+/// Packed crates without a reference page: they are no libraries.
+const NO_LIBRARIES: [&str; 2] = ["maille-features", "maille-cli"];
 
 /// Limits of the viewers; of one cell and few starts, as the gallery of all designs must be made in minutes.
 const PULLS: &str =
@@ -139,7 +130,8 @@ fn reference(root: &Path, python: &Environment, site: &Path) -> Result<(), Strin
     let pdoc = ["-m", "pdoc", "maille", "!maille._native", "--docformat", "numpy", "-o"];
     python.run(python.python().args(pdoc).arg(site.join("python")), "make the reference of the Python package")?;
     let mut command = Command::new(cargo());
-    command.args(["doc", "--no-deps", "--locked"]).args(CRATES.iter().flat_map(|name| ["--package", name]));
+    let documented = package::CRATES.iter().filter(|name| !NO_LIBRARIES.contains(name));
+    command.args(["doc", "--no-deps", "--locked"]).args(documented.flat_map(|name| ["--package", name]));
     // A folder of its own: the other one may have pages of what is gone.
     let built = target(root).join("site/rust");
     remove(&built)?;

@@ -16,6 +16,23 @@ const FOLDERS: [&str; 9] = [
     "reproduce --only 1.1 --quick --out d",
 ];
 
+/// What looks like a mark of a run and is none, and a file that the command would replace.
+const LOOKS_LIKE: [(&str, &[(&str, &str)], &str); 5] = [
+    ("sweep study.toml --out d", &[("records/mine.txt", "x\n")], "limits.csv"),
+    ("reproduce --only 1.1 --quick --out d", &[("records/mine/run.json", "{\"schema\": 7}")], "index.html"),
+    ("roll 1.1 --directions 0 --axis below --out d --overwrite", &[("roll.json", "")], "rolls.csv"),
+    (
+        "simulate 1.1 --tile 2x1 --fix left --pull right=3,0,0 --steps 3 --out d --overwrite",
+        &[("frames.jsonl", "{\"robot\": 3, \"poses\": []}\n")],
+        "forces.csv",
+    ),
+    (
+        "boundary european-4-in-1 --vertices 162 --tolerance 0.5 --starts 1 --out d",
+        &[("surface.json", "{}")],
+        "boundary.csv",
+    ),
+];
+
 /// A command of each kind of file, written to `d/notes`. Without a format it is none, or that of its name.
 const FILES: [&str; 11] = [
     "new swatch --weave european-4-in-1 --wire 1.6mm --id 6.5mm --out d/notes",
@@ -89,6 +106,35 @@ fn folders_of_others_are_refused() {
             fs::remove_file(d.join(name)).unwrap();
         }
     }
+}
+
+#[test]
+fn what_looks_like_a_run_is_none() {
+    for (line, marks, name) in LOOKS_LIKE {
+        let folder = prepared();
+        let d = folder.path().join("d");
+        for (mark, text) in marks.iter().chain([&(name, "mine\n")]) {
+            fs::create_dir_all(d.join(mark).parent().unwrap()).unwrap();
+            fs::write(d.join(mark), text).unwrap();
+        }
+        let (code, _, text) = outcome(folder.path(), &format!("{line} --quiet"));
+        assert_eq!(code, 4, "{line}: {text}");
+        assert_eq!(fs::read_to_string(d.join(name)).unwrap(), "mine\n", "{line}");
+        assert_eq!(fs::read_dir(&d).unwrap().count(), 2, "{line}");
+    }
+}
+
+/// As a run is left that was killed in its first moment: nothing but folders and locks.
+#[test]
+fn a_folder_without_a_file_is_taken() {
+    let folder = prepared();
+    fs::create_dir_all(folder.path().join("d/records/1.1")).unwrap();
+    for lock in ["d/.maille.lock", "d/records/1.1/.maille.lock"] {
+        fs::write(folder.path().join(lock), "").unwrap();
+    }
+    let (code, _, text) = outcome(folder.path(), "sweep study.toml --out d --quiet");
+    assert_eq!(code, 0, "{text}");
+    assert!(folder.path().join("d/limits.csv").is_file());
 }
 
 #[test]

@@ -144,3 +144,16 @@ fn a_parameter_is_varied_by_its_name() {
     assert_eq!(wrong.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&wrong.stderr).contains("did you mean play?"));
 }
+
+/// A name that no element has keeps every variant from use: one error.
+#[test]
+fn one_mistake_is_said_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let study = "directions = [0]\nl2 = [0]\n[[designs]]\ndesign = \"1.1\"\n[designs.vary]\n\
+                 \"elements.nobody.rings.major_radius\" = [0.9, 1.0, 1.1]\n";
+    fs::write(folder.path().join("study.toml"), study).unwrap();
+    let ended = maille(folder.path(), "sweep study.toml");
+    let said = String::from_utf8_lossy(&ended.stderr).into_owned();
+    assert!(ended.status.code() == Some(6) && said.matches("could not be used").count() == 1, "{said}");
+    assert!(said.contains("and 2 others could not be used") && said.matches("nobody").count() <= 2, "{said}");
+}

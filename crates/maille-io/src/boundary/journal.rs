@@ -3,7 +3,7 @@
 use crate::{
     files,
     record::{
-        FolderLock, RecordError, input_hash,
+        FolderLock, Mark, RecordError, input_hash,
         journal::{Journal, line, parse, summed},
     },
 };
@@ -19,6 +19,8 @@ use std::{fs, path::Path};
 const JOURNAL: &str = "boundary.jsonl";
 /// Name of the file that says what a surface is of.
 pub const SURFACE: &str = "surface.json";
+/// Of both files.
+const KEYS: [&str; 2] = ["program_version", "input_hash"];
 
 /// First line of a journal.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -90,7 +92,7 @@ impl SurfaceFolder {
         head: &BoundaryHead,
         overwrite: bool,
     ) -> Result<(Self, Vec<BoundaryVertex>), RecordError> {
-        let lock = FolderLock::take(folder, &[JOURNAL, SURFACE])?;
+        let lock = FolderLock::take(folder, &[Mark::File(JOURNAL, &KEYS), Mark::File(SURFACE, &KEYS)])?;
         let path = folder.join(JOURNAL);
         let mut known = Vec::new();
         if !overwrite && path.exists() {

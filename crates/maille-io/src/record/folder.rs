@@ -18,7 +18,7 @@
 use super::error::RecordError;
 use super::journal::{self, Journal};
 use super::limits::{read_limits, write_limits};
-use super::lock::{FolderLock, names, some_names};
+use super::lock::{FolderLock, Mark, RUN_MARK, names, some_names};
 use super::run::{Counters, RunRecord, read_run, sha256, write_run};
 use super::sensitivities::{SensitivityRow, read_sensitivities, write_sensitivities};
 use super::states::{read_states, write_states};
@@ -39,6 +39,8 @@ const SVG: &str = "polar.svg";
 const PNG: &str = "polar.png";
 const SENSITIVITIES: &str = "sensitivities.csv";
 const JOURNAL: &str = "limits.journal";
+/// Where `run.json` was damaged the states still show whose the folder is.
+const MARKS: [Mark; 2] = [RUN_MARK, Mark::File(STATES, &["direction_deg", "status", "poses"])];
 
 /// A design's name as a file or folder: path separators and other odd characters become underscores.
 pub fn file_name(name: &str) -> String {
@@ -129,7 +131,7 @@ impl RecordFolder {
         overwrite: bool,
     ) -> Result<(Self, Vec<LimitRow>, Vec<StateRecord>), RecordError> {
         let run = RunRecord::new(design, parameters, program_version);
-        let lock = FolderLock::take(path, &[RUN, STATES, JOURNAL])?;
+        let lock = FolderLock::take(path, &MARKS)?;
         let found = names(path)?;
         let mut folder = Self { path: path.to_owned(), run, journal: None, _lock: lock };
         if !found.is_empty() && !overwrite {
@@ -363,6 +365,5 @@ struct Limit<R, S> {
     state: S,
 }
 
-/// What is in a folder, but for what a run needs while it writes.
 #[cfg(test)]
 mod tests;

@@ -22,15 +22,15 @@ pub struct FolderLock {
 
 impl FolderLock {
     /// Takes the right to write to a folder, which is created if it is not there, and removes what a killed run left half
-    /// written in it. `marks`: names of files or folders of which an earlier run of this kind has left one.
+    /// written in it. `marks`: an earlier run of this kind has left one of them.
     ///
     /// # Errors
     /// [`RecordError::NotARecord`] where files are there and none of the marks: nothing is written there, and nothing of
     /// others is ever replaced. [`RecordError::InUse`] if another run has the folder.
-    pub fn take(folder: &Path, marks: &[&str]) -> Result<Self, RecordError> {
+    pub fn take(folder: &Path, marks: &[Mark]) -> Result<Self, RecordError> {
         fs::create_dir_all(folder).map_err(RecordError::io("create", folder))?;
         let found = names(folder)?;
-        if !found.is_empty() && !marks.iter().any(|mark| is_of_maille(&folder.join(mark))) {
+        if !found.is_empty() && !marks.iter().any(|mark| mark.is_in(folder)) {
             return Err(RecordError::NotARecord { folder: folder.into(), found: some_names(&found) });
         }
         let path = folder.join(LOCK);
@@ -58,32 +58,55 @@ impl FolderLock {
     }
 }
 
-/// Keys of which each file that marks a folder has one.
-const KEYS: [&str; 3] = ["\"program_version\"", "\"outcome\"", "\"poses\""];
-/// They are sought in so many bytes.
-const HEAD: u64 = 1 << 20;
+/// Name of the folder of the records of a study.
+pub const RECORDS: &str = "records";
 
-/// Whether a folder is there, or a file that a run has begun.
-fn is_of_maille(mark: &Path) -> bool {
-    let begins = || -> std::io::Result<bool> {
-        let mut head = Vec::new();
-        File::open(mark)?.take(HEAD).read_to_end(&mut head)?;
-        let text = String::from_utf8_lossy(&head);
-        Ok(text.is_empty() || KEYS.iter().any(|key| text.contains(key)))
-    };
-    mark.is_dir() || begins().unwrap_or(false)
+/// What shows that a folder is that of an earlier run, so that its files may be replaced.
+#[derive(Clone, Copy, Debug)]
+pub enum Mark {
+    /// A file of this name with all these keys of JSON.
+    File(&'static str, &'static [&'static str]),
+    /// The folder [`RECORDS`] with the record of a map in it.
+    Records,
 }
 
-/// The names in a folder, without the lock and what a killed run left half written.
+/// The file of a map's record.
+pub(super) const RUN_MARK: Mark = Mark::File("run.json", &["schema", "program_version"]);
+/// Keys are sought in so many bytes.
+const HEAD: u64 = 1 << 20;
+
+impl Mark {
+    fn is_in(self, folder: &Path) -> bool {
+        match self {
+            Mark::File(name, keys) => has_keys(&folder.join(name), keys).unwrap_or(false),
+            Mark::Records => fs::read_dir(folder.join(RECORDS))
+                .is_ok_and(|entries| entries.flatten().any(|entry| RUN_MARK.is_in(&entry.path()))),
+        }
+    }
+}
+
+fn has_keys(file: &Path, keys: &[&str]) -> std::io::Result<bool> {
+    let mut head = Vec::new();
+    File::open(file)?.take(HEAD).read_to_end(&mut head)?;
+    let text = String::from_utf8_lossy(&head);
+    Ok(keys.iter().all(|key| text.contains(&format!("\"{key}\""))))
+}
+
+/// The names in a folder, without the lock, what a killed run left half written, and folders with nothing else in them.
 pub(super) fn names(folder: &Path) -> Result<Vec<String>, RecordError> {
     let read = || -> std::io::Result<Vec<String>> {
         let names = fs::read_dir(folder)?.map(|e| Ok(e?.file_name().to_string_lossy().into_owned()));
         let mut names = names.collect::<std::io::Result<Vec<_>>>()?;
-        names.retain(|name| name != LOCK && !is_temporary(name));
+        names.retain(|name| name != LOCK && !is_temporary(name) && !holds_nothing(&folder.join(name)));
         names.sort();
         Ok(names)
     };
     read().map_err(RecordError::io("read", folder))
+}
+
+/// Whether this is a folder without a file, as a run leaves it that was killed in its first moment.
+fn holds_nothing(folder: &Path) -> bool {
+    folder.is_dir() && names(folder).is_ok_and(|names| names.is_empty())
 }
 
 /// The first of some names.

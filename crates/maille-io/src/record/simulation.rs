@@ -5,7 +5,7 @@
 use super::{
     error::{RecordError, complete},
     forces::{ForceTable, read_forces, write_forces},
-    lock::FolderLock,
+    lock::{FolderLock, Mark},
     plan::SheetPlan,
     run::sha256,
 };
@@ -24,6 +24,11 @@ use std::{
 
 /// Names of the files of the record; the last one only where the frames are states at rest.
 pub const SIMULATION: [&str; 3] = ["simulation.json", "frames.jsonl", "forces.csv"];
+/// A run that is killed while it writes leaves frames alone.
+const MARKS: [Mark; 2] = [
+    Mark::File(SIMULATION[0], &["schema", "version", "outcome"]),
+    Mark::File(SIMULATION[1], &["share", "energy", "poses"]),
+];
 
 /// What was done to a finite sheet, and what came out.
 ///
@@ -113,7 +118,7 @@ impl SimulationFolder {
     /// # Errors
     /// Where it holds other files and no simulation, or another run has it.
     pub fn open(path: &Path) -> Result<Self, RecordError> {
-        Ok(SimulationFolder { path: path.to_owned(), _lock: FolderLock::take(path, &SIMULATION[..2])? })
+        Ok(SimulationFolder { path: path.to_owned(), _lock: FolderLock::take(path, &MARKS)? })
     }
 
     /// Writes a simulation in place of one that is there.
@@ -126,30 +131,21 @@ impl SimulationFolder {
         frames: &[FrameRecord],
         forces: Option<&ForceTable>,
     ) -> Result<(), RecordError> {
-        save(&self.path, record, frames, forces)
+        let [first, second, third] = SIMULATION.map(|name| self.path.join(name));
+        // A table of an earlier simulation is none of this one.
+        for path in [&first, &third].into_iter().filter(|path| path.exists()) {
+            fs::remove_file(path).map_err(RecordError::io("remove", path))?;
+        }
+        let texts = [
+            Some((second, write_frames(frames))),
+            forces.map(|table| (third, write_forces(table))),
+            Some((first, write_simulation(&record.sealed(frames, forces)))),
+        ];
+        for (path, text) in texts.into_iter().flatten() {
+            files::write(&path, text.as_bytes()).map_err(RecordError::io("write", &path))?;
+        }
+        Ok(())
     }
-}
-
-fn save(
-    folder: &Path,
-    record: SimulationRecord,
-    frames: &[FrameRecord],
-    forces: Option<&ForceTable>,
-) -> Result<(), RecordError> {
-    let [first, second, third] = SIMULATION.map(|name| folder.join(name));
-    // A table of an earlier simulation is none of this one.
-    for path in [&first, &third].into_iter().filter(|path| path.exists()) {
-        fs::remove_file(path).map_err(RecordError::io("remove", path))?;
-    }
-    let texts = [
-        Some((second, write_frames(frames))),
-        forces.map(|table| (third, write_forces(table))),
-        Some((first, write_simulation(&record.sealed(frames, forces)))),
-    ];
-    for (path, text) in texts.into_iter().flatten() {
-        files::write(&path, text.as_bytes()).map_err(RecordError::io("write", &path))?;
-    }
-    Ok(())
 }
 
 /// Reads a simulation from its folder.

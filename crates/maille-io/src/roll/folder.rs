@@ -4,7 +4,7 @@ use super::{Kind, Roll, RollKey, RollQuestion, rolls_csv};
 use crate::{
     files,
     record::{
-        FolderLock, RecordError, input_hash,
+        FolderLock, Mark, RecordError, input_hash,
         journal::{Journal, line, parse},
         sha256,
     },
@@ -21,6 +21,8 @@ pub const ROLLS: &str = "rolls.jsonl";
 /// Name of the table.
 pub const ROLLS_TABLE: &str = "rolls.csv";
 const SCHEMA: u32 = 1;
+/// Of both files.
+const KEYS: [&str; 2] = ["program_version", "input_hash"];
 
 /// `roll.json`: what the rolls of a folder are of.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -92,7 +94,7 @@ impl<'a> RollFolder<'a> {
         question: &RollQuestion,
         overwrite: bool,
     ) -> Result<(Self, Vec<Roll>), RecordError> {
-        let lock = FolderLock::take(folder, &[ROLL, ROLLS])?;
+        let lock = FolderLock::take(folder, &[Mark::File(ROLL, &KEYS), Mark::File(ROLLS, &KEYS)])?;
         let (path, head) = (folder.join(ROLLS), Head::new(design, question));
         let mut known = Vec::new();
         if !overwrite && path.exists() {

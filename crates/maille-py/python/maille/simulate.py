@@ -201,6 +201,8 @@ def simulate(
     }
     plan.update({name: _positive(name, x) for name, x in (("alpha", alpha), ("tau", tau)) if x is not None})
     columns, rows = _cells(tile)
+    if out is not None:
+        _native.check_simulation_folder(Path(out))
     with _Bar(progress, unit="step") as told:
         found = _native.simulate(chosen(design, minor_radius)._inner, (columns, rows), json.dumps(plan), told)
     simulation = Simulation._of(*found)

@@ -287,6 +287,13 @@ impl Model {
         out
     }
 
+    /// Smallest gap of the starting state in the design's unit, with its pair: 0 where rings touch, but for rounding.
+    pub fn starting_gap(&self) -> Option<(f64, topology::RingPair)> {
+        let (gap, pair) = topology::smallest_gap(self, &self.start)?;
+        let touches = gap.abs() <= ROUNDING;
+        Some((if touches { 0.0 } else { gap * self.unit }, pair))
+    }
+
     /// What keeps the starting state from use: cores that meet, because then there is no topology to keep, and overlaps that
     /// the design does not allow; of each one entry, at the first or the deepest.
     fn overlaps(&self, pairs: &[topology::RingPair], design: &Design) -> Vec<InvalidInput> {

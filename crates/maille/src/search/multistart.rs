@@ -11,7 +11,7 @@ use super::{
         LARGER_CELL_RESTARTS, OWN_IMAGE_FORCE, RESTARTS, SAME_VALUE, WIRE_PAUSE,
     },
     starts::{Start, Use, explored, perturbed, rng, tiled},
-    stop::{StopRule, WITHOUT_CERTIFICATE, better_chance},
+    stop::{StopRule, better_chance},
 };
 use crate::{
     answer::{Answer, CellTrend, WaveCurvature},
@@ -166,11 +166,7 @@ impl<T: Target> Multistart<'_, T> {
         let (mut given, mut drawn) = (given.into_iter(), 0);
         while !self.cancelled() && !result.attains(self.upper_bound) {
             let mut starts: Vec<Start> = given.by_ref().take(batch).collect();
-            let chance = match result.lacks_certificate() {
-                true => WITHOUT_CERTIFICATE,
-                false => result.better_chance(),
-            };
-            let left = rule.left(result.starts, chance, began.elapsed().as_secs_f64());
+            let left = rule.left(result.starts, result.chance_of_more(), began.elapsed().as_secs_f64());
             let found_twice = starts.is_empty() && result.times_of_best() > 1;
             let own = match rule.until_found_twice && (found_twice || !starts.is_empty()) {
                 true => 0,
@@ -335,9 +331,10 @@ impl SearchResult {
         self.distinct.iter().max_by(|a, b| a.0.total_cmp(&b.0)).map_or(0, |(_, times)| *times)
     }
 
-    /// Whether states were found, but none with a certificate.
-    fn lacks_certificate(&self) -> bool {
-        self.best.as_ref().is_some_and(|best| !best.certified)
+    /// The chance by which a search stops: states without a certificate are no reason to.
+    fn chance_of_more(&self) -> f64 {
+        let lacks_certificate = self.best.as_ref().is_some_and(|best| !best.certified);
+        if lacks_certificate { 1.0 } else { self.better_chance() }
     }
 
     /// The estimated chance that another start finds more.
@@ -427,4 +424,39 @@ pub(super) fn own_image_force(model: &Model, contacts: &[Contact]) -> f64 {
     let element = |ring: usize| model.rings[ring].element;
     let own = contacts.iter().filter(|c| element(c.pair.ring_a) == element(c.pair.ring_b));
     own.map(|c| c.force).fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{question::Effort, solver::certificate::Certificate};
+    use maille_geometry::Vec3;
+    use std::collections::BTreeSet;
+
+    fn found(certified: bool) -> SearchResult {
+        let state = State { poses: Vec::new(), a1: Vec3::x(), a2: Vec3::y(), roll: None };
+        let certificate = Certificate {
+            smallest_gap: 0.0,
+            dual_residual: if certified { 0.0 } else { 1.0 },
+            complementarity: 0.0,
+            min_multiplier: 0.0,
+            min_curvature: None,
+            zero_modes: 0,
+            multipliers: Vec::new(),
+        };
+        let (contacts, flat) = (Vec::new(), BTreeSet::new());
+        let best = LocalSolution { state, p: vec![0.4], certificate, contacts, links_ok: true, certified, flat };
+        SearchResult { best: Some(best), starts: 40, ..SearchResult::default() }
+    }
+
+    /// Forty starts are enough where their limit is certified, and not where it is not.
+    #[test]
+    fn states_without_a_certificate_end_no_search() {
+        let normal = StopRule::of(Effort::Normal, None);
+        let left = |result: SearchResult| normal.left(result.starts, result.chance_of_more(), 0.0);
+        assert_eq!(left(SearchResult { distinct: vec![(0.4, 40)], ..found(true) }), 0);
+        // No value is counted as found.
+        assert_eq!(left(SearchResult { starts: 60, ..found(false) }), 4);
+        assert_eq!(left(found(false)), 24);
+    }
 }

@@ -83,9 +83,6 @@ pub(super) fn better_chance(starts: u64, times: &[u64]) -> f64 {
     (once + 1.0) / ((starts as f64 + 1.0) * (times.len() as f64 + 1.0))
 }
 
-/// The chance that another start finds more where there are states, but none with a certificate: no reason to stop.
-pub(super) const WITHOUT_CERTIFICATE: f64 = 1.0;
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -105,7 +102,6 @@ mod tests {
         assert_eq!(normal.left(23, better_chance(23, &[23]), 0.0), 41);
         assert_eq!(normal.left(24, better_chance(24, &[24]), 0.0), 0);
         assert_eq!(normal.left(64, 1.0, 0.0), 0);
-        assert_eq!(normal.left(24, WITHOUT_CERTIFICATE, 0.0), 40);
         let four = StopRule::of(Effort::Thorough, Some(4));
         assert_eq!((four.left(3, 0.0, 1e9), four.left(4, 1.0, 0.0)), (1, 0));
         assert_eq!([four, normal].map(|rule| [false, true].map(|folds| rule.of_larger_cell(folds))), [[3, 4], [3, 4]]);

@@ -12,6 +12,7 @@ use super::{
 };
 use crate::{
     answer::Answer,
+    lattice::shifts_within,
     model::Model,
     program::SheetProgram,
     record::Status,
@@ -22,6 +23,7 @@ use crate::{
     state::State,
     topology::{self, separation::comes_apart},
 };
+use maille_geometry::Vec3;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A sheet that has come apart: a state and its parameters.
@@ -39,6 +41,9 @@ impl ExactMethod<'_> {
         cancel: &AtomicBool,
     ) -> (Answer, CellStarts) {
         let model = &self.models[0];
+        if let Some(apart) = apart_as_written(model, stretch) {
+            return (self.apart(stretch, apart, 0, 0), Vec::new());
+        }
         let stop = self.stop();
         let drawn = (0..stop.least as usize).map(|k| explored_with_own_wire(model, self.options.seed, k));
         let (mut runs, mut iterations) = (0, 0);
@@ -48,11 +53,8 @@ impl ExactMethod<'_> {
             if cancel.load(Ordering::Relaxed) {
                 return (self.without_state(Status::Interrupted), Vec::new());
             }
-            if let Some(Separated { state, p }) = apart {
-                let gradient = stretch.lattices(model).gradient(&p, stretch.l2);
-                let note = Some(format!("no chain of links; at l1 = {:.3} nothing is left that could hold it", p[0]));
-                let nothing = self.without_state(Status::Unbounded);
-                return (Answer { state, gradient, runs, iterations, note, ..nothing }, Vec::new());
+            if let Some(apart) = apart {
+                return (self.apart(stretch, apart, runs, iterations), Vec::new());
             }
         }
         let search = self.search(stretch, f64::INFINITY, cancel);
@@ -81,6 +83,39 @@ impl ExactMethod<'_> {
             _ => (answer, reached),
         }
     }
+
+    /// What is said of a sheet that has come apart.
+    fn apart(&self, stretch: &Stretch, apart: Separated, runs: u64, iterations: u64) -> Answer {
+        let Separated { state, p } = apart;
+        let gradient = stretch.lattices(&self.models[0]).gradient(&p, stretch.l2);
+        let note = Some(format!("no chain of links; at l1 = {:.3} nothing is left that could hold it", p[0]));
+        Answer { state, gradient, runs, iterations, note, ..self.without_state(Status::Unbounded) }
+    }
+}
+
+/// The written state at the l2 that is held, where its cells are so far apart that nothing can hold them.
+///
+/// Each cell lies in a ball of radius ϱ about a point of its own. On the way to l2 and with any l1 ≥ 0 no vector of the lattice
+/// becomes shorter than min(1, 1 + l2) of what it is; where this leaves the shortest one above 2 ϱ, no cell ever meets another.
+fn apart_as_written(model: &Model, stretch: &Stretch) -> Option<Separated> {
+    let start = &model.start;
+    let thickest = model.rings.iter().map(|ring| ring.minor_radius).fold(0.0, f64::max);
+    let middle = start.poses.iter().map(|pose| pose.position).sum::<Vec3>() / start.poses.len() as f64;
+    let reaches = start.poses.iter().zip(&model.elements).map(|(pose, e)| (pose.position - middle).norm() + e.reach);
+    let radius = reaches.fold(0.0, f64::max) + thickest;
+    let near = 2.0 * radius / (1.0 + stretch.l2).min(1.0);
+    let apart = shifts_within(&Vec3::zeros(), &start.a1, &start.a2, near).into_iter().all(|shift| shift == [0, 0]);
+    // Elements that the lattice carries along move within their cell.
+    let rigid = model.elements.iter().all(|element| element.anchor == [0.0; 2]);
+    let touches = topology::smallest_gap(model, start).is_some_and(|(gap, _)| gap < 0.0);
+    if !apart || !rigid || touches {
+        return None;
+    }
+    let written = Start { l2: stretch.l2, ..Start::written(start.clone()) };
+    let p = stretch.lattices(model).parameters(&written);
+    let state = SheetProgram::new(model, &stretch.family(model)).posed(written.state, p.clone()).state;
+    // What others can check: the state alone must show it.
+    comes_apart(model, &state, stretch.direction).then_some(Separated { state, p })
 }
 
 /// Pulls in stages to a state from which the pull can go on for ever, if it gets there; with the quadratic programs that it took.
@@ -90,11 +125,6 @@ fn pull_apart(model: &Model, stretch: &Stretch, from: Start, cancel: &AtomicBool
     let pull = stretch.family(model);
     let program = SheetProgram::new(model, &pull);
     let mut x = program.posed(state, p);
-    let is_free = |state: &State| comes_apart(model, state, stretch.direction) && topology::links_kept(model, state);
-    // Cells may be apart as they are written; what touches is not looked at by that.
-    if topology::smallest_gap(model, &x.state).is_none_or(|(gap, _)| gap >= 0.0) && is_free(&x.state) {
-        return (Some(Separated { state: x.state, p: x.p }), iterations);
-    }
     let mut known = Vec::new();
     for stage in 0..UNLINKED_STAGES {
         let enough = x.p[0] + UNLINKED_STAGE * 2.0_f64.powi(stage);
@@ -104,7 +134,7 @@ fn pull_apart(model: &Model, stretch: &Stretch, from: Start, cancel: &AtomicBool
             return (None, iterations);
         }
         (x, known) = (end.point, end.multipliers);
-        if is_free(&x.state) {
+        if comes_apart(model, &x.state, stretch.direction) && topology::links_kept(model, &x.state) {
             return (Some(Separated { state: x.state, p: x.p }), iterations);
         }
     }

@@ -98,15 +98,14 @@ fn alike(model: &Model, a: usize, b: usize) -> bool {
 
 /// A sheet that does not hold together.
 fn loose(model: &Model) -> Option<InvalidInput> {
-    let cells = model.periodic;
     let vectors = binding_vectors(model);
     let independent =
         |v: &[i32; 2], w: &[i32; 2]| i64::from(v[0]) * i64::from(w[1]) != i64::from(v[1]) * i64::from(w[0]);
     let problem = match vectors.first() {
-        None if cells && (0..model.elements.len()).any(|e| is_open(model, e)) => {
+        None if model.periodic && (0..model.elements.len()).any(|e| is_open(model, e)) => {
             "no chain of links joins the cells: what open curves hold has no bound, and may come apart".to_owned()
         }
-        None if cells => "no chain of links joins the cells: links bound no pull".to_owned(),
+        None if model.periodic => "no chain of links joins the cells: links bound no pull".to_owned(),
         Some(first) if !model.single && !vectors.iter().any(|v| independent(first, v)) => {
             let along = model.start.translation(*first);
             let direction_deg = along.y.atan2(along.x).to_degrees().rem_euclid(180.0);

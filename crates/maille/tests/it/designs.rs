@@ -2,7 +2,8 @@
 
 use crate::common::model;
 use maille::{
-    lattice::Direction,
+    lattice::{Cell, Direction},
+    model::Model,
     record::Status,
     relaxation::limit::{EnergyMethod, EnergyOptions},
     topology::{neighbours, smallest_gap},
@@ -36,6 +37,22 @@ const DESIGNS: [(&str, &[usize], [f64; 2]); 24] = [
     ("4.3-chapter6", &[4, 2, 2], [-0.11, -0.01]),
     ("5.2-chapter6", &[12, 12, 4, 4, 4, 4, 4, 4], [-0.1028, -0.0028]),
 ];
+
+/// Four pairs of rings of two elements in one place: one problem.
+#[test]
+fn elements_that_meet_are_one_problem() {
+    let rings = "[{ major_radius = 1.0, normal = [0.0, 0.0, 1.0] }, { major_radius = 1.0, normal = [1.0, 0.0, 0.0] }]";
+    let element = |name: &str| format!("[[elements]]\nname = \"{name}\"\ncenter = [0.0, 0.0, 0.0]\nrings = {rings}\n");
+    let text = format!(
+        "name = \"two\"\nminor_radius = 0.1\nreference_radius = 1.0\n[lattice]\na1 = [6.0, 0.0, 0.0]\na2 = [0.0, 6.0, 0.0]\n{}{}",
+        element("a"),
+        element("b")
+    );
+    let design = maille_io::read_design("two", &text).unwrap();
+    let problems = Model::compile(&design, Cell::PRIMITIVE).unwrap_err();
+    let [problem] = &problems[..] else { panic!("{problems:?}") };
+    assert_eq!(problem.problem, "the core curves of \"a\" and \"b\" meet in the starting state");
+}
 
 #[test]
 fn neighbours_and_gaps_are_those_of_the_table() {

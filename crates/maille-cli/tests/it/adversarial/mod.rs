@@ -157,6 +157,20 @@ fn elements_too_far_apart_to_be_solved_are_refused() {
     assert!(wide.said.contains("reach 1.0e5 R from its center; at most 1e4"), "{}", wide.said);
 }
 
+/// At once, whatever the direction and the width; in another basis, and as a mirror image.
+#[test]
+fn cells_that_lie_apart_are_unbounded() {
+    let pair = |sign: f64| [([0.0; 3], Z, 1.0, None), ([sign * 1.2, 0.0, 0.0], Y, 1.0, None)];
+    for (basis, sign) in [
+        ([[9e3, 0.0, 0.0], [0.0, 9e3, 0.0]], 1.0),
+        ([[9e3, 0.0, 0.0], [9e3, 9e3, 0.0]], 1.0),
+        ([[9e3, 0.0, 0.0], [0.0, 9e3, 0.0]], -1.0),
+        ([[6.0, 0.0, 0.0], [0.0, 6.0, 0.0]], 1.0),
+    ] {
+        all_are(&answer(&design(basis, 0.1, 1.0, &pair(sign)), "-0.25,0,0.25"), "unbounded");
+    }
+}
+
 #[test]
 fn a_design_that_is_locked_already_has_no_way_to_go() {
     let answer = answer(&grid(3.6 - 1e-8, 0.1, 1.0, 0.0, 0.0), "0");

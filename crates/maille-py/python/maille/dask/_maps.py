@@ -97,6 +97,8 @@ def run(
     client = client_of(client)
     retries = _whole("retries", retries, 0)
     folder = Path(out)
+    if not (folder / CHAINS).is_dir():
+        _native.check_records_folder(folder)
     maps: dict[str, _Map] = {}
     failures: list[Failure] = []
     for name, (design, question) in asked.items():
