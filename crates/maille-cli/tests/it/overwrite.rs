@@ -16,8 +16,11 @@ const FOLDERS: [&str; 9] = [
     "reproduce --only 1.1 --quick --out d",
 ];
 
+/// A file's name and what it holds.
+type NamedText = (&'static str, &'static str);
+
 /// What looks like a mark of a run and is none, and a file that the command would replace.
-const LOOKS_LIKE: [(&str, &[(&str, &str)], &str); 5] = [
+const LOOKS_LIKE: [(&str, &[NamedText], &str); 5] = [
     ("sweep study.toml --out d", &[("records/mine.txt", "x\n")], "limits.csv"),
     ("reproduce --only 1.1 --quick --out d", &[("records/mine/run.json", "{\"schema\": 7}")], "index.html"),
     ("roll 1.1 --directions 0 --axis below --out d --overwrite", &[("roll.json", "")], "rolls.csv"),
