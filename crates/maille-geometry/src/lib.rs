@@ -41,6 +41,7 @@
 //! | How wide is the gap between two tori? | [`torus_gap`], [`torus_gaps`] | `torus.rs` |
 //! | Where are the local minima of the distance of two segments or arcs? | [`piece_distance_minima`] | `piece` |
 //! | How often are two closed curves of them linked? | [`curve_linking_number`] | `piece/linking.rs` |
+//! | Which ball around a set of points is the smallest? | [`smallest_ball_center`] | `ball.rs` |
 //! | Are two circles linked, and with which sign? | [`linking_number`], [`interlocks`] | `linking.rs` |
 //!
 //! # Method
@@ -60,8 +61,8 @@
 //!
 //! A file imports only files above it in this list: `tolerance`, `circle`, `simd`, then within `circle_circle` the
 //! result types (`minimum`, `approach`), the frames (`angle`, `normalized_pair`, `pair_frame`, `simd_frame`),
-//! `fast` and `exhaustive`, `one_pair`, `many_pairs`; `lower_bound`, `polynomial`, `piece`, `linking` and `torus`
-//! stand beside or above them.
+//! `fast` and `exhaustive`, `one_pair`, `many_pairs`; `lower_bound`, `polynomial`, `piece`, `linking`, `torus` and
+//! `ball` stand beside or above them.
 //!
 //! # Accuracy
 //!
@@ -90,6 +91,7 @@
 //! Numbers of sections, equations, definitions and theorems, and Appendix A, are those of the thesis *Mechanical
 //! Characterization of Rigid Discrete Interlocking Materials*.
 
+mod ball;
 mod circle;
 mod circle_circle;
 mod linking;
@@ -98,6 +100,7 @@ mod simd;
 mod tolerance;
 mod torus;
 
+pub use ball::smallest_ball_center;
 pub use circle::{Circle, PointOnCircle, Vec3, point_circle_distance};
 pub use circle_circle::approach::{Approach, Approaches};
 pub use circle_circle::lower_bound::circle_distance_lower_bound;

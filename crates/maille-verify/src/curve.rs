@@ -1,6 +1,6 @@
 //! Core curves that are no circles: closed curves of segments and arcs, from the forms of a design. An open curve goes there and back.
 
-use crate::record::Form;
+use crate::{ball::farthest, record::Form};
 use nalgebra::{UnitQuaternion, Vector3};
 use std::f64::consts::{PI, TAU};
 
@@ -106,15 +106,16 @@ impl Piece {
         }
     }
 
+    /// Its point that is farthest from `p`.
+    pub fn farthest(&self, p: &Vec3) -> Vec3 {
+        // An end, or of an arc the point across the centre, if that lies on it.
+        let across = self.radius.map_or(0.0, |_| self.nearest(&(self.at * 2.0 - p)));
+        farthest([0.0, across, self.length].into_iter().map(|s| self.position(s)), p)
+    }
+
     /// Largest distance of its points from `p`.
     fn reach(&self, p: &Vec3) -> f64 {
-        let ends = (self.position(0.0) - p).norm().max((self.position(self.length) - p).norm());
-        if self.radius.is_none() {
-            return ends;
-        }
-        // Across the centre, if that lies on it.
-        let s = self.nearest(&(self.at * 2.0 - p));
-        if s > 0.0 && s < self.length { ends.max((self.position(s) - p).norm()) } else { ends }
+        (self.farthest(p) - p).norm()
     }
 
     /// From its end to its start.

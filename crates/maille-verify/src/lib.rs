@@ -5,6 +5,7 @@
 
 mod apart;
 mod balance;
+mod ball;
 mod bounds;
 mod chain;
 mod claims;

@@ -1,6 +1,7 @@
 //! Rings in space: a design's start or a recorded state in one cell, in units of the reference radius R.
 
 use crate::{
+    ball,
     curve::Curve,
     record::{CurveSpec, Design, Pose, State},
     rolled::Rolled,
@@ -125,6 +126,9 @@ fn same_copy(cell: &Cell, a: [i32; 2], b: [i32; 2]) -> bool {
 /// Share of R within which biarcs stand for a smooth curve, where a design does not say.
 const CURVE_TOLERANCE: f64 = 1e-6;
 
+/// Share of its reach by which a ball about the origin may be larger than the smallest.
+const CENTERED: f64 = 1e-12;
+
 /// The tubes of a curve of element `element`.
 fn tubes(design: &Design, spec: &CurveSpec, element: usize) -> Result<Vec<Ring>, String> {
     let unit = design.reference_radius;
@@ -133,15 +137,19 @@ fn tubes(design: &Design, spec: &CurveSpec, element: usize) -> Result<Vec<Ring>,
     let (normal, along) = (Vec3::from(spec.normal).normalize(), Vec3::from(spec.along).normalize());
     let x = (along - normal * normal.dot(&along)).normalize();
     let turn = UnitQuaternion::from_basis_unchecked(&[x, normal.cross(&x), normal]);
-    let arm = Vec3::from(spec.offset) / unit;
-    let ring = |curve: Curve| {
-        let curve = curve.moved(&turn, &arm);
-        match curve.circle() {
-            Some((arm, normal, radius)) => Ring { element, arm, normal, radius, wire, curve: None },
-            None => Ring { element, arm, normal, radius: curve.reach(&arm), wire, curve: Some(Arc::new(curve)) },
-        }
+    let origin = Vec3::from(spec.offset) / unit;
+    let moved = |curve: Curve| curve.moved(&turn, &origin);
+    let curves: Vec<Curve> = Curve::all_of(&spec.shape, unit, tolerance)?.into_iter().map(moved).collect();
+    // Any ball that holds the curves bounds their links; that of the program is the smallest, or as small about the origin.
+    let pieces = || curves.iter().flat_map(|curve| &curve.pieces);
+    let center = ball::center(origin, |p| ball::farthest(pieces().map(|piece| piece.farthest(p)), p));
+    let reach = |p: &Vec3| curves.iter().map(|curve| curve.reach(p)).fold(0.0, f64::max);
+    let arm = if reach(&origin) <= reach(&center) * (1.0 + CENTERED) { origin } else { center };
+    let ring = |curve: Curve| match curve.circle() {
+        Some((arm, normal, radius)) => Ring { element, arm, normal, radius, wire, curve: None },
+        None => Ring { element, arm, normal, radius: curve.reach(&arm), wire, curve: Some(Arc::new(curve)) },
     };
-    Ok(Curve::all_of(&spec.shape, unit, tolerance)?.into_iter().map(ring).collect())
+    Ok(curves.iter().cloned().map(ring).collect())
 }
 
 impl Sheet {

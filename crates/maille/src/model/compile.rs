@@ -8,7 +8,7 @@ use crate::{
     state::{Pose, State},
     topology,
 };
-use maille_geometry::{Circle, Piece, Vec3};
+use maille_geometry::{Circle, Piece, Vec3, smallest_ball_center};
 use nalgebra::{Matrix2, Unit, UnitQuaternion};
 use std::sync::{Arc, OnceLock};
 
@@ -20,8 +20,8 @@ const MOST_IMAGES: f64 = 1e5;
 /// Rings that overlap by less touch, in R: a limit that is written out does so by rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// The origin of a form is its centre if the curve reaches farther from it than from the best centre by no more than this share.
-const CENTERED: f64 = 1e-6;
+/// The origin of a form is its centre if the curve reaches farther from it than from that of its smallest ball by no more than this share.
+const CENTERED: f64 = 1e-12;
 /// Arcs whose circles differ by less, in reference radii, are of one.
 const ONE_CIRCLE: f64 = 1e-12;
 
@@ -49,24 +49,13 @@ fn reach(pieces: &[Piece], p: &Vec3) -> f64 {
     pieces.iter().map(|piece| (piece.point(piece.farthest(p)) - p).norm()).fold(0.0, f64::max)
 }
 
-/// Steps to the centre of pieces.
-const STEPS: usize = 200;
-
-/// A centre from which the pieces reach nearly as little as possible (Bădoiu and Clarkson, "Smaller core-sets for balls", 2003: each step
-/// goes a smaller part of the way to the farthest point).
+/// The centre of the smallest ball that holds the pieces.
 fn center(pieces: &[Piece]) -> Vec3 {
-    let mut at = pieces.iter().map(|piece| piece.point(0.5)).sum::<Vec3>() / pieces.len() as f64;
-    let mut best = (reach(pieces, &at), at);
-    for step in 1..=STEPS {
-        let far = pieces.iter().map(|piece| piece.point(piece.farthest(&at)));
-        let far = far.max_by(|x, y| (x - at).norm().total_cmp(&(y - at).norm())).unwrap_or(at);
-        at += (far - at) / (step + 1) as f64;
-        let reach = reach(pieces, &at);
-        if reach < best.0 * (1.0 - 1e-12) {
-            best = (reach, at);
-        }
-    }
-    best.1
+    let middle = pieces.iter().map(|piece| piece.point(0.5)).sum::<Vec3>() / pieces.len() as f64;
+    smallest_ball_center(middle, |p| {
+        let far = pieces.iter().map(|piece| piece.point(piece.farthest(p)));
+        far.max_by(|x, y| (x - p).norm().total_cmp(&(y - p).norm())).unwrap_or(middle)
+    })
 }
 
 /// Squares of tiny numbers have few digits: the largest is made 1 first.

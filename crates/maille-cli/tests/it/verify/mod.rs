@@ -4,6 +4,7 @@ mod specimen;
 mod waves;
 
 use crate::common::{code, maille};
+use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 use specimen::{Specimen, all_proved, said, verified};
@@ -51,6 +52,49 @@ fn limits_of_curves_are_proved() {
     let (_, found) = verified(dir.path(), "stadium-sheet");
     assert_eq!(said(&found, "balance", "false").len(), 6, "{found:#}");
     assert_eq!(said(&found, "overlap", "false").len(), 6, "{found:#}");
+}
+
+/// Curves that lie about no centre: their bounds have the smallest balls around them, here and in `verify`, and are reached.
+#[test]
+fn limits_of_random_splines_are_proved_and_some_are_global() {
+    let dir = tempfile::tempdir().unwrap();
+    let mut rng = ChaCha8Rng::seed_from_u64(54);
+    let mut spline = |count: u32| {
+        let mut points = Vec::new();
+        for k in 0..count {
+            let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / f64::from(count)).sin_cos();
+            let [x, y, z] = [cos, sin, 0.0].map(|at| at + rng.random_range(-0.08..0.08));
+            points.push(format!("[{x}, {y}, {z}]"));
+        }
+        format!("spline = {{ points = [{}] }}", points.join(", "))
+    };
+    let mut global = 0;
+    for design in 0..4 {
+        let text = format!(
+            r#"schema = 1
+name = "s{design}"
+minor_radius = 0.1
+reference_radius = 1.0
+allow_initial_overlap = true
+lattice = {{ a1 = [2.6, 0, 0], a2 = [0, 2.6, 0] }}
+elements = [
+    {{ name = "flat", center = [0, 0, 0], curves = [{{ {} }}] }},
+    {{ name = "x", center = [1.3, 0, 0], rings = [{{ major_radius = 0.92, normal = [0, 1, 0] }}] }},
+    {{ name = "y", center = [0, 1.3, 0], curves = [{{ {}, normal = [1, 0, 0], along = [0, 1, 0] }}] }},
+]
+"#,
+            spline(6),
+            spline(8)
+        );
+        fs::write(dir.path().join(format!("s{design}.toml")), text).unwrap();
+        let rest = "--directions 0:90:45 --l2=-0.03,0 --starts 2 --cell 1x1 --quiet";
+        let line = format!("characterize s{design}.toml {rest} --out s{design}");
+        assert_eq!(code(&maille(dir.path(), &line)), 0, "{line}");
+        all_proved(dir.path(), &format!("s{design}"));
+        let rows = fs::read_to_string(dir.path().join(format!("s{design}/limits.csv"))).unwrap();
+        global += rows.matches(",global,").count();
+    }
+    assert!(global >= 4, "{global}");
 }
 
 /// Rolls of squares and of cages, and a cage that is thicker than that of the states.
