@@ -8,6 +8,9 @@ use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::collections::{BTreeMap, BTreeSet};
 
+/// Version of records, which every input hash begins with.
+pub(crate) const RECORDS: u64 = 1;
+
 /// Every status that a row can have.
 const STATUSES: [&str; 10] = [
     "global",
@@ -65,22 +68,23 @@ pub(crate) fn check(texts: &Texts<'_>, run: &Run, rows: &[Row], states: &[State]
     out
 }
 
-/// The hash of schema, design and parameters as JSON with sorted keys is the one that is written.
+/// Whether the hash of schema, design and parameters as JSON with sorted keys is the one that is written.
 fn inputs(text: &str, run: &Run) -> Finding {
     let value: Value = serde_json::from_str(text).unwrap_or_default();
+    inputs_of(RUN, run.schema, &value["design"], &value["parameters"], &run.input_hash)
+}
+
+/// The same of the file `head`.
+pub(crate) fn inputs_of(head: &str, schema: u64, design: &Value, parameters: &Value, written: &str) -> Finding {
     let mut canonical = String::new();
-    sorted(
-        &serde_json::json!({ "schema": run.schema, "design": value["design"], "parameters": value["parameters"] }),
-        &mut canonical,
-    );
+    let all = serde_json::json!({ "schema": schema, "design": design, "parameters": parameters });
+    sorted(&all, &mut canonical);
     let found = sha256(canonical.as_bytes());
-    if found == run.input_hash {
-        say(Verdict::Proved, format!("design and parameters have the input hash of {RUN}"))
+    if found == written {
+        say(Verdict::Proved, format!("design and parameters have the input hash of {head}"))
     } else {
-        say(
-            Verdict::False,
-            format!("design or parameters of {RUN} were edited: their hash is {found}, {} is written", run.input_hash),
-        )
+        let words = format!("design or parameters of {head} were edited: their hash is {found}, {written} is written");
+        say(Verdict::False, words)
     }
 }
 

@@ -1,7 +1,7 @@
 //! The rolls of a sheet, one by one: each state is derived anew from its texts.
 
 use crate::{
-    files::{checksum, say, sha256},
+    files::{RECORDS, checksum, inputs_of, say, sha256},
     gaps::gaps_and_links,
     record::{Contact, Design, Pose, Row, State, Unreadable, json},
     report::{Check, Finding, Verdict},
@@ -215,7 +215,9 @@ impl RollVerifier {
             side.then(turn).then(place(&a.sought).cmp(&place(&b.sought)))
         });
         let (rolls, values): (Vec<Roll>, Vec<Value>) = both.into_iter().unzip();
-        let mut files = vec![belongs(&head, &first, &rolls), line_sums(texts.states)];
+        let value: Value = json(HEAD, 0, texts.head)?;
+        let hashed = inputs_of(HEAD, RECORDS, &value["design"], &parameters(&value["question"]), &head.input_hash);
+        let mut files = vec![belongs(&head, &first, &rolls), hashed, line_sums(texts.states)];
         let sums = [(STATES, texts.states), (TABLE, texts.table)];
         files.extend(sums.map(|(name, text)| checksum(HEAD, &head.files, name, text)));
         files.push(table_fits(&values, texts.table)?);
@@ -318,6 +320,27 @@ impl RollVerifier {
         }
         Ok(out)
     }
+}
+
+/// What of a question decides where a roll ends, as the program hashes it.
+fn parameters(question: &Value) -> Value {
+    let some = |list: &str| question[list].as_array().is_some_and(|values| !values.is_empty());
+    let tubes = some("wrap");
+    let mut out = serde_json::json!({
+        "tubes": tubes,
+        "free": question["free"],
+        "cells": question["cells"],
+        "effort": question["effort"],
+        "seed": question["seed"],
+    });
+    if !tubes && some("curvatures") {
+        out["at_curvature"] = true.into();
+    }
+    let [l2, gamma] = ["l2", "gamma"].map(|name| question[name].as_f64().unwrap_or(0.0));
+    if !tubes && (l2, gamma) != (0.0, 0.0) {
+        (out["l2"], out["gamma"]) = (l2.into(), gamma.into());
+    }
+    out
 }
 
 /// Whether the rolls are those of the head: of its design and version, of what it holds, each once, and as many as it says.

@@ -10,7 +10,7 @@ use crate::{
     curvature::{ZERO_MODE, curvature},
     curve_pair::closed_points,
     dual::{edges, walks},
-    files::{checksum, say},
+    files::{RECORDS, checksum, inputs_of, say},
     gaps::gaps_and_links,
     record::{Design, Pose, Row, State, Unreadable, json},
     report::{Check, Finding, Verdict},
@@ -21,6 +21,7 @@ use crate::{
 };
 use nalgebra::{DMatrix, DVector, Matrix2};
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use std::collections::BTreeMap;
 
 const HEAD: &str = "surface.json";
@@ -52,6 +53,7 @@ pub struct SurfaceTexts<'a> {
 
 #[derive(Deserialize)]
 struct Head {
+    input_hash: String,
     design: Design,
     /// Names of the elements of each cell, in the order of the poses.
     cells: BTreeMap<String, Vec<String>>,
@@ -104,6 +106,10 @@ impl SurfaceVerifier {
         let mut files: Vec<Finding> = sums.map(|(name, text)| checksum(HEAD, &head.files, name, text)).into();
         let (vertices, fits) = in_order(known, texts.table)?;
         files.push(fits);
+        let value: Value = json(HEAD, 0, texts.head)?;
+        let decide = ["effort", "starts", "seed", "cells"];
+        let parameters: Value = decide.map(|name| (name, value["parameters"][name].clone())).into_iter().collect();
+        files.push(inputs_of(HEAD, RECORDS, &value["design"], &parameters, &head.input_hash));
         let start_of = |(cell, names): (&String, &Vec<String>)| {
             let names: Vec<&str> = names.iter().map(String::as_str).collect();
             let parsed = sheet::cell(cell).ok_or_else(|| format!("\"{cell}\" is no cell"));

@@ -143,8 +143,14 @@ fn a_surface_is_plotted_tabulated_and_verified() {
         let proved = of(check, "proved");
         assert!(of(check, "false") == 0 && 10 * proved >= tenths * certified, "{check}: {proved} of {certified}");
     }
-    // A ring moved by a tenth of R: its state, whose checksum is made right again, is refuted.
+    // More starts than were made.
     let (states, head) = (text("s/surface.jsonl"), text("s/surface.json"));
+    assert!(head.contains("\"starts\":1,"));
+    std::fs::write(folder.join("s/surface.json"), head.replacen("\"starts\":1,", "\"starts\":64,", 1)).unwrap();
+    let (code, out, _) = maille(folder, &["verify", "s", "--quiet"]);
+    assert!(code == Some(4) && out.contains("design or parameters of surface.json were edited"), "{out}");
+    // A ring moved by a tenth of R: its state, whose checksum is made right again, is refuted.
+    std::fs::write(folder.join("s/surface.json"), &head).unwrap();
     let first = states.lines().next().unwrap();
     let mut vertex: serde_json::Value = serde_json::from_str(first).unwrap();
     let x = vertex["poses"][0][0].as_f64().unwrap();

@@ -124,8 +124,13 @@ fn rolls_of_curves_are_proved() {
     let text = fs::read_to_string(&head).unwrap();
     let thicker = text.replace("\"minor_radius\":0.6", "\"minor_radius\":0.601");
     let thicker = thicker.replace("\"minor_radius\": 0.6", "\"minor_radius\": 0.601");
-    assert_ne!(thicker, text);
-    fs::write(&head, thicker).unwrap();
+    let edited = "design or parameters of roll.json were edited";
+    for forged in [text.replacen("\"seed\": 1", "\"seed\": 2", 1), thicker] {
+        assert_ne!(forged, text);
+        fs::write(&head, forged).unwrap();
+        let done = maille(dir.path(), "verify cages --quiet");
+        assert!(code(&done) == 4 && String::from_utf8_lossy(&done.stdout).contains(edited));
+    }
     for check in ["overlap", "balance"] {
         assert_eq!(verdicts("cages", check), vec!["false"; 4], "{check}");
     }
