@@ -234,6 +234,11 @@ pub fn run(args: &Args) -> Result<()> {
     let unit = source.design.unit.as_deref();
     let subjects: Vec<Subject<'_>> =
         frames.iter().map(|frame| Subject { model: &source.model, state: &frame.state, contacts, unit }).collect();
+    if let (Extent::Cells(cells), [frame], false) = (options.extent, &frames[..], args.quiet)
+        && let Some(overlap) = source.overlap_of(&frame.state, Tile(cells))
+    {
+        eprintln!("note: {overlap}");
+    }
     let begun = Instant::now();
     let pictures = draw(args, &subjects, &options)?.map_err(|e| match e {
         RenderError::NoForces => args.source.no_forces(&source),

@@ -13,11 +13,12 @@ use maille::{
     design::Design,
     error::InvalidInput,
     lattice::Cell,
-    model::Model,
+    model::{Model, RingPair},
     record::{ContactRecord, FrameRecord, StateRecord, Status},
     search::extreme::Extreme,
     state::State,
     survey::CellChoice,
+    topology,
 };
 use maille_io::{
     Tile,
@@ -435,7 +436,32 @@ impl Source {
         let limit = matches!(record.status, Status::Global | Status::Local | Status::ThresholdReached);
         (!limit).then(|| format!("the state is \"{}\": the last of its search, no limit", record.status.name()))
     }
+
+    /// What a reader should know about a tile of a roll: rings of it overlap that lie farther apart around the roll than the pairs
+    /// that rolls count.
+    pub fn overlap_of(&self, state: &State, tile: Tile) -> Option<String> {
+        let roll = state.roll.as_ref()?;
+        let pairs = topology::close_pairs_within(&self.model, state, tile.0, 0.0);
+        let gap = |pair: &RingPair| {
+            let wires = self.model.contact_distance(pair.ring_a, pair.ring_b);
+            topology::core_distance(&self.model, state, pair) - wires
+        };
+        let gaps = pairs.into_iter().map(|pair| (gap(&pair), pair));
+        let (gap, pair) = gaps.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|(gap, _)| *gap < -OVERLAP)?;
+        let here = pair.shift.map(|k| (-k).max(0));
+        let there = [0, 1].map(|k| here[k] + pair.shift[k]);
+        let [a, b] = [(pair.ring_a, here), (pair.ring_b, there)].map(|(ring, cell)| self.model.ring_label(ring, cell));
+        let turn = (0..2).map(|k| f64::from(pair.shift[k]) * roll.turn_rad[k]).sum::<f64>().abs() / TAU;
+        let (overlap, unit) = (-gap * self.model.unit, self.design.unit.as_deref().unwrap_or("of the file's unit"));
+        Some(format!(
+            "rings of this tile overlap, by up to {overlap:.4} {unit}: {a} and {b}, {turn:.2} of a turn apart around the roll. \
+             A roll counts pairs up to half a turn; take a smaller --tile, or a tube that closes, of `maille roll --wrap`"
+        ))
+    }
 }
+
+/// Rings that overlap by less touch, in reference radii.
+const OVERLAP: f64 = 1e-7;
 
 /// The design with overlaps of its start accepted.
 pub fn tolerant(design: &Design) -> Design {

@@ -176,14 +176,17 @@ impl<'a> Meshes<'a> {
 
     /// Pairs of rings of different elements in the tile whose tori are nearer than `margin` reference radii.
     fn pairs(&self, tile: Tile, margin: f64) -> Vec<Near> {
-        let pairs = topology::close_pairs(self.model, self.state, margin).into_iter();
+        let pairs = match self.state.roll {
+            Some(_) => topology::close_pairs_within(self.model, self.state, tile.0, margin),
+            None => topology::close_pairs(self.model, self.state, margin),
+        };
         let near = |rings: RingPair| {
             let radii = self.model.contact_distance(rings.ring_a, rings.ring_b) * self.to_mm;
             let gap = topology::core_distance(self.model, self.state, &rings) * self.to_mm - radii;
             let sum = |of: &[f64]| of[rings.ring_a] + of[rings.ring_b];
             Near { rings, gap, radii, outside: sum(&self.protrusions), errors: sum(&self.errors) }
         };
-        pairs.filter(|pair| tile.holds(pair.shift)).map(near).collect()
+        pairs.into_iter().filter(|pair| tile.holds(pair.shift)).map(near).collect()
     }
 
     /// The distance of the two meshes where it is less than `most`, else `most`.

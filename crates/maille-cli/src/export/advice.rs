@@ -75,6 +75,9 @@ pub fn gaps(scene: &Scene, source: &Source, state: &State, tile: Tile) {
             false => output::say!("smallest gap between rings: {} {unit}, here {} mm", six(gap), six(gap * scene.mm)),
         }
     }
+    if let Some(overlap) = source.overlap_of(state, tile) {
+        eprintln!("note: {overlap}");
+    }
     match maille_mesh::smallest_clearance(scene, model, state, tile) {
         Some(0.0) => output::say!("clearance 0 mm: meshes of different elements touch or overlap"),
         Some(gap) => output::say!("clearance {} mm between the meshes of different elements", short(gap)),

@@ -364,3 +364,23 @@ fn what_comes_apart_has_no_gap() {
     assert!(rolls[0]["min_gap"].is_null(), "{}", rolls[0]);
     assert_eq!(refuted(dir.path()), Vec::<String>::new());
 }
+
+/// A piece of a roll is measured as it is written, beyond half a turn too.
+#[test]
+fn a_tile_that_overlaps_around_the_roll_is_named() {
+    let dir = tempfile::tempdir().unwrap();
+    let roll = "roll stadium-sheet --directions 0 --axis below --out st --quiet";
+    assert_eq!(outcome(dir.path(), roll).0, 0);
+    let at = "stadium-sheet --from st --at direction=0,axis=below";
+    let overlap = "rings of this tile overlap, by up to 0.1920";
+    for line in
+        [format!("export {at} --tile 2x1 --out two.stl"), format!("render {at} --tile 2x1 --size 64x48 --out two.png")]
+    {
+        let (code, _, words) = outcome(dir.path(), &line);
+        assert!(code == 0 && words.contains(overlap) && words.contains("0.73 of a turn apart"), "{line}: {words}");
+    }
+    let (code, _, words) = outcome(dir.path(), &format!("export {at} --tile 1x2 --out one.stl"));
+    assert!(code == 0 && !words.contains("overlap"), "{words}");
+    let (code, _, words) = outcome(dir.path(), &format!("export {at} --tile 2x1 --min-clearance 0.01 --out none.stl"));
+    assert!(code != 0 && words.contains("overlap by 0.192 mm"), "{words}");
+}

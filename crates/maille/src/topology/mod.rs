@@ -30,8 +30,26 @@ pub use warnings::warnings;
 /// listed: the lower element first, and for an element's own images the lexicographically positive shift.
 pub fn close_pairs(model: &Model, state: &State, margin: f64) -> Vec<RingPair> {
     let thickest = model.rings.iter().map(|r| r.minor_radius).fold(0.0, f64::max);
-    let arms: Vec<_> = (0..model.rings.len()).map(|ring| state.arm(model, ring)).collect();
     let neighbours = broad_phase::neighbours(model, state, thickest, margin);
+    ring_pairs(model, state, &neighbours, margin)
+}
+
+/// As [`close_pairs`], of the pairs within a tile of `cells` cells, however far around a roll: an endless roll counts no pair
+/// beyond half a turn, a piece of it has them.
+pub fn close_pairs_within(model: &Model, state: &State, cells: [u32; 2], margin: f64) -> Vec<RingPair> {
+    let [m, n] = cells.map(|cells| cells as i32 - 1);
+    let shifts: Vec<Shift> = (-m..=m).flat_map(|i| (-n..=n).map(move |j| [i, j])).collect();
+    let elements = 0..model.elements.len();
+    let of = |i: usize| {
+        let others = shifts.iter().flat_map(|shift| (i..model.elements.len()).map(move |j| (j, *shift)));
+        others.filter(|(j, shift)| *j > i || *shift > [0, 0]).collect()
+    };
+    ring_pairs(model, state, &elements.map(of).collect::<Vec<_>>(), margin)
+}
+
+/// The pairs of rings that may be within `margin`, of each element and its `neighbours`.
+fn ring_pairs(model: &Model, state: &State, neighbours: &[Vec<(usize, Shift)>], margin: f64) -> Vec<RingPair> {
+    let arms: Vec<_> = (0..model.rings.len()).map(|ring| state.arm(model, ring)).collect();
     let elements: Vec<usize> = (0..model.elements.len()).collect();
     broad_phase::in_chunks(&elements, |some| {
         let mut out = Vec::new();
