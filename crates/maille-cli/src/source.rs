@@ -437,8 +437,8 @@ impl Source {
         (!limit).then(|| format!("the state is \"{}\": the last of its search, no limit", record.status.name()))
     }
 
-    /// What a reader should know about a tile of a roll: rings of it overlap that lie farther apart around the roll than the pairs
-    /// that rolls count.
+    /// What a reader should know about a tile of a roll: that rings of it overlap. Those that lie farther apart around the roll than
+    /// half a turn are in no certificate.
     pub fn overlap_of(&self, state: &State, tile: Tile) -> Option<String> {
         let roll = state.roll.as_ref()?;
         let pairs = topology::close_pairs_within(&self.model, state, tile.0, 0.0);
@@ -446,17 +446,21 @@ impl Source {
             let wires = self.model.contact_distance(pair.ring_a, pair.ring_b);
             topology::core_distance(&self.model, state, pair) - wires
         };
-        let gaps = pairs.into_iter().map(|pair| (gap(&pair), pair));
-        let (gap, pair) = gaps.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|(gap, _)| *gap < -OVERLAP)?;
+        let turn =
+            |pair: &RingPair| (0..2).map(|k| f64::from(pair.shift[k]) * roll.turn_rad[k]).sum::<f64>().abs() / TAU;
+        let overlapping =
+            pairs.into_iter().map(|pair| (turn(&pair), gap(&pair), pair)).filter(|found| found.1 < -OVERLAP);
+        // The pair that the shortest piece has.
+        let (turn, gap, pair) = overlapping.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)))?;
         let here = pair.shift.map(|k| (-k).max(0));
         let there = [0, 1].map(|k| here[k] + pair.shift[k]);
         let [a, b] = [(pair.ring_a, here), (pair.ring_b, there)].map(|(ring, cell)| self.model.ring_label(ring, cell));
-        let turn = (0..2).map(|k| f64::from(pair.shift[k]) * roll.turn_rad[k]).sum::<f64>().abs() / TAU;
         let (overlap, unit) = (-gap * self.model.unit, self.design.unit.as_deref().unwrap_or("of the file's unit"));
-        Some(format!(
-            "rings of this tile overlap, by up to {overlap:.4} {unit}: {a} and {b}, {turn:.2} of a turn apart around the roll. \
-             A roll counts pairs up to half a turn; take a smaller --tile, or a tube that closes, of `maille roll --wrap`"
-        ))
+        let found = format!(
+            "rings of this tile overlap: {a} and {b}, {turn:.2} of a turn apart around the roll, by {overlap:.4} {unit}"
+        );
+        let cure = "take a smaller --tile, or a tube that closes, of `maille roll --wrap`";
+        Some(if turn > 0.5 { format!("{found}. A roll counts pairs up to half a turn; {cure}") } else { found })
     }
 }
 

@@ -372,12 +372,12 @@ fn a_tile_that_overlaps_around_the_roll_is_named() {
     let roll = "roll stadium-sheet --directions 0 --axis below --out st --quiet";
     assert_eq!(outcome(dir.path(), roll).0, 0);
     let at = "stadium-sheet --from st --at direction=0,axis=below";
-    let overlap = "rings of this tile overlap, by up to 0.1920";
+    let overlap = "rings of this tile overlap: \"link-90\" and \"link-90\" in cell (+1,+0), 0.73 of a turn apart around the roll, by 0.1920";
     for line in
         [format!("export {at} --tile 2x1 --out two.stl"), format!("render {at} --tile 2x1 --size 64x48 --out two.png")]
     {
         let (code, _, words) = outcome(dir.path(), &line);
-        assert!(code == 0 && words.contains(overlap) && words.contains("0.73 of a turn apart"), "{line}: {words}");
+        assert!(code == 0 && words.contains(overlap), "{line}: {words}");
     }
     let (code, _, words) = outcome(dir.path(), &format!("export {at} --tile 1x2 --out one.stl"));
     assert!(code == 0 && !words.contains("overlap"), "{words}");

@@ -38,13 +38,21 @@ pub fn close_pairs(model: &Model, state: &State, margin: f64) -> Vec<RingPair> {
 /// beyond half a turn, a piece of it has them.
 pub fn close_pairs_within(model: &Model, state: &State, cells: [u32; 2], margin: f64) -> Vec<RingPair> {
     let [m, n] = cells.map(|cells| cells as i32 - 1);
-    let shifts: Vec<Shift> = (-m..=m).flat_map(|i| (-n..=n).map(move |j| [i, j])).collect();
-    let elements = 0..model.elements.len();
-    let of = |i: usize| {
-        let others = shifts.iter().flat_map(|shift| (i..model.elements.len()).map(move |j| (j, *shift)));
-        others.filter(|(j, shift)| *j > i || *shift > [0, 0]).collect()
-    };
-    ring_pairs(model, state, &elements.map(of).collect::<Vec<_>>(), margin)
+    let thickest = model.rings.iter().map(|r| r.minor_radius).fold(0.0, f64::max);
+    let mut neighbours = vec![Vec::new(); model.elements.len()];
+    for shift in (-m..=m).flat_map(|i| (-n..=n).map(move |j| [i, j])) {
+        let image = state.image(shift);
+        for (i, near) in neighbours.iter_mut().enumerate() {
+            for j in i..model.elements.len() {
+                let way = image.way(&state.poses[i].position, &state.poses[j].position).norm();
+                let reach = model.elements[i].reach + model.elements[j].reach + 2.0 * thickest + margin;
+                if (j > i || shift > [0, 0]) && way <= reach {
+                    near.push((j, shift));
+                }
+            }
+        }
+    }
+    ring_pairs(model, state, &neighbours, margin)
 }
 
 /// The pairs of rings that may be within `margin`, of each element and its `neighbours`.

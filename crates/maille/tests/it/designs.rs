@@ -6,9 +6,9 @@ use maille::{
     model::Model,
     record::Status,
     relaxation::limit::{EnergyMethod, EnergyOptions},
-    topology::{neighbours, smallest_gap},
+    topology::{RingPair, close_pairs, close_pairs_within, neighbours, smallest_gap},
 };
-use std::sync::atomic::AtomicBool;
+use std::{collections::BTreeSet, sync::atomic::AtomicBool};
 
 /// Name, interlocking neighbours of each element of the cell, smallest gaps at r = 0.1 and 0.05 (negative: overlap).
 const DESIGNS: [(&str, &[usize], [f64; 2]); 24] = [
@@ -52,6 +52,18 @@ fn elements_that_meet_are_one_problem() {
     let problems = Model::compile(&design, Cell::PRIMITIVE).unwrap_err();
     let [problem] = &problems[..] else { panic!("{problems:?}") };
     assert_eq!(problem.problem, "the core curves of \"a\" and \"b\" meet in the starting state");
+}
+
+/// Of a flat sheet the pairs of a tile are those of the sheet whose cells the tile has.
+#[test]
+fn pairs_of_a_tile_are_those_of_the_sheet() {
+    for (name, tile) in [("1.1", [3, 2]), ("japanese-6-in-1", [2, 2]), ("stadium-sheet", [1, 4])] {
+        let model = model(name, 0.1);
+        let within = |pair: &RingPair| (0..2).all(|k| pair.shift[k].unsigned_abs() < tile[k]);
+        let pairs: BTreeSet<RingPair> = close_pairs(&model, &model.start, 0.5).into_iter().filter(within).collect();
+        let found: BTreeSet<RingPair> = close_pairs_within(&model, &model.start, tile, 0.5).into_iter().collect();
+        assert!(pairs.len() > 2 && pairs == found, "{name}: {pairs:?} {found:?}");
+    }
 }
 
 #[test]
