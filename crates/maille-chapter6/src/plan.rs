@@ -79,7 +79,13 @@ fn maps_of(Chosen { name, design, .. }: &Chosen, quick: bool, rectangular: Cell,
     let mut add = |design: &Design, divisor: u32, words: &str, method, cell, directions_deg: Vec<f64>, l2: &[f64]| {
         let name = format!("{}-R{divisor}-{words}", design.name);
         let map = Map {
-            question: MapQuestion { method, cells: CellChoice::from(cell), directions_deg, l2: l2.to_vec() },
+            question: MapQuestion {
+                method,
+                cells: CellChoice::from(cell),
+                directions_deg,
+                l2: l2.to_vec(),
+                extremes: false,
+            },
             quantity: Quantity::Lambda1,
             out: Some(records.join(&name)),
             sensitivities: false,

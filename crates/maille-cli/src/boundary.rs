@@ -15,7 +15,7 @@ use maille::{
     record::Status,
     survey::{
         CellChoice,
-        surface::{Boundary, BoundaryOptions, BoundaryVertex, boundary, has_surface},
+        surface::{Boundary, BoundaryOptions, BoundaryVertex, Pass, boundary, has_surface},
     },
 };
 use maille_io::{
@@ -125,7 +125,15 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         progress.step();
     };
     let pool = pool(args.run.threads)?;
-    let mut planned = |rays: usize| progress.more(rays);
+    let mut planned = |pass: Pass| match pass {
+        Pass::New(rays) => {
+            progress.more(rays);
+            progress.only(None);
+        }
+        Pass::Again(rays) => {
+            progress.only(Some(format!("{} once more, from the states of neighbours", counted(rays, "ray"))));
+        }
+    };
     let surface = pool.install(|| boundary(&model, &options, &known, &cancel, &mut planned, &found));
     progress.finish();
     // The folder is this run's alone until all is written.
@@ -199,12 +207,6 @@ fn summary(out: &Path, record: &SurfaceRecord, surface: &Boundary, options: &Bou
             say!("  {count} {}", status.name().replace("l2-", ""));
         }
     }
-    let apart = |v: &&BoundaryVertex| v.distance.zip(v.first).is_some_and(|(far, first)| far - first > 1e-7);
-    let count = vertices.iter().filter(apart).count();
-    say!(
-        "  on {} the sheet gets past the point where a straight deformation path is first blocked",
-        counted(count, "ray")
-    );
     let unstable = vertices.iter().filter(|v| v.wave_curvature.is_some_and(|least| least < 0.0)).count();
     if unstable > 0 && options.cells != CellChoice::Auto {
         say!("  {unstable} rays end where a wave through the sheet is unstable: --cell auto continues in larger cells");

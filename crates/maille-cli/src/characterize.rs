@@ -69,6 +69,10 @@ pub struct Args {
     /// The shear: held at 0, or left to the sheet (exact method)
     #[arg(long, value_enum, default_value_t = Held::Fixed)]
     shear: Held,
+    /// Whether the largest and the smallest l1 of each l2 are sought between the directions, too, as rows of their own (exact method)
+    /// [default: yes without --directions and --compression]
+    #[arg(long, value_enum)]
+    extremes: Option<YesNo>,
     /// The smallest l1 instead of the largest: how far the sheet can be compressed. All cells up to 3x3 are solved, and no
     /// limit is global, because a larger cell can fold further (exact method)
     #[arg(long)]
@@ -198,6 +202,12 @@ enum Held {
     Free,
 }
 
+#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum YesNo {
+    Yes,
+    No,
+}
+
 /// What is asked.
 fn question(args: &Args, design: &Design) -> Result<MapQuestion, InvalidInput> {
     let across = Across { lateral_free: args.lateral == Held::Free, shear_free: args.shear == Held::Free };
@@ -211,7 +221,8 @@ fn question(args: &Args, design: &Design) -> Result<MapQuestion, InvalidInput> {
     let single = |of_chain: f64| design.lattice.single.then(|| vec![of_chain]);
     let directions_deg = given(&args.directions).or_else(|| single(design.lattice.direction_deg()));
     let l2 = given(&args.l2).or_else(|| single(0.0).filter(|_| !across.lateral_free));
-    MapQuestion::new(method, args.cell.clone(), directions_deg, l2)
+    let extremes = args.extremes.map(|given| given == YesNo::Yes);
+    MapQuestion::new(method, args.cell.clone(), directions_deg, l2, extremes)
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
@@ -298,7 +309,8 @@ mod tests {
     /// The help names what a map takes where nothing is named.
     #[test]
     fn usual_directions_and_l2_are_those_of_the_library() {
-        let usual = MapQuestion::new(Method::Exact(ExactOptions::default()), CellChoice::Auto, None, None).unwrap();
+        let usual =
+            MapQuestion::new(Method::Exact(ExactOptions::default()), CellChoice::Auto, None, None, None).unwrap();
         assert_eq!(parse("0:180:5").unwrap().0, usual.directions_deg);
         assert_eq!(parse_l2("-0.25:0.25:0.125").unwrap().0, usual.l2);
     }

@@ -109,7 +109,13 @@ impl Files<'_> {
         let (seed, effort, cells) = (options.seed, options.final_effort(), options.cells.clone());
         let across = Across { lateral_free: free, shear_free: false };
         let exact = ExactOptions { seed, effort, across, ..ExactOptions::default() };
-        (!l2.is_empty()).then_some(MapQuestion { method: Method::Exact(exact), cells, directions_deg, l2 })
+        (!l2.is_empty()).then_some(MapQuestion {
+            method: Method::Exact(exact),
+            cells,
+            directions_deg,
+            l2,
+            extremes: false,
+        })
     }
 }
 

@@ -80,7 +80,13 @@ pub fn solve(open: Vec<(&str, OpenMap)>, out: &Path, threads: Option<u16>, quiet
             Work::Ends => progress.ends(&limit),
         }
     };
-    let records = pool.install(|| run_all(open, &cancel, &work, &|_, _| progress.step()));
+    let records = pool.install(|| {
+        run_all(open, &cancel, &work, &|_, row| {
+            if row.extreme.is_none() {
+                progress.step();
+            }
+        })
+    });
     progress.finish();
     let records = records.map_err(|error| {
         let words = error.to_string();

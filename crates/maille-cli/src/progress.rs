@@ -125,6 +125,11 @@ impl Progress {
         }
     }
 
+    /// Something else is at work, alone.
+    pub fn only(&self, name: Option<String>) {
+        self.shared.state().at_work = name.into_iter().map(|name| (name, Instant::now())).collect();
+    }
+
     /// Nothing more is shown.
     pub fn finish(mut self) {
         self.end();

@@ -18,6 +18,7 @@ pub struct Summary {
     limits: Vec<OfL2>,
     statuses: BTreeMap<&'static str, usize>,
     images: usize,
+    between: usize,
     grows_with_cell: usize,
     below_bound: Option<f64>,
     better_chance: Option<f64>,
@@ -81,12 +82,19 @@ impl Summary {
         l2.sort_by(f64::total_cmp);
         l2.dedup();
         let of = |l2: f64| {
-            let asked = rows.iter().filter(|r| r.l2 == l2);
-            let found = asked.clone().filter_map(|r| Some(Extreme { l1: r.l1?, direction_deg: r.direction_deg }));
+            let all = rows.iter().filter(|r| r.l2 == l2);
+            let found = all.clone().filter_map(|r| Some(Extreme { l1: r.l1?, direction_deg: r.direction_deg }));
+            let asked = all.filter(|r| r.extreme.is_none());
             // Rounding decides nothing: of equal limits the first direction is named.
             let order = |a: &Extreme, b: &Extreme| (a.l1 * 1e9).round().total_cmp(&(b.l1 * 1e9).round());
             let largest = found.clone().reduce(|a, b| if order(&b, &a).is_gt() { b } else { a });
-            OfL2 { l2, least: found.clone().min_by(order), largest, found: found.count(), asked: asked.count() }
+            OfL2 {
+                l2,
+                least: found.min_by(order),
+                largest,
+                found: asked.clone().filter(|r| r.l1.is_some()).count(),
+                asked: asked.count(),
+            }
         };
         let count = |status: Status| rows.iter().filter(|r| r.status == status).count();
         Summary {
@@ -95,6 +103,7 @@ impl Summary {
             lateral_free: rows.iter().any(|r| r.lateral.as_deref() == Some("free")),
             limits: l2.into_iter().map(of).collect(),
             statuses: Status::ALL.iter().map(|s| (s.name(), count(*s))).filter(|(_, n)| *n > 0).collect(),
+            between: rows.iter().filter(|r| r.extreme.is_some()).count(),
             images: rows.iter().filter(|r| r.image_of_deg.is_some()).count(),
             grows_with_cell: rows.iter().filter(|r| r.l1.is_some() && r.grows_with_cell == Some(true)).count(),
             below_bound: rows
@@ -113,7 +122,9 @@ impl Summary {
     /// Prints it for people.
     pub fn print(&self) {
         output::say!("{:>8}  {:>20}  {:>20}  {:>7}", "l2", "smallest l1", "largest l1", "limits");
-        let show = |x: &Option<Extreme>| x.map_or("-".into(), |x| format!("{:.4} at {}°", x.l1, x.direction_deg));
+        let show = |x: &Option<Extreme>| {
+            x.map_or("-".into(), |x| format!("{:.4} at {}°", x.l1, (x.direction_deg * 1e3).round() / 1e3))
+        };
         for of in &self.limits {
             let (least, largest) = (show(&of.least), show(&of.largest));
             let l2 = if self.lateral_free { "free".into() } else { of.l2.to_string() };
@@ -154,6 +165,11 @@ impl Summary {
             count => {
                 output::say!("{count} limits have an unstable wave: a larger cell may go further; see wave_curvature");
             }
+        }
+        match self.between {
+            0 => {}
+            1 => output::say!("1 extreme lies between the directions that were asked for; see extreme"),
+            count => output::say!("{count} extremes lie between the directions that were asked for; see extreme"),
         }
         match self.images {
             0 => {}

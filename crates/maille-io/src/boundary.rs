@@ -22,7 +22,7 @@ pub(crate) fn point(vertex: &BoundaryVertex) -> Option<[f64; 3]> {
 }
 
 /// Columns of the table: name, type, unit (1: a strain or another number without one), and meaning.
-const COLUMNS: [(&str, &str, Option<&str>, &str); 14] = [
+const COLUMNS: [(&str, &str, Option<&str>, &str); 13] = [
     ("vertex", "count", None, "number of the vertex, from 0"),
     ("direction_xx", "number", Some("1"), "exx of the ray's unit vector"),
     ("direction_yy", "number", Some("1"), "eyy of the ray's unit vector"),
@@ -32,12 +32,6 @@ const COLUMNS: [(&str, &str, Option<&str>, &str); 14] = [
     ("exx", "number", Some("1"), "Green strain along x at the end of the ray"),
     ("eyy", "number", Some("1"), "Green strain along y at the end of the ray"),
     ("exy", "number", Some("1"), "tensor shear at the end of the ray"),
-    (
-        "first_exit",
-        "number",
-        Some("1"),
-        "distance at which the straight deformation path from the start is first blocked",
-    ),
     ("bound", "number", Some("1"), "proven bound of the distance"),
     ("n_distinct", "count", None, "number of distinct certified values"),
     ("wave_curvature", "number", Some("1"), "least curvature found on waves through the sheet"),
@@ -60,7 +54,6 @@ pub fn boundary_json(boundary: &Boundary, most: usize) -> String {
             json!(exx),
             json!(eyy),
             json!(exy),
-            json!(v.first),
             json!(v.bound),
             json!(v.n_distinct),
             json!(v.wave_curvature),
@@ -83,12 +76,12 @@ pub fn boundary_csv(boundary: &Boundary) -> String {
         let [x, y, z] = v.direction;
         let at = v.distance.map(|distance| v.point(distance));
         let [exx, eyy, exy] = std::array::from_fn(|i| csv_number(at.map(|p| p[i])));
-        let (distance, first, bound) = (csv_number(v.distance), csv_number(v.first), csv_number(v.bound));
+        let (distance, bound) = (csv_number(v.distance), csv_number(v.bound));
         let (status, distinct, cell) = (v.status.name(), v.n_distinct, csv_text(&v.cell.to_string()));
         let wave = csv_number(v.wave_curvature);
         let _ = writeln!(
             out,
-            "{k},{x:?},{y:?},{z:?},{status},{distance},{exx},{eyy},{exy},{first},{bound},{distinct},{wave},{cell}"
+            "{k},{x:?},{y:?},{z:?},{status},{distance},{exx},{eyy},{exy},{bound},{distinct},{wave},{cell}"
         );
     }
     out
@@ -179,7 +172,6 @@ mod tests {
             direction,
             status,
             distance,
-            first: None,
             bound,
             n_distinct: 0,
             wave_curvature: None,
@@ -204,7 +196,7 @@ mod tests {
         let ply = boundary_ply(&surface, "a");
         assert!(ply.contains("element vertex 3\n") && ply.contains("element face 1\n"));
         assert!(ply.contains("0 0.5 0 -1 ") && ply.contains("0 0 0.25 0.75 ") && ply.ends_with("3 0 2 1\n"));
-        assert!(boundary_csv(&surface).contains("\n0,1.0,0.0,0.0,l2-not-reached,,,,,,,0,,1x1\n"));
+        assert!(boundary_csv(&surface).contains("\n0,1.0,0.0,0.0,l2-not-reached,,,,,,0,,1x1\n"));
         let table: Value = serde_json::from_str(&boundary_json(&surface, 3)).unwrap();
         let names: Vec<&str> =
             table["columns"].as_array().unwrap().iter().map(|c| c["name"].as_str().unwrap()).collect();

@@ -308,6 +308,7 @@ impl RawDesign {
             cells: cell.clone(),
             directions_deg: directions_deg.unwrap_or_else(|| (0..=180).step_by(15).map(f64::from).collect()),
             l2: l2.unwrap_or_else(|| vec![0.0]),
+            extremes: false,
         })
     }
 }
@@ -354,7 +355,7 @@ mod tests {
         let text =
             "l2 = \"-0.25:0:0.125\"\n[[designs]]\ndesign = \"1.1\"\nspacing = 1\n[[designs]]\ndesign = \"a.toml\"\n";
         let study = Study::read("s", text).unwrap();
-        let MapQuestion { method, cells, directions_deg, l2 } = &study.designs[0].question;
+        let MapQuestion { method, cells, directions_deg, l2, .. } = &study.designs[0].question;
         assert_eq!((directions_deg.len(), l2.len(), cells), (13, 3, &CellChoice::Auto));
         assert_eq!(*method, Method::Exact(ExactOptions::default()));
         assert_eq!(study.designs[0].spacing, [1.0]);

@@ -78,7 +78,7 @@ pub fn refused(wrong: &InvalidInput) -> PyErr {
     let plain = |text: &str| text.replace('`', "");
     let field = match wrong.field.as_str() {
         "direction_deg" | "directions_deg" => "directions",
-        field @ ("method" | "l2" | "effort" | "starts" | "cell") => field,
+        field @ ("extremes" | "method" | "l2" | "effort" | "starts" | "cell") => field,
         _ => "energy",
     };
     error::argument(field, plain(&wrong.problem), plain(&wrong.help))
@@ -92,13 +92,14 @@ pub fn effort(text: &str) -> PyResult<String> {
 
 /// What a map asks, as JSON. `energy` has options of the energy method, as JSON.
 #[pyfunction]
-#[pyo3(signature = (*, directions, l2, lateral_free, shear_free, compression, method, cell, effort, starts, seed, energy))]
+#[pyo3(signature = (*, directions, l2, lateral_free, shear_free, compression, extremes, method, cell, effort, starts, seed, energy))]
 pub fn map_question(
     directions: Option<Vec<f64>>,
     l2: Option<Vec<f64>>,
     lateral_free: bool,
     shear_free: bool,
     compression: bool,
+    extremes: Option<bool>,
     method: &str,
     cell: &str,
     effort: &str,
@@ -114,7 +115,7 @@ pub fn map_question(
         "energy" => Method::energy(energy_options(energy, seed)?, across, compression),
         other => return Err(error::argument("method", format!("\"{other}\" is none"), "give exact or energy")),
     };
-    let question = method.and_then(|method| MapQuestion::new(method, cell.parse()?, directions, l2));
+    let question = method.and_then(|method| MapQuestion::new(method, cell.parse()?, directions, l2, extremes));
     Ok(write(&question.map_err(|e| refused(&e))?))
 }
 

@@ -8,7 +8,9 @@ use crate::{
 };
 use maille::{
     survey::CellChoice,
-    survey::surface::{BoundaryOptions, BoundaryVertex, Ray, RaySolver, boundary_by as boundary_by_rays, has_surface},
+    survey::surface::{
+        BoundaryOptions, BoundaryVertex, Pass, Ray, RaySolver, boundary_by as boundary_by_rays, has_surface,
+    },
 };
 use maille_io::boundary::BoundaryHead;
 use pyo3::prelude::*;
@@ -71,7 +73,11 @@ pub fn boundary(
     let model = design.compile(options.cell())?;
     has_surface(&model).map_err(|e| error::invalid(&e))?;
     let found = wait(py, threads, progress.as_ref(), |cancel, tell| {
-        let mut planned = |rays| tell(Step::More(rays));
+        let mut planned = |pass| {
+            if let Pass::New(rays) = pass {
+                tell(Step::More(rays));
+            }
+        };
         let found = |_: &_| tell(Step::Done);
         maille::survey::surface::boundary(&model, &options, &[], cancel, &mut planned, &found)
     })?;

@@ -195,7 +195,12 @@ fn rows_and_states(run: &Run, rows: &[Row], states: &[State]) -> Vec<Finding> {
     let numbers = |name: &str| list(name).iter().filter_map(Value::as_f64).collect::<Vec<f64>>();
     let (directions, l2) = (numbers("directions_deg"), numbers("l2"));
     let asked: BTreeSet<_> = directions.iter().flat_map(|&d| l2.iter().map(move |&l2| key(d, l2))).collect();
+    let sought = run.parameters["extremes"].as_bool().unwrap_or(false);
     for row in rows.iter().filter(|row| !asked.contains(&key(row.direction_deg, row.l2))) {
+        if sought && let Some(extreme) = &row.extreme {
+            wrong.extend(not_extreme(row, extreme, rows, &directions, &l2));
+            continue;
+        }
         wrong.push(format!("{}°, l2 = {} was not asked for in {RUN}", row.direction_deg, row.l2));
     }
     let count = wrong.len();
@@ -215,4 +220,20 @@ fn rows_and_states(run: &Run, rows: &[Row], states: &[State]) -> Vec<Finding> {
         ));
     }
     out
+}
+
+/// What is wrong with a row that is called the largest or the smallest l1 of its l2 between the directions that were asked for.
+fn not_extreme(row: &Row, extreme: &str, rows: &[Row], directions: &[f64], l2: &[f64]) -> Option<String> {
+    let at = format!("{}°, l2 = {}", row.direction_deg, row.l2);
+    let range = directions.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), deg| (a.min(*deg), b.max(*deg)));
+    let between = (range.0..=range.1).contains(&row.direction_deg);
+    if !between || !l2.contains(&row.l2) || !["largest", "smallest"].contains(&extreme) {
+        return Some(format!("{at} was not asked for in {RUN}"));
+    }
+    let sign = if extreme == "largest" { 1.0 } else { -1.0 };
+    let others = rows.iter().filter(|other| other.l2 == row.l2).filter_map(|other| other.l1);
+    let beyond = others.map(|l1| sign * l1).fold(f64::NEG_INFINITY, f64::max);
+    let own = row.l1.map_or(f64::NEG_INFINITY, |l1| sign * l1);
+    // Images differ by rounding.
+    (own < beyond - 1e-12).then(|| format!("{at} is called the {extreme} l1 of its l2, and another row goes beyond it"))
 }

@@ -235,6 +235,8 @@ pub(crate) struct Row {
     pub wave_q1: Option<f64>,
     #[serde(default)]
     pub wave_q2: Option<f64>,
+    #[serde(default)]
+    pub extreme: Option<String>,
     /// Columns that are not empty.
     #[serde(skip)]
     pub present: BTreeSet<String>,

@@ -46,7 +46,7 @@ pub fn map_of(directions_deg: Vec<f64>, l2: Vec<f64>, lateral_free: bool) -> Res
     let across = Across { lateral_free, shear_free: false };
     let method = Method::Exact(ExactOptions { across, ..ExactOptions::default() });
     let l2 = Some(l2).filter(|l2| !(lateral_free && *l2 == [0.0]));
-    let question = MapQuestion::new(method, CellChoice::Auto, Some(directions_deg), l2)
+    let question = MapQuestion::new(method, CellChoice::Auto, Some(directions_deg), l2, None)
         .map_err(|e| Refusal::wrong(e.to_string(), e.help))?;
     Ok(Map { question, quantity: Quantity::default(), out: None, overwrite: false, sensitivities: false })
 }

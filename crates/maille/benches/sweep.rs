@@ -21,7 +21,7 @@ fn map(bencher: Bencher<'_, '_>, threads: usize) {
     let models = [Model::compile(&design, Cell::PRIMITIVE).expect("compiles")];
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
     let method = Method::Exact(ExactOptions::default());
-    let question = MapQuestion::new(method, CellChoice::Auto, None, None).expect("the usual map");
+    let question = MapQuestion::new(method, CellChoice::Auto, None, None, None).expect("the usual map");
     bencher.counter(ItemsCount::new(question.tasks().len())).bench_local(|| {
         let (all, cancel) = (|_| true, AtomicBool::new(false));
         pool.install(|| characterize(&models, None, &question, &all, &cancel, &|_, _| (), &|found| drop(found)));

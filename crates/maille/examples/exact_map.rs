@@ -50,7 +50,7 @@ fn main() {
             let rows = Mutex::new(Vec::<Finished>::new());
             let effort = option("effort", "normal").parse().expect("an effort");
             let method = Method::Exact(ExactOptions { effort, ..ExactOptions::default() });
-            let map = MapQuestion::new(method, CellChoice::Auto, Some(directions.clone()), Some(L2.to_vec()));
+            let map = MapQuestion::new(method, CellChoice::Auto, Some(directions.clone()), Some(L2.to_vec()), None);
             let question = map.expect("a map that can be asked");
             let started = Instant::now();
             characterize(&models, Some(radius), &question, &|_| true, &AtomicBool::new(false), &|_, _| (), &|row| {

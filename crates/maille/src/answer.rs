@@ -20,8 +20,6 @@ pub struct Answer {
     /// the clearance, the area as a share of the written one, the curvature of a roll, or the gap, l2 or radius of a tube. Certified if the status says so; of an `uncertified` answer the best feasible value. `None` where
     /// nothing was found.
     pub value: Option<f64>,
-    /// Value of the first start, which goes straight from the design's state (strains and rays).
-    pub first: Option<f64>,
     /// Proven bound of the value: no state lies beyond it.
     pub bound: Option<f64>,
     /// Where the bound of a stretch comes from; `None` for other goals.
@@ -129,7 +127,6 @@ impl Answer {
         Answer {
             status,
             value: None,
-            first: None,
             bound: None,
             bound_kind: None,
             chain: None,

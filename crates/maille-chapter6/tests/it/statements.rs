@@ -26,7 +26,7 @@ fn limits_along(design: &Design, directions: &[f64], l2: &[f64], words: &str) ->
     let model = Model::compile(design, Cell::PRIMITIVE).unwrap();
     let rows: Mutex<Vec<LimitRow>> = Mutex::new(Vec::new());
     let (method, cells) = (Method::Exact(ExactOptions::default()), CellChoice::Auto);
-    let question = MapQuestion { method, cells, directions_deg: directions.to_vec(), l2: l2.to_vec() };
+    let question = MapQuestion { method, cells, directions_deg: directions.to_vec(), l2: l2.to_vec(), extremes: false };
     let found = |finished: maille::survey::Finished| rows.lock().unwrap().push(finished.row);
     let cancel = AtomicBool::new(false);
     characterize(&[model], design.minor_radius, &question, &|_| true, &cancel, &|_, _| (), &found);

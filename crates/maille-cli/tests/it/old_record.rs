@@ -18,7 +18,7 @@ fn read_by_every_command(name: &str, caption: &str, at: &str) {
     assert_eq!(table.lines().count(), old.lines().count());
     for (line, old) in table.lines().zip(old.lines()) {
         let later = line.strip_prefix(old).unwrap_or_else(|| panic!("{line} does not begin with {old}"));
-        assert!(later == ",better_chance,wave_curvature,wave_q1,wave_q2" || later == ",,,,", "{line}");
+        assert!(later == ",better_chance,wave_curvature,wave_q1,wave_q2,extreme" || later == ",,,,,", "{line}");
     }
     done(folder, "plot ./old -o old.svg");
     let svg = fs::read_to_string(folder.join("old.svg")).unwrap();

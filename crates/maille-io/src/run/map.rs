@@ -7,7 +7,7 @@ use maille::design::Design;
 use maille::lattice::Cell;
 use maille::model::Model;
 use maille::record::{LimitRow, StateRecord};
-use maille::survey::{CellChoice, Finished, MapQuestion, Method, Task, Work, chains, characterize};
+use maille::survey::{CellChoice, Finished, MapQuestion, Method, Task, Work, chains, characterize, extremes};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -63,17 +63,20 @@ impl Map {
         let all = self.question.tasks();
         let mut rows: Vec<Option<(LimitRow, StateRecord)>> = vec![None; all.len()];
         let mut folder = None;
+        let mut extremes = Vec::new();
         if let Some(path) = &self.out {
             let (opened, old_rows, old_states) =
                 RecordFolder::open(path, design, &parameters, VERSION, self.overwrite)?;
             folder = Some(opened);
             for (row, state) in old_rows.into_iter().zip(old_states) {
-                if let Some(k) = place(&all, &row) {
-                    rows[k] = Some((row, state));
+                match place(&all, &row) {
+                    Some(k) => rows[k] = Some((row, state)),
+                    None if row.extreme.is_some() => extremes.push((row, state)),
+                    None => {}
                 }
             }
         }
-        let collected = Collected { folder, rows, written: Instant::now(), failure: None };
+        let collected = Collected { folder, rows, extremes, written: Instant::now(), failure: None };
         Ok(OpenMap { map: self.clone(), design: design.clone(), models, parameters, all, collected })
     }
 }
@@ -145,12 +148,13 @@ impl OpenMap {
     /// on the disk when this returns.
     pub fn keep(&mut self, row: LimitRow, state: StateRecord) -> Result<bool, RecordError> {
         match place(&self.all, &row).filter(|k| self.collected.rows[*k].is_none()) {
-            Some(k) => self.collected.keep(k, Finished { row, state }).map(|()| true),
+            Some(k) => self.collected.keep(Some(k), Finished { row, state }).map(|()| true),
             None => Ok(false),
         }
     }
 
-    /// Asks for the limits that are left, on the current thread pool, writes the record, and gives it. `found` is shown
+    /// Asks for the limits that are left, on the current thread pool, then for the extremes between them where the question does, writes
+    /// the record, and gives it. `found` is shown
     /// each limit with its state, `work` hears when one is begun and ended; after `cancel` what is finished is written.
     pub fn run(
         mut self,
@@ -163,8 +167,8 @@ impl OpenMap {
         let receive = |finished: Finished| {
             found(&finished.row, &finished.state);
             let mut collected = collected.lock().unwrap_or_else(|e| e.into_inner());
-            let Some(k) = place(&self.all, &finished.row) else { return };
-            if let Err(error) = collected.keep(k, finished) {
+            let place = place(&self.all, &finished.row);
+            if let Err(error) = collected.keep(place, finished) {
                 collected.failure = Some(error);
                 cancel.store(true, Ordering::Relaxed);
             }
@@ -172,6 +176,11 @@ impl OpenMap {
         let wanted = |task: Task| open.contains(&task);
         let radius = self.design.minor_radius;
         characterize(&self.models, radius, &self.map.question, &wanted, cancel, work, &receive);
+        if self.map.question.extremes {
+            let (rows, states) = collected.lock().unwrap_or_else(|e| e.into_inner()).finished();
+            let known: Vec<_> = rows.into_iter().zip(states).collect();
+            extremes(&self.models, radius, &self.map.question, &known, cancel, work, &receive);
+        }
         self.finish()
     }
 
@@ -254,10 +263,11 @@ fn place(all: &[Task], row: &LimitRow) -> Option<usize> {
     all.iter().position(|t| (t.direction_deg, t.l2) == (row.direction_deg, row.l2))
 }
 
-/// The rows found so far, in the order of the tasks, and when they were last written.
+/// The rows found so far, in the order of the tasks, extremes between their directions, and when they were last written.
 struct Collected {
     folder: Option<RecordFolder>,
     rows: Vec<Option<(LimitRow, StateRecord)>>,
+    extremes: Vec<(LimitRow, StateRecord)>,
     written: Instant,
     failure: Option<RecordError>,
 }
@@ -267,16 +277,30 @@ const WRITE_INTERVAL: Duration = Duration::from_secs(1);
 
 impl Collected {
     fn finished(&self) -> (Vec<LimitRow>, Vec<StateRecord>) {
-        self.rows.iter().flatten().cloned().unzip()
+        let mut all: Vec<&(LimitRow, StateRecord)> = self.rows.iter().flatten().collect();
+        let mut extremes: Vec<_> = self.extremes.iter().collect();
+        extremes.sort_by(|(a, _), (b, _)| a.direction_deg.total_cmp(&b.direction_deg));
+        for extreme in extremes {
+            // After the last direction before it.
+            let before = |(row, _): &&(LimitRow, StateRecord)| {
+                row.l2 == extreme.0.l2 && row.direction_deg <= extreme.0.direction_deg
+            };
+            let at = all.iter().rposition(before).map_or(all.len(), |at| at + 1);
+            all.insert(at, extreme);
+        }
+        all.into_iter().cloned().unzip()
     }
 
-    /// Takes a limit: with a folder, it is on the disk when this returns.
-    fn keep(&mut self, place: usize, Finished { row, state }: Finished) -> Result<(), RecordError> {
+    /// Takes a limit, without a place among the tasks an extreme: with a folder, it is on the disk when this returns.
+    fn keep(&mut self, place: Option<usize>, Finished { row, state }: Finished) -> Result<(), RecordError> {
         let due = self.written.elapsed() >= WRITE_INTERVAL;
         if let Some(folder) = self.folder.as_mut().filter(|_| !due) {
             folder.append(&row, &state)?;
         }
-        self.rows[place] = Some((row, state));
+        match place {
+            Some(place) => self.rows[place] = Some((row, state)),
+            None => self.extremes.push((row, state)),
+        }
         if due { self.write() } else { Ok(()) }
     }
 

@@ -60,17 +60,22 @@ pub fn replay<'a>(
     let compile = |cell| Model::compile(design, cell).map_err(|problems| ReplayError::Design(problems[0].clone()));
     let cells = asked.cells.cells(&asked.method, design.elements.len());
     let models: Vec<Model> = cells.into_iter().map(compile).collect::<Result<_, _>>()?;
-    let directions_deg = distinct(rows.iter().map(|row| row.direction_deg)).0;
-    let question = MapQuestion { directions_deg, ..asked };
-    let tolerance = match &question.method {
+    let tolerance = match &asked.method {
         Method::Energy(options) => options.l1_resolution,
         Method::Exact(_) => SAME_L1,
     };
     let wanted = |task: Task| rows.iter().any(|row| (row.direction_deg, row.l2) == (task.direction_deg, task.l2));
     let found = Mutex::new(Vec::<Finished>::new());
-    characterize(&models, design.minor_radius, &question, &wanted, cancel, &|_, _| (), &|row| {
-        found.lock().unwrap_or_else(|e| e.into_inner()).push(row);
-    });
+    let solve = |directions_deg: Vec<f64>, l2: Vec<f64>| {
+        let question = MapQuestion { directions_deg, l2, ..asked.clone() };
+        characterize(&models, design.minor_radius, &question, &wanted, cancel, &|_, _| (), &|row| {
+            found.lock().unwrap_or_else(|e| e.into_inner()).push(row);
+        });
+    };
+    // An extreme between directions is solved alone.
+    let (extremes, named): (Vec<&LimitRow>, Vec<&LimitRow>) = rows.iter().partition(|row| row.extreme.is_some());
+    solve(distinct(named.iter().map(|row| row.direction_deg)).0, asked.l2.clone());
+    extremes.iter().for_each(|row| solve(vec![row.direction_deg], vec![row.l2]));
     let found = found.into_inner().unwrap_or_else(|e| e.into_inner());
     let now =
         |then: &LimitRow| found.iter().find(|now| (now.row.direction_deg, now.row.l2) == (then.direction_deg, then.l2));

@@ -139,7 +139,7 @@ fn a_damaged_table_is_named_by_line_column_and_value() {
         broken("lambda1,lambda2", "lambda2,lambda1"),
         "out/limits.csv:1: column 9 is \"lambda2\", expected \"lambda1\""
     );
-    assert_eq!(broken(",0.25,", ","), "out/limits.csv:2: 47 columns, expected 48");
+    assert_eq!(broken(",0.25,", ","), "out/limits.csv:2: 48 columns, expected 49");
     assert_eq!(
         message(read_limits("limits.csv", &text[..text.len() - 3])),
         "limits.csv:3: the file ends within this line"
@@ -381,7 +381,8 @@ fn tables_of_forces_are_read_as_they_were_written() {
 /// A map of 1.1 in its own cell, open, with its record in memory.
 fn open_map(directions_deg: &[f64]) -> OpenMap {
     let (method, cells) = (Method::Exact(ExactOptions::default()), Cell::PRIMITIVE.into());
-    let question = MapQuestion::new(method, cells, Some(directions_deg.to_vec()), Some(vec![-0.125, 0.0])).unwrap();
+    let question =
+        MapQuestion::new(method, cells, Some(directions_deg.to_vec()), Some(vec![-0.125, 0.0]), None).unwrap();
     let map = Map { question, quantity: Quantity::default(), out: None, overwrite: false, sensitivities: false };
     let models = map.cells(&design()).into_iter().map(|cell| Model::compile(&design(), cell).unwrap()).collect();
     map.open(&design(), models).unwrap()

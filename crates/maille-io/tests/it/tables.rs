@@ -97,7 +97,7 @@ fn what_a_study_varies_is_a_column() {
     records[1].record.run.design = varied;
     let csv = Table::new(&records, Field::all(&records, true)).csv();
     let mut lines = csv.lines();
-    assert!(lines.next().unwrap().ends_with(",wave_q2,elements.standing-*.rings.major_radius,spacing"));
+    assert!(lines.next().unwrap().ends_with(",wave_q2,extreme,elements.standing-*.rings.major_radius,spacing"));
     let ends: Vec<bool> = lines.map(|line| line.ends_with(",0.75,0.75")).collect();
     assert_eq!(ends, [false, false, false, true]);
     assert!(csv.lines().nth(1).unwrap().ends_with(",,"));
@@ -118,7 +118,7 @@ fn columns_are_named_once_and_known() {
     let message = |text: &str| checked(text).unwrap_err().to_string();
     assert_eq!(message("l1,lambda3"), "there is no column \"lambda3\"; did you mean lambda1?");
     assert_eq!(message("direction,l1,direction_deg"), "column direction_deg is named twice; name each column once");
-    assert!(message("xyz").ends_with("wave_q2, record, spacing"));
+    assert!(message("xyz").ends_with("wave_q2, extreme, record, spacing"));
 }
 
 fn document(name: &str) -> String {

@@ -68,6 +68,7 @@ def map_question(
     lateral_free: bool,
     shear_free: bool,
     compression: bool,
+    extremes: bool | None,
     method: str,
     cell: str,
     effort: str,

@@ -203,6 +203,7 @@ def characterize(
     lateral: Held = "fixed",
     shear: Held = "fixed",
     compression: bool = False,
+    extremes: bool | None = None,
     method: Literal["exact", "energy"] = "exact",
     cell: str = "auto",
     minor_radius: float | None = None,
@@ -221,7 +222,8 @@ def characterize(
 
     `directions` (degrees counter-clockwise from x) and `l2` (stretch - 1 held across) are numbers or ranges as
     `"0:180:5"`. `lateral="free"` and `shear="free"` leave width and shear to the sheet. `compression` asks how far
-    the sheet is compressed instead, in all cells up to 3x3. `energy` has options of the energy
+    the sheet is compressed instead, in all cells up to 3x3. With `extremes` the largest and the smallest l1 of each l2 are
+    sought between the directions, too, as rows of their own; by default where `directions` and `compression` are left out. `energy` has options of the energy
     method, as `{"tau": 0.01}`. With `out` the record is kept in that folder while limits come in, and the same call goes on
     where an earlier one stopped; without, it stays in memory. With `sensitivities` the folder gets the derivatives of the limits,
     too: those of `Record.sensitivities`. `progress` is True for a bar of tqdm, or is called with
@@ -244,6 +246,7 @@ def characterize(
         lateral=lateral,
         shear=shear,
         compression=compression,
+        extremes=extremes,
         method=method,
         cell=cell,
         effort=effort,
@@ -272,6 +275,7 @@ def _question(
     lateral: Held = "fixed",
     shear: Held = "fixed",
     compression: bool = False,
+    extremes: bool | None = None,
     method: Literal["exact", "energy"] = "exact",
     cell: str = "auto",
     effort: str = "normal",
@@ -288,6 +292,7 @@ def _question(
         lateral_free=_free("lateral", lateral),
         shear_free=_free("shear", shear),
         compression=compression,
+        extremes=extremes,
         method=method,
         cell=cell,
         effort=_effort(effort),

@@ -161,6 +161,7 @@ export interface LimitRow {
   wave_curvature: number | null;
   wave_q1: number | null;
   wave_q2: number | null;
+  extreme: string | null;
 }
 
 export interface Listed {

@@ -7,7 +7,7 @@ use crate::{
 use serde::{Deserialize, Serialize};
 
 /// Names of columns of tables, and of the numbers that studies vary: no parameter can have one of these.
-pub const TAKEN: [&str; 53] = [
+pub const TAKEN: [&str; 54] = [
     "a1_x",
     "a1_y",
     "a2_x",
@@ -24,6 +24,7 @@ pub const TAKEN: [&str; 53] = [
     "direction_deg",
     "dual_residual",
     "end",
+    "extreme",
     "grows_with_cell",
     "image_of_deg",
     "iterations",

@@ -309,4 +309,5 @@ columns! {
     wave_curvature: Option<f64>, One, "least curvature found on waves through the sheet that keep the loaded contacts; negative where a larger cell may go further; empty where it was not sought or the limit is proved";
     wave_q1: Option<f64>, One, "its wave vector: phase from one solved cell to the next along the first lattice vector, in units of 2π";
     wave_q2: Option<f64>, One, "the same along the second";
+    extreme: Option<String>, None, "largest or smallest: the l1 of this row is the largest, or smallest, of its l2 over all directions, found between those that were asked for; empty for these";
 }

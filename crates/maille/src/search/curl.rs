@@ -217,7 +217,6 @@ pub(crate) fn roll_from(
 /// Goes on to larger cells where an element presses on its own image.
 fn in_larger_cells(search: &Multistart<'_, Curl>, models: &[Model], first: SearchResult, own_starts: u64) -> Answer {
     let target = search.target;
-    let exit = first.first.map(|first| target.sign * first);
     let rule = LargerCells {
         every: false,
         own_starts,
@@ -229,8 +228,7 @@ fn in_larger_cells(search: &Multistart<'_, Curl>, models: &[Model], first: Searc
     };
     let found = search.larger_cells(models, first, &rule);
     let model = found.model(models).clone();
-    let answer = target.answered(&model, found.result, found.by_cell, search.cancel.load(Ordering::Relaxed));
-    Answer { first: exit, ..answer }
+    target.answered(&model, found.result, found.by_cell, search.cancel.load(Ordering::Relaxed))
 }
 
 impl Curl {

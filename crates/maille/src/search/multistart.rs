@@ -67,8 +67,6 @@ pub(super) struct Multistart<'a, T> {
 #[derive(Default)]
 pub(super) struct SearchResult {
     pub best: Option<LocalSolution>,
-    /// Value of the first start.
-    pub first: Option<f64>,
     /// Distinct certified values, and how many starts led to each.
     pub distinct: Vec<(f64, u64)>,
     /// Starts.
@@ -232,8 +230,7 @@ impl<T: Target> Multistart<'_, T> {
         let mut stream = rng(self.seed, Use::Restart, number);
         let (best, more) = local_maximize(model, &mut program, x, course, &mut stream, self.cancel);
         let distinct = best.iter().filter(|best| best.certified).map(|best| (best.value(), 1)).collect();
-        let first = best.as_ref().map(LocalSolution::value);
-        SearchResult { best, first, distinct, iterations: iterations + more, ..one }
+        SearchResult { best, distinct, iterations: iterations + more, ..one }
     }
 
     /// Goes on from the first of `models` to larger ones, see [`LargerCells`]. `result` is what the first cell found.
@@ -362,9 +359,6 @@ impl SearchResult {
             (Some(new), Some(old)) => (new.certified, new.value()) > (old.certified, old.value()),
             (new, _) => new.is_some(),
         };
-        if self.runs == 0 {
-            self.first = found.first;
-        }
         self.count(&found);
         if better {
             self.best = found.best;

@@ -188,7 +188,6 @@ impl<'a> StrainMethod<'a> {
         let given = straight.map(Start::written).into_iter().chain(repeated).chain(of(model.cell));
         let mut first = search.run(model, given.collect(), stop);
         (first.runs, first.iterations) = (first.runs + runs, first.iterations + iterations);
-        let exit = first.first;
         let own_starts = stop.of_larger_cell(least);
         let beyond = match others {
             OtherStarts::NoneAndBeyond(value) => value,
@@ -220,8 +219,7 @@ impl<'a> StrainMethod<'a> {
         // Without a bound, and where no contact pushes back: this is no limit, only where the search was stopped.
         let stopped = status == Status::Uncertified && bound.is_none() && best.contacts.is_empty();
         let value = Some(sign * best.value()).filter(|_| !stopped);
-        let first = exit.map(|exit| sign * exit).filter(|_| !stopped);
-        let answer = counted(Answer { value, first, ..Answer::new(model, status) }).with_solution(model, best);
+        let answer = counted(Answer { value, ..Answer::new(model, status) }).with_solution(model, best);
         let gradient = answer.state.deformation_gradient(model);
         let answer = Answer { gradient, wave, ..answer };
         if !answer.is_limit() {

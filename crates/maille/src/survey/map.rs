@@ -140,18 +140,46 @@ pub(crate) fn one<'a>(
     options: &ExactOptions,
     direction_deg: f64,
     l2: f64,
-    cancel: &AtomicBool,
+    cancel: &'a AtomicBool,
 ) -> (Cow<'a, Model>, Answer) {
-    let method = Method::Exact(options.clone());
-    let (operations, chains) = symmetric_chains(&models[0], &method, &[direction_deg]);
-    let solved_deg = chains[0].representative_deg;
-    let mut answer = Answer::new(&models[0], Status::Interrupted);
-    let solved = Direction::of_degrees(solved_deg);
-    let mut finished = |_, found, _| answer = found;
-    ExactMethod::new(models, options.clone(), cancel).limits(solved, &[l2], cancel, &|_| (), &mut finished);
-    let answer = both_shears(answer, &operations, solved_deg);
-    if solved_deg != direction_deg {
-        return image(&operations, models, &answer, solved_deg, direction_deg);
+    let one = OneLimit::new(models, options, cancel);
+    let solved_deg = one.representative_deg(direction_deg);
+    one.along(&one.solve(solved_deg, l2), solved_deg, direction_deg)
+}
+
+/// Limits of one stretch each.
+pub(super) struct OneLimit<'a> {
+    pub models: &'a [Model],
+    pub operations: Vec<Operation>,
+    exact: ExactMethod<'a>,
+    cancel: &'a AtomicBool,
+}
+
+impl<'a> OneLimit<'a> {
+    pub fn new(models: &'a [Model], options: &ExactOptions, cancel: &'a AtomicBool) -> Self {
+        let exact = ExactMethod::new(models, options.clone(), cancel);
+        OneLimit { models, operations: operations(&models[0]), exact, cancel }
     }
-    (of_cell(models, answer.cell), answer)
+
+    /// The direction that is solved for `direction_deg`.
+    pub fn representative_deg(&self, direction_deg: f64) -> f64 {
+        orbits(&self.operations, &[direction_deg])[0].representative_deg
+    }
+
+    /// As a map of this direction and this l2 alone finds it, along a representative.
+    pub fn solve(&self, solved_deg: f64, l2: f64) -> Answer {
+        let mut answer = Answer::new(&self.models[0], Status::Interrupted);
+        let solved = Direction::of_degrees(solved_deg);
+        let mut finished = |_, found, _| answer = found;
+        self.exact.limits(solved, &[l2], self.cancel, &|_| (), &mut finished);
+        both_shears(answer, &self.operations, solved_deg)
+    }
+
+    /// The limit that was solved, along it or along an image of it, with the model of its cell.
+    pub fn along(&self, answer: &Answer, solved_deg: f64, direction_deg: f64) -> (Cow<'a, Model>, Answer) {
+        if solved_deg != direction_deg {
+            return image(&self.operations, self.models, answer, solved_deg, direction_deg);
+        }
+        (of_cell(self.models, answer.cell), answer.clone())
+    }
 }

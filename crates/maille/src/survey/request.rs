@@ -133,6 +133,9 @@ pub struct MapQuestion {
     pub directions_deg: Vec<f64>,
     /// Stretch − 1 held across it.
     pub l2: Vec<f64>,
+    /// Whether the largest and the smallest l1 of each l2 are sought between the directions, too, see [`extremes`](super::extremes()).
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub extremes: bool,
 }
 
 /// Lateral strains that are held where none are named.
@@ -140,7 +143,8 @@ const USUAL_L2: [f64; 5] = [-0.25, -0.125, 0.0, 0.125, 0.25];
 
 impl MapQuestion {
     /// A map that can be asked. Without directions it has every fifth degree to 180, without l2 the usual ones, or only 0
-    /// where the width is left to the sheet. In messages, options stand in backticks.
+    /// where the width is left to the sheet; extremes between the directions are sought where the exact method finds largest limits along the usual ones,
+    /// unless `extremes` says otherwise. In messages, options stand in backticks.
     ///
     /// # Errors
     /// Where l2 is given and the width is free, and what [`Self::check`] refuses.
@@ -149,6 +153,7 @@ impl MapQuestion {
         cells: CellChoice,
         directions_deg: Option<Vec<f64>>,
         l2: Option<Vec<f64>>,
+        extremes: Option<bool>,
     ) -> Result<Self, InvalidInput> {
         let l2 = match (l2, method.across().lateral_free) {
             (Some(_), true) => {
@@ -158,8 +163,10 @@ impl MapQuestion {
             (None, true) => vec![0.0],
             (l2, false) => l2.unwrap_or(USUAL_L2.to_vec()),
         };
+        let usual = directions_deg.is_none() && !method.compression() && matches!(method, Method::Exact(_));
+        let extremes = extremes.unwrap_or(usual);
         let directions_deg = directions_deg.unwrap_or_else(|| (0..=36).map(|k| 5.0 * f64::from(k)).collect());
-        let question = MapQuestion { method, cells, directions_deg, l2 };
+        let question = MapQuestion { method, cells, directions_deg, l2, extremes };
         question.check().map(|()| question)
     }
 
@@ -176,8 +183,21 @@ impl MapQuestion {
             }
         }
         self.cells.check()?;
+        let refused = |problem: &str, help| Err(InvalidInput::new("extremes", problem, help));
         if let Method::Energy(options) = &self.method {
             options.check()?;
+            if self.extremes {
+                return refused(
+                    "the energy method has no derivatives to seek them by",
+                    "leave out `extremes`, or `method` energy",
+                );
+            }
+        }
+        if self.extremes && self.directions_deg.len() < 2 {
+            return refused(
+                "they are sought between directions, and there is one",
+                "give two or more, or leave out `extremes`",
+            );
         }
         let (first_deg, first_l2) = (self.directions_deg[0], self.l2[0]);
         self.directions_deg.iter().try_for_each(|direction_deg| self.limit(*direction_deg, first_l2).check())?;

@@ -94,6 +94,7 @@ impl Asked<'_> {
             wave_curvature: wave.map(|wave| wave.least),
             wave_q1: wave.map(|wave| wave.q[0]),
             wave_q2: wave.map(|wave| wave.q[1]),
+            extreme: None,
         }
     }
 }

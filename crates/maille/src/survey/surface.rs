@@ -1,9 +1,8 @@
 //! The closed surface of all in-plane strains that a sheet can have: rays from the written lattice in the space of Green
 //! strains (E_xx, E_yy, E_xy), each as far as it goes.
 //!
-//! Each ray is a query of [`crate::search::strain`] with one parameter. Its first start goes straight from the design's state: where
-//! it is stopped is the first exit. The farthest certified state of all starts, its neighbours' states among them, is the
-//! vertex. Where the two differ the ray has left and entered the set again, or the straight way is blocked.
+//! Each ray is a query of [`crate::search::strain`] with one parameter. The farthest certified state of all starts, its
+//! neighbours' states among them, is the vertex. Nearer states of the ray may overlap: then it leaves the set and enters it again.
 //!
 //! The first rays are searched as the effort says. A later one starts from the states of the two rays that it was put between, and
 //! draws starts only until two lead to the best; none where both states are of larger cells. A ray may still end in a worse fold than a neighbour found. So
@@ -82,8 +81,6 @@ pub struct BoundaryVertex {
     pub status: Status,
     /// Distance of the farthest state.
     pub distance: Option<f64>,
-    /// Distance of the first exit.
-    pub first: Option<f64>,
     /// Proven bound of the distance.
     pub bound: Option<f64>,
     /// Distinct certified distances that the starts led to.
@@ -140,6 +137,15 @@ const FIRST: usize = 2;
 /// The rays of one division, on which thorough effort follows an unstable wave into each cell: what they find is handed on.
 const EVERY_WAVE: usize = 42;
 
+/// Rays that are solved beside each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Pass {
+    /// So many that are new.
+    New(usize),
+    /// So many once more, from their neighbours' states.
+    Again(usize),
+}
+
 /// A ray that is to be solved.
 #[doc(hidden)]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -185,7 +191,6 @@ impl<'a> RaySolver<'a> {
             direction: ray.direction,
             status: answer.status,
             distance: answer.value,
-            first: answer.first,
             bound: answer.bound.filter(|bound| bound.is_finite()),
             n_distinct: answer.n_distinct.unwrap_or(0),
             wave_curvature: answer.wave.map(|wave| wave.least),
@@ -206,13 +211,13 @@ pub fn has_surface(model: &Model) -> Result<(), InvalidInput> {
 
 /// Finds the surface on the current thread pool; the result does not depend on the number of threads. `known` are vertices of
 /// an earlier run. Of the same tolerance it goes on as if it had not been stopped; of another, rays may start from other neighbours, and
-/// end in other folds, than in a run of its own. `found` gets each new one, `planned` the number of rays of a pass before it begins.
+/// end in other folds, than in a run of its own. `found` gets each new one, `planned` each pass before it begins.
 pub fn boundary(
     model: &Model,
     options: &BoundaryOptions,
     known: &[BoundaryVertex],
     cancel: &AtomicBool,
-    planned: &mut dyn FnMut(usize),
+    planned: &mut dyn FnMut(Pass),
     found: &(dyn Fn(&BoundaryVertex) + Sync),
 ) -> Boundary {
     let solver = RaySolver::new(model, options);
@@ -236,7 +241,7 @@ pub fn boundary_by(
     options: &BoundaryOptions,
     known: &[BoundaryVertex],
     cancel: &AtomicBool,
-    planned: &mut dyn FnMut(usize),
+    planned: &mut dyn FnMut(Pass),
     solve: SolveRays<'_>,
 ) -> Boundary {
     let bits = |direction: [f64; 3]| direction.map(f64::to_bits);
@@ -259,14 +264,14 @@ pub fn boundary_by(
             Ray { direction: sphere.directions[k].into(), from, others }
         });
         let rays: Vec<Ray> = rays.collect();
-        planned(rays.len());
+        planned(Pass::New(rays.len()));
         let mut solved = solve(&rays, true).into_iter();
         let mut end = |k: usize| known(&k).cloned().or_else(|| solved.next().flatten());
         let ends: Vec<Option<BoundaryVertex>> = open.map(&mut end).collect();
         vertices.extend(ends.into_iter().map_while(|vertex| vertex));
         let complete = vertices.len() == sphere.directions.len();
         if complete {
-            hand_on(&sphere, options.tolerance, &mut vertices, &mut tried, solve);
+            hand_on(&sphere, options.tolerance, &mut vertices, &mut tried, planned, solve);
         }
         // Stopped while states were handed on: the next run does that again.
         let complete = complete && !cancel.load(Ordering::Relaxed);
@@ -301,6 +306,7 @@ fn hand_on(
     tolerance: f64,
     vertices: &mut [BoundaryVertex],
     tried: &mut BTreeSet<(usize, usize, u64)>,
+    planned: &mut dyn FnMut(Pass),
     solve: SolveRays<'_>,
 ) {
     for _ in 0..ROUNDS {
@@ -316,6 +322,9 @@ fn hand_on(
             }
         }
         let (places, rays): (Vec<usize>, Vec<Ray>) = tasks.into_iter().unzip();
+        if !rays.is_empty() {
+            planned(Pass::Again(rays.len()));
+        }
         let mut gained = false;
         for (k, new) in places.into_iter().zip(solve(&rays, false)) {
             let (old, Some(new)) = (&vertices[k], new) else { continue };
@@ -323,7 +332,7 @@ fn hand_on(
             let farther = new.distance.is_some_and(|d| old.distance.is_some_and(|old| d > old + GAIN));
             if certified && farther {
                 let n_distinct = new.n_distinct.max(old.n_distinct);
-                vertices[k] = BoundaryVertex { first: old.first, n_distinct, ..new };
+                vertices[k] = BoundaryVertex { n_distinct, ..new };
                 gained = true;
             }
         }

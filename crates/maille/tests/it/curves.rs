@@ -403,6 +403,7 @@ fn the_energy_method_agrees() {
         cells: CellChoice::Auto,
         directions_deg: vec![0.0],
         l2: vec![0.0],
+        extremes: false,
     };
     let found = rows(&[compiled(&design)], &question);
     assert!((found[0].row.l1.unwrap() - 0.2).abs() < 1e-3, "{:?}", found[0].row.l1);

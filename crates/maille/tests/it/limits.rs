@@ -17,7 +17,7 @@ use std::sync::atomic::AtomicBool;
 fn rows(model: &Model, options: &EnergyOptions, directions: &[f64], l2: &[f64]) -> Vec<Finished> {
     let method = Method::Energy(options.clone());
     let (directions_deg, l2) = (directions.to_vec(), l2.to_vec());
-    let question = MapQuestion { method, cells: CellChoice::Auto, directions_deg, l2 };
+    let question = MapQuestion { method, cells: CellChoice::Auto, directions_deg, l2, extremes: false };
     common::rows(std::slice::from_ref(model), &question)
 }
 

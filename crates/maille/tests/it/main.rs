@@ -1,6 +1,7 @@
 //! All tests of this crate that use it from outside, in one program; `tests/memory.rs` measures its own
 //! process and stays alone.
 
+mod between;
 mod bounds;
 mod broad;
 mod closest;

@@ -49,7 +49,7 @@ fn what_cannot_be_asked_is_refused_with_its_field() {
 #[test]
 fn what_a_map_cannot_ask_is_refused_with_its_field() {
     let map = |method: &Method, directions: &[f64], l2: Option<&[f64]>| {
-        MapQuestion::new(method.clone(), CellChoice::Auto, Some(directions.to_vec()), l2.map(<[f64]>::to_vec))
+        MapQuestion::new(method.clone(), CellChoice::Auto, Some(directions.to_vec()), l2.map(<[f64]>::to_vec), None)
     };
     let exact = Method::Exact(ExactOptions::default());
     let free = Across { lateral_free: true, shear_free: false };
@@ -65,7 +65,7 @@ fn what_a_map_cannot_ask_is_refused_with_its_field() {
         (map(&exact, &[0.0], Some(&[])), "l2"),
         (map(&exact, &[0.0, f64::NAN], None), "direction_deg"),
         (map(&exact, &[0.0, -1e7], None), "direction_deg"),
-        (MapQuestion::new(exact.clone(), CellChoice::These(Vec::new()), None, None), "cells"),
+        (MapQuestion::new(exact.clone(), CellChoice::These(Vec::new()), None, None, None), "cells"),
         (map(&exact, &[0.0], Some(&[0.0, -1.0])), "l2"),
         (map(&width_free, &[0.0], Some(&[0.0])), "l2"),
         (map(&without_starts, &[0.0], None), "starts"),
@@ -85,7 +85,7 @@ fn what_a_map_cannot_ask_is_refused_with_its_field() {
 /// As run.json has it: cells by name, or as a list of those that were compiled.
 #[test]
 fn a_map_is_what_was_written() {
-    let usual = MapQuestion::new(Method::Exact(ExactOptions::default()), CellChoice::Auto, None, None).unwrap();
+    let usual = MapQuestion::new(Method::Exact(ExactOptions::default()), CellChoice::Auto, None, None, None).unwrap();
     assert_eq!((usual.directions_deg.len(), usual.directions_deg[36]), (37, 180.0));
     for (cells, text) in [("auto".parse().unwrap(), "\"auto\""), ("1,0;-1,2".parse().unwrap(), "[\"1,0;-1,2\"]")] {
         let question = MapQuestion { cells, ..usual.clone() };

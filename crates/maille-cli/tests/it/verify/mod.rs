@@ -3,7 +3,7 @@
 mod specimen;
 mod waves;
 
-use crate::common::{code, maille};
+use crate::common::{code, done, maille};
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
@@ -385,7 +385,7 @@ fn a_run_that_was_killed_between_two_files_is_open_not_false() {
 }
 
 /// What a row without a limit leaves empty.
-const LIMIT: [&str; 32] = [
+const LIMIT: [&str; 33] = [
     "l1",
     "lambda1",
     "lambda2",
@@ -418,6 +418,7 @@ const LIMIT: [&str; 32] = [
     "wave_curvature",
     "wave_q1",
     "wave_q2",
+    "extreme",
 ];
 
 fn without_limit(status: &'static str) -> Vec<(&'static str, &'static str)> {
@@ -597,4 +598,28 @@ fn that_images_would_be_too_near_is_proved() {
         state.as_object_mut().unwrap().remove("chain");
     });
     specimen.found_by(5, "bound", "nothing in the state proves");
+}
+
+/// The smallest l1 of this sheet is at a corner near 58.67°: the row is solved again by itself, and one that is not what it is called is
+/// found.
+#[test]
+fn an_extreme_between_the_directions_is_one() {
+    let specimen = Specimen::of("2-oblong --directions 45,60,75 --l2 0 --extremes yes");
+    let lines: Vec<String> = specimen.text("limits.csv").lines().map(str::to_owned).collect();
+    let extremes: Vec<&String> = lines.iter().filter(|line| line.ends_with(",smallest")).collect();
+    assert!(lines.len() == 5 && extremes.len() == 1 && lines[2] == *extremes[0], "{lines:?}");
+    let at: f64 = extremes[0].split(',').nth(2).unwrap().parse().unwrap();
+    assert!((at - 58.67).abs() < 0.01, "{at}");
+    let replayed = done(specimen.dir.path(), &format!("replay record --at direction={at}"));
+    assert!(replayed.contains("recorded") && !replayed.contains("DIFFERS"), "{replayed}");
+    // A finished record stays as it is.
+    done(specimen.dir.path(), "characterize 2-oblong --directions 45,60,75 --l2 0 --extremes yes --out record --quiet");
+    assert_eq!(specimen.text("limits.csv").lines().collect::<Vec<_>>(), lines);
+    specimen.forge("limits.csv", &specimen.text("limits.csv").replace(",smallest", ",largest"));
+    let (code, found) = specimen.verified();
+    let words = "is called the largest l1 of its l2, and another row goes beyond it";
+    assert!(code == 4 && said(&found, "files", "false").iter().any(|w| w.ends_with(words)), "{found:#}");
+    specimen.forge_run(|run| run["parameters"]["extremes"] = json!(false));
+    let (code, found) = specimen.verified();
+    assert!(code == 4 && said(&found, "files", "false").iter().any(|w| w.contains("was not asked for")), "{found:#}");
 }

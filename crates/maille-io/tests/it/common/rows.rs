@@ -40,6 +40,7 @@ pub fn record(name: &str, design: Design, rows: Vec<LimitRow>) -> NamedRecord {
         cells: Cell::PRIMITIVE.into(),
         directions_deg: rows.iter().map(|row| row.direction_deg).collect(),
         l2: rows.iter().map(|row| row.l2).collect(),
+        extremes: false,
     };
     let run = RunRecord {
         schema: RECORD_SCHEMA,

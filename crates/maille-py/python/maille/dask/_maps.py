@@ -65,13 +65,15 @@ def characterize(
     kept in the folder `out` as they come in, and the same call goes on where an earlier one stopped. A chain whose worker is
     lost is solved again by another one; one that raises is tried `retries` times more. What cannot be used is in `.failures`,
     and stops nothing else. `client` is by default the current one of `dask.distributed`. `overwrite` replaces
-    records of other inputs; chains that are part of both stay. With `sensitivities` each record has the derivatives of its limits. The other arguments are those of `maille.characterize`.
+    records of other inputs; chains that are part of both stay. With `sensitivities` each record has the derivatives of its limits. Extremes between
+    the directions are not sought. The other arguments are those of `maille.characterize`.
     """
     question = _question(
         directions,
         l2,
         lateral=lateral,
         shear=shear,
+        extremes=False,
         method=method,
         cell=cell,
         effort=effort,

@@ -39,7 +39,7 @@ pub fn shaken(model: &Model, size: f64, seed: u64) -> State {
 /// A map by the exact method.
 pub fn exact_map(options: &ExactOptions, directions: &[f64], l2: &[f64]) -> MapQuestion {
     let (cells, directions_deg, l2) = (CellChoice::Auto, directions.to_vec(), l2.to_vec());
-    MapQuestion { method: Method::Exact(options.clone()), cells, directions_deg, l2 }
+    MapQuestion { method: Method::Exact(options.clone()), cells, directions_deg, l2, extremes: false }
 }
 
 /// The rows of a map by the exact method, in the order of its table.

@@ -1,0 +1,298 @@
+//! The largest and the smallest l1 over all directions, between those of a map.
+//!
+//! A limit l1(φ) is smooth but where one set of contacts takes over from another: there it has a corner, which a map of a few
+//! directions cuts off. The derivative follows from the forces of the limit. With f the force of a contact for a unit pull, n its normal
+//! and X = A s the shift of its image in the sheet of the file, the mean S = Σ f n Xᵀ is what the contacts do on F, and by the envelope
+//! theorem, for F(φ) = (1 + l1) D Dᵀ + (1 + l2) T Tᵀ + γ (D Tᵀ + T Dᵀ) with D along the pull and T across it,
+//!
+//! ```text
+//! dl1/dφ = S : ∂F/∂φ,   ∂F/∂φ = (l1 − l2) (D Tᵀ + T Dᵀ) + 2 γ (T Tᵀ − D Dᵀ)
+//! ```
+//!
+//! Between two directions a largest l1 is sought where their tangents meet, and where the cubic through values and slopes is largest, by
+//! turns: the one finds corners, the other smooth maxima. The place that promises most comes first, until none promises more than
+//! `ENOUGH`. Each limit is solved and certified as any other; images of a direction under the symmetries of the design count as solved.
+//! What rises and falls again between two directions whose tangents do not tell of it is not found.
+
+use super::{
+    map::OneLimit,
+    request::{Finished, MapQuestion, Method, Task, Work},
+    row::Asked,
+};
+use crate::{
+    lattice::Direction,
+    model::{Model, of_cell},
+    record::{ContactRecord, LimitRow, StateRecord},
+    symmetry::mirrored,
+};
+use nalgebra::{Matrix2, Vector2};
+use rayon::prelude::*;
+use std::{
+    sync::atomic::{AtomicBool, Ordering},
+    time::Instant,
+};
+
+/// What a place must promise beyond the best l1 to be tried.
+const ENOUGH: f64 = 1e-7;
+/// Limits that are solved for one extreme, at most.
+const MOST: usize = 40;
+/// Directions closer than this are not divided, in degrees.
+const CLOSE_DEG: f64 = 4e-6;
+/// Directions that are tried are multiples of this part of a degree.
+const STEPS_PER_DEGREE: f64 = 1e6;
+/// A place is tried no nearer to the ends of its interval than this share of its width.
+const MARGIN: f64 = 0.02;
+
+/// Which l1 over all directions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Which {
+    Largest,
+    Smallest,
+}
+
+impl Which {
+    fn sign(self) -> f64 {
+        if self == Which::Largest { 1.0 } else { -1.0 }
+    }
+
+    fn name(self) -> &'static str {
+        if self == Which::Largest { "largest" } else { "smallest" }
+    }
+}
+
+/// The largest and the smallest l1 of each l2 between the directions of a map, where they go beyond those of its rows: a row each, and
+/// one for each image. `known` are its rows with their states. Those that it has of an earlier run are not sought again. After `cancel` those that are not
+/// finished are left out.
+pub fn extremes(
+    models: &[Model],
+    minor_radius: Option<f64>,
+    question: &MapQuestion,
+    known: &[(LimitRow, StateRecord)],
+    cancel: &AtomicBool,
+    work: &(dyn Fn(Task, Work) + Sync),
+    finished: &(dyn Fn(Finished) + Sync),
+) {
+    let Method::Exact(options) = &question.method else { return };
+    let both = [Which::Largest, Which::Smallest];
+    let sought = question.l2.iter().flat_map(|&l2| both.map(|which| (l2, which)));
+    let sought: Vec<_> = sought.collect();
+    if question.directions_deg.len() < 2 || cancel.load(Ordering::Relaxed) {
+        return;
+    }
+    let one = OneLimit::new(models, options, cancel);
+    sought.par_iter().with_max_len(1).for_each(|&(l2, which)| {
+        let mut search = Search { question, one: &one, minor_radius, l2, sign: which.sign(), points: Vec::new() };
+        let there = |row: &LimitRow| row.l2 == l2 && row.extreme.as_deref() == Some(which.name());
+        let there: Vec<f64> = known.iter().filter(|(row, _)| there(row)).map(|(row, _)| row.direction_deg).collect();
+        // A run can be stopped between images.
+        if there.first().is_some_and(|deg| search.images(*deg).len() == there.len()) {
+            return;
+        }
+        let of_l2 = known.iter().filter(|(row, _)| row.l2 == l2 && row.extreme.is_none());
+        of_l2.for_each(|(row, state)| search.add(row, state));
+        for Finished { mut row, state } in search.run(cancel, work) {
+            row.extreme = Some(which.name().to_owned());
+            if !there.contains(&row.direction_deg) {
+                finished(Finished { row, state });
+            }
+        }
+    });
+}
+
+/// A direction with its limit, as a height that is to be as large as can be.
+#[derive(Clone, Copy, Debug)]
+struct Point {
+    deg: f64,
+    height: Option<f64>,
+    /// Derivative of the height by the angle in radians; none where it is not known.
+    slope: Option<f64>,
+    /// Whether a mirror maps the direction to itself: then a state and its image have opposite slopes, and each side has one of them.
+    mirrored: bool,
+}
+
+/// A place between two directions, and the height that it may have.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    deg: f64,
+    promise: f64,
+}
+
+struct Search<'a> {
+    question: &'a MapQuestion,
+    one: &'a OneLimit<'a>,
+    minor_radius: Option<f64>,
+    l2: f64,
+    sign: f64,
+    /// In the order of their angles.
+    points: Vec<Point>,
+}
+
+impl Search<'_> {
+    /// The best limit and its images, where it is none of the map's.
+    fn run(&mut self, cancel: &AtomicBool, work: &(dyn Fn(Task, Work) + Sync)) -> Vec<Finished> {
+        let Some(mut best) = self.points.iter().filter_map(|point| point.height).max_by(f64::total_cmp) else {
+            return Vec::new();
+        };
+        let mut found = Vec::new();
+        for count in 0..MOST {
+            let promising = self.places(count % 2 == 1).max_by(|a, b| {
+                // Of images, which differ by rounding, the first.
+                let rounded = |place: &Place| (place.promise / (1e-3 * ENOUGH)).round();
+                rounded(a).total_cmp(&rounded(b)).then(b.deg.total_cmp(&a.deg))
+            });
+            let Some(place) = promising.filter(|place| place.promise > best + ENOUGH) else { break };
+            let task = Task { direction_deg: place.deg, l2: self.l2 };
+            work(task, Work::Begins);
+            let tried = self.solve(task);
+            work(task, Work::Ends);
+            if cancel.load(Ordering::Relaxed) {
+                return Vec::new();
+            }
+            let Some(one) = tried.first() else { break };
+            self.add(&one.row, &one.state);
+            if let Some(height) = one.row.l1.map(|l1| self.sign * l1).filter(|height| *height > best) {
+                best = height;
+                found = tried;
+            }
+        }
+        found
+    }
+
+    /// A limit, along each image of its direction in the range of the map.
+    fn solve(&self, Task { direction_deg, l2 }: Task) -> Vec<Finished> {
+        let begun = Instant::now();
+        let solved_deg = self.one.representative_deg(direction_deg);
+        let solved = self.one.solve(solved_deg, l2);
+        let wall_s = begun.elapsed().as_secs_f64();
+        let along = |direction_deg: f64| {
+            let (model, answer) = self.one.along(&solved, solved_deg, direction_deg);
+            let task = Task { direction_deg, l2 };
+            let image_of_deg = Some(solved_deg).filter(|solved_deg| *solved_deg != direction_deg);
+            let (method, minor_radius) = (&self.question.method, self.minor_radius);
+            Asked { task: &task, method, minor_radius, image_of_deg }.finished(&model, &answer, wall_s)
+        };
+        self.images(direction_deg).into_iter().map(along).collect()
+    }
+
+    /// The images of a direction in the range of the map, itself among them, in order.
+    fn images(&self, direction_deg: f64) -> Vec<f64> {
+        let mut out: Vec<f64> = Vec::new();
+        for operation in &self.one.operations {
+            out.extend(self.turns(operation.direction_deg(direction_deg)));
+        }
+        out.sort_by(f64::total_cmp);
+        out.dedup_by(|a, b| (*a - *b).abs() < CLOSE_DEG / 4.0);
+        out
+    }
+
+    /// Adds a limit along a direction and along its images.
+    fn add(&mut self, row: &LimitRow, state: &StateRecord) {
+        let deg = row.direction_deg;
+        let cell = row.cell.parse().unwrap_or_default();
+        let slope = direction_slope(&of_cell(self.one.models, cell), state).map(|slope| self.sign * slope);
+        let height = row.l1.map(|l1| self.sign * l1);
+        let mirrored = mirrored(&self.one.operations, deg);
+        for operation in &self.one.operations {
+            let turned = if operation.mirrors() { -1.0 } else { 1.0 };
+            let slope = slope.map(|slope| slope * turned);
+            for deg in self.turns(operation.direction_deg(deg)) {
+                self.insert(Point { deg, height, slope, mirrored });
+            }
+        }
+    }
+
+    /// A direction and its opposite, which are one pull, in the range of the map.
+    fn turns(&self, direction_deg: f64) -> Vec<f64> {
+        let all = self.question.directions_deg.iter();
+        let (least, most) =
+            all.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), deg| (least.min(*deg), most.max(*deg)));
+        let first = ((least - direction_deg) / 180.0).ceil();
+        let turns = (0..).map(|turn| direction_deg + 180.0 * (first + f64::from(turn)));
+        turns.take_while(|deg| *deg <= most).collect()
+    }
+
+    /// Of two for one direction the higher stays.
+    fn insert(&mut self, point: Point) {
+        let place = self.points.partition_point(|other| other.deg < point.deg - CLOSE_DEG / 4.0);
+        match self.points.get_mut(place).filter(|other| other.deg <= point.deg + CLOSE_DEG / 4.0) {
+            Some(other) if other.height < point.height => *other = point,
+            Some(_) => {}
+            None => self.points.insert(place, point),
+        }
+    }
+
+    /// Where a larger height may be, between each two neighbours.
+    fn places(&self, smooth: bool) -> impl Iterator<Item = Place> {
+        self.points.windows(2).filter_map(move |pair| place(&pair[0], &pair[1], smooth))
+    }
+}
+
+/// Where between two directions the height may be larger, and how large: where the tangents meet, or where the cubic through both is largest.
+/// None where it need not rise between them.
+fn place(a: &Point, b: &Point, smooth: bool) -> Option<Place> {
+    let width = (b.deg - a.deg).to_radians();
+    let (from, to) = (a.height?, b.height?);
+    // On a mirror's line: the slope that fits the other end and the rise between them, as of a parabola.
+    let (mut rise, mut fall, mean) = (a.slope?, b.slope?, (to - from) / width);
+    if a.mirrored {
+        rise = rise.abs().copysign(if b.mirrored { mean } else { 2.0 * mean - fall });
+    }
+    if b.mirrored {
+        fall = fall.abs().copysign(if a.mirrored { mean } else { 2.0 * mean - rise });
+    }
+    if b.deg - a.deg < CLOSE_DEG {
+        return None;
+    }
+    let peaks = (rise > 0.0 && (fall < 0.0 || to < from)) || (fall < 0.0 && from < to);
+    if !peaks {
+        return None;
+    }
+    let meet = (to - from - fall * width) / (rise - fall);
+    let meets = rise > fall && meet > 0.0 && meet < width;
+    // Tangents that do not meet in between: the height bends up and down again.
+    let promise = if meets { from + rise * meet } else { from.max(to) + 0.25 * width * rise.max(-fall) };
+    let share = match (smooth, meets) {
+        (true, _) => cubic_peak(from, to, rise * width, fall * width),
+        (false, true) => Some(meet / width),
+        (false, false) => None,
+    };
+    let share = share.unwrap_or(if from > to { 0.25 } else { 0.75 }).clamp(MARGIN, 1.0 - MARGIN);
+    let deg = ((a.deg + share * (b.deg - a.deg)) * STEPS_PER_DEGREE).round() / STEPS_PER_DEGREE;
+    (deg > a.deg && deg < b.deg).then_some(Place { deg, promise })
+}
+
+/// Where in 0..1 the cubic with these ends and slopes has its peak.
+fn cubic_peak(from: f64, to: f64, rise: f64, fall: f64) -> Option<f64> {
+    // c₃ t³ + c₂ t² + rise t + from.
+    let (c2, c3) = (3.0 * (to - from) - 2.0 * rise - fall, rise + fall - 2.0 * (to - from));
+    let root = (c2 * c2 - 3.0 * c3 * rise).sqrt();
+    // The root where the second derivative 6 c₃ t + 2 c₂ is negative, without cancellation.
+    let t = if c2 < 0.0 { rise / (root - c2) } else { -(c2 + root) / (3.0 * c3) };
+    (t > 0.0 && t < 1.0).then_some(t)
+}
+
+/// dl1/dφ per radian, from the forces of a limit in the model of its cell; none where it carries none.
+#[doc(hidden)]
+pub fn direction_slope(model: &Model, state: &StateRecord) -> Option<f64> {
+    let [a1, a2] = [model.start.a1, model.start.a2].map(|a| a.xy());
+    let part = |contact: &ContactRecord| {
+        let [m, n] = contact.shift.map(f64::from);
+        let normal = Vector2::new(contact.normal[0], contact.normal[1]);
+        normal * (a1 * m + a2 * n).transpose() * contact.force
+    };
+    let mean: Matrix2<f64> = state.contacts.iter().map(part).sum();
+    let direction = Direction::of_degrees(state.direction_deg);
+    let (along, across) = (direction.along(), direction.across());
+    let pull = along.dot(&(mean * along));
+    if pull == 0.0 {
+        return None;
+    }
+    let [[xx, xy], [yx, yy]] = state.deformation_gradient;
+    let f = Matrix2::new(xx, xy, yx, yy);
+    let part = |matrix: &Matrix2<f64>, p: &Vector2<f64>, q: &Vector2<f64>| p.dot(&(matrix * q));
+    let shear = |matrix: &Matrix2<f64>| part(matrix, &along, &across) + part(matrix, &across, &along);
+    let (l1, l2, gamma) = (part(&f, &along, &along), part(&f, &across, &across), 0.5 * shear(&f));
+    let turned = (l1 - l2) * shear(&mean) + 2.0 * gamma * (part(&mean, &across, &across) - pull);
+    // Forces are for a unit pull: S along it is −1, and of a compression 1.
+    Some(-turned / pull)
+}
