@@ -14,6 +14,7 @@ use crate::{
         flat::{COAXIAL, SHIFTED},
     },
     solver::{
+        balance::balance,
         certificate::{Certificate, certify, measure_curvature, measure_gaps},
         constraints::{Derivatives, Multiplier, violation},
         polish::polish,
@@ -136,6 +137,7 @@ impl Rounds<'_> {
         measure_curvature(program, &x, &mut certificate);
         let links_ok = topology::links_kept(self.model, &x.state);
         if certificate.holds() && links_ok && !program.is_outside(&x) {
+            balance(program, &x, &mut certificate);
             let contacts = program.contacts(&x, &certificate.multipliers);
             let flat = program.flat_pairs().clone();
             self.last_resort = Some(Solve { x, certificate, contacts, links_ok, certified: true, flat });
@@ -209,6 +211,10 @@ impl Rounds<'_> {
         }
         let mut solve: Solve = last.unwrap_or_else(|| unreachable!("at least one round"));
         measure_curvature(program, &solve.x, &mut solve.certificate);
+        if solve.certified {
+            balance(program, &solve.x, &mut solve.certificate);
+            solve.contacts = program.contacts(&solve.x, &solve.certificate.multipliers);
+        }
         (x, solve)
     }
 }

@@ -85,11 +85,11 @@ pub(super) fn labelled(rows: &[Row], multipliers: &[f64]) -> Vec<Multiplier> {
     rows.iter().zip(multipliers).map(|(row, &value)| row.multiplier(value)).collect()
 }
 
-/// Multipliers ≥ 0 with the least |c + Σ μ ∇g|, for dependent rows whose minimum-norm multipliers have wrong signs.
-fn non_negative_multipliers(c: &[f64], rows: &[Row], most: f64) -> Vec<f64> {
+/// Multipliers ≥ 0 with the least |c + Σ μ ∇g|² + `ridge` |μ|², for dependent rows whose minimum-norm multipliers have wrong signs.
+pub(super) fn non_negative_multipliers(c: &[f64], rows: &[Row], most: f64, ridge: f64) -> Vec<f64> {
     let m = rows.len();
     let mut hessian = gram(c.len(), rows);
-    (0..m).for_each(|k| hessian.add_to_diagonal(k, 1e-13));
+    (0..m).for_each(|k| hessian.add_to_diagonal(k, ridge));
     let along = |row: &Row| row.columns.iter().zip(&row.gradient).map(|(&i, a)| a * c[i]).sum();
     let linear: Vec<f64> = rows.iter().map(along).collect();
     let mut identity = SparseRows::default();
@@ -109,7 +109,7 @@ fn non_negative_multipliers(c: &[f64], rows: &[Row], most: f64) -> Vec<f64> {
     .collect()
 }
 
-fn dual_residual(c: &[f64], rows: &[Row], multipliers: &[f64]) -> f64 {
+pub(super) fn dual_residual(c: &[f64], rows: &[Row], multipliers: &[f64]) -> f64 {
     let mut residual = c.to_vec();
     for (row, mu) in rows.iter().zip(multipliers) {
         for (&column, &value) in row.columns.iter().zip(&row.gradient) {
@@ -145,7 +145,7 @@ fn first_order(c: &[f64], chosen: &[Row], smallest_gap: f64) -> Certificate {
     let least = |mu: &[f64]| mu.iter().copied().fold(f64::INFINITY, f64::min);
     if least(&multipliers) < -RESIDUAL_TOLERANCE {
         let most = multipliers.iter().fold(0.0f64, |a, m| a.max(m.abs()));
-        let signed = non_negative_multipliers(c, chosen, most);
+        let signed = non_negative_multipliers(c, chosen, most, 1e-13);
         let carrying: Vec<usize> = (0..chosen.len()).filter(|&k| signed[k] > CARRIES * most).collect();
         let rows: Vec<Row> = carrying.iter().map(|&k| chosen[k].clone()).collect();
         let mut exact = vec![0.0; chosen.len()];
@@ -155,15 +155,19 @@ fn first_order(c: &[f64], chosen: &[Row], smallest_gap: f64) -> Certificate {
             .find(|mu| least(mu) >= -RESIDUAL_TOLERANCE && dual_residual(c, chosen, mu) <= RESIDUAL_TOLERANCE);
         multipliers = better.unwrap_or(multipliers);
     }
-    let complementarity = chosen.iter().zip(&multipliers).map(|(r, mu)| (r.gap * mu).abs()).fold(0.0, f64::max);
+    figures(c, chosen, &multipliers, smallest_gap)
+}
+
+/// The figures of first order with these multipliers.
+pub(super) fn figures(c: &[f64], chosen: &[Row], multipliers: &[f64], smallest_gap: f64) -> Certificate {
     Certificate {
         smallest_gap,
-        dual_residual: dual_residual(c, chosen, &multipliers),
-        complementarity,
-        min_multiplier: least(&multipliers),
+        dual_residual: dual_residual(c, chosen, multipliers),
+        complementarity: chosen.iter().zip(multipliers).map(|(r, mu)| (r.gap * mu).abs()).fold(0.0, f64::max),
+        min_multiplier: multipliers.iter().copied().fold(f64::INFINITY, f64::min),
         min_curvature: Some(f64::NAN),
         zero_modes: 0,
-        multipliers: labelled(chosen, &multipliers),
+        multipliers: labelled(chosen, multipliers),
     }
 }
 

@@ -1,5 +1,6 @@
 //! Solvers' outer loops. They know no ring: they see an objective.
 
+pub(crate) mod balance;
 pub mod certificate;
 pub mod cholesky;
 pub mod cone;
