@@ -162,14 +162,14 @@ fn write(out: &Path, input: &Input, surface: &Boundary, options: &BoundaryOption
             entry.insert(model.elements.iter().map(|element| element.name.clone()).collect());
         }
     }
-    let record = SurfaceRecord::new(&input.design, options, surface, cells, [table.as_bytes(), states.as_bytes()]);
+    let (obj, ply) = (boundary_obj(surface, &title), boundary_ply(surface, &title));
+    let files = [("boundary.csv", &table), (SURFACE_STATES, &states), ("boundary.obj", &obj), ("boundary.ply", &ply)];
+    let files = files.map(|(name, text)| (name, text.as_bytes()));
+    let record = SurfaceRecord::new(&input.design, options, surface, cells, &files);
     let svg = surface_svg(&record, surface, Layout::Beside);
     let png = svg_to_png(&svg, 2.0).into_diagnostic().wrap_err("cannot draw the figure")?;
     let head = serde_json::to_string(&record).into_diagnostic().wrap_err("cannot write JSON")?;
-    output::write(&out.join("boundary.csv"), table.as_bytes())?;
-    output::write(&out.join(SURFACE_STATES), states.as_bytes())?;
-    output::write(&out.join("boundary.obj"), boundary_obj(surface, &title).as_bytes())?;
-    output::write(&out.join("boundary.ply"), boundary_ply(surface, &title).as_bytes())?;
+    files.iter().try_for_each(|(name, bytes)| output::write(&out.join(name), bytes))?;
     output::write(&out.join("boundary.svg"), svg.as_bytes())?;
     output::write(&out.join("boundary.png"), &png)?;
     output::write(&out.join(SURFACE), format!("{head}\n").as_bytes())?;

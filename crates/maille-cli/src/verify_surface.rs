@@ -43,7 +43,10 @@ pub fn verified(named: &Path, pool: &rayon::ThreadPool, quiet: bool) -> Result<V
         text(&folder, name)?.ok_or_else(|| wrong(exit::RECORD, format!("{} has no {name}", folder.display()), help))
     };
     let (head, states, table) = (read(SURFACE)?, read(SURFACE_STATES)?, read("boundary.csv")?);
-    let texts = SurfaceTexts { head: &head, states: &states, table: &table };
+    let meshes = ["boundary.obj", "boundary.ply"].map(|name| Ok((name, text(&folder, name)?)));
+    let meshes: Vec<(&str, Option<String>)> = meshes.into_iter().collect::<Result<_>>()?;
+    let meshes: Vec<(&str, &str)> = meshes.iter().filter_map(|(name, text)| Some((*name, text.as_deref()?))).collect();
+    let texts = SurfaceTexts { head: &head, states: &states, table: &table, meshes: &meshes };
     let verifier = SurfaceVerifier::new(&texts).map_err(|e| unreadable(&folder, &e))?;
     let progress = Progress::new("vertices", 0, verifier.len(), quiet);
     let vertex = |k: usize| {

@@ -5,7 +5,7 @@
 
 use miette::{Diagnostic, LabeledSpan, ReportHandler, SourceCode, SourceSpan};
 use std::{error::Error, fmt};
-use unicode_width::UnicodeWidthChar;
+use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
 /// How errors are drawn.
 #[derive(Clone, Copy, Debug)]
@@ -68,6 +68,9 @@ const PLACE: &str = "35;1";
 
 /// Columns from one tab stop to the next.
 const TAB: usize = 4;
+/// Of a line with more columns than this, so many are shown, of them so many before the place.
+const WINDOW: usize = 200;
+const BEFORE: usize = 60;
 
 impl ReportHandler for Drawing {
     fn debug(&self, error: &dyn Diagnostic, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -149,13 +152,16 @@ impl Drawing {
                 }
                 true => mark(s.vertical) + "   ",
             };
-            out.push_str(&format!(" {number} {} {beside}{}\n", s.vertical, line.shown()));
+            let first = if line.holds(span) { line.column(span.offset()) } else { 0 };
+            let (shown, hidden) = line.shown(first, if self.unicode { "…" } else { "..." });
+            out.push_str(&format!(" {number} {} {beside}{shown}\n", s.vertical));
             if !line.has(span) {
                 continue;
             }
             if line.holds(span) {
-                let first = line.column(span.offset());
-                let end = if span.is_empty() { 0 } else { line.column(span.offset() + span.len()) }.max(first + 1);
+                let end = if span.is_empty() { 0 } else { line.column(span.offset() + span.len()) };
+                let first = first - hidden;
+                let end = end.saturating_sub(hidden).min(shown.width()).max(first + 1);
                 let middle = (first + end) / 2;
                 let point = if span.is_empty() { s.up } else { label.as_ref().map_or(s.under, |_| s.label) };
                 let under = |count: usize| s.under.repeat(count);
@@ -224,15 +230,33 @@ impl Line<'_> {
         widths(before).map(|(_, width)| width).sum::<usize>() + usize::from(at > self.text.len())
     }
 
-    /// The line with spaces for its tabs.
-    fn shown(&self) -> String {
+    /// The line with spaces for its tabs, of a long one what is around the column `place`; and how many columns are not shown before it.
+    fn shown(&self, place: usize, cut: &str) -> (String, usize) {
         let tab = |(c, width)| if c == '\t' { " ".repeat(width) } else { String::from(c) };
-        widths(self.text.chars()).map(tab).collect()
+        let all = widths(self.text.chars());
+        if self.text.len() <= WINDOW || all.clone().map(|(_, width)| width).sum::<usize>() <= WINDOW {
+            return (all.map(tab).collect(), 0);
+        }
+        let mut column = 0;
+        let from = place.saturating_sub(BEFORE);
+        let (mut out, mut hidden, mut more) = (String::new(), 0, false);
+        for (c, width) in all {
+            match column {
+                at if at < from => hidden = at + width,
+                at if at < from + WINDOW => out.push_str(&tab((c, width))),
+                _ => more = true,
+            }
+            column += width;
+        }
+        if hidden > 0 {
+            (out, hidden) = (format!("{cut} {out}"), hidden.saturating_sub(cut.width() + 1));
+        }
+        (if more { format!("{out} {cut}") } else { out }, hidden)
     }
 }
 
 /// Characters with the columns that each takes.
-fn widths(text: impl Iterator<Item = char>) -> impl Iterator<Item = (char, usize)> {
+fn widths(text: impl Iterator<Item = char> + Clone) -> impl Iterator<Item = (char, usize)> + Clone {
     text.scan(0, |column, c| {
         let width = if c == '\t' { TAB - *column % TAB } else { c.width().unwrap_or(0) };
         *column += width;

@@ -88,6 +88,21 @@ pub(crate) fn inputs_of(head: &str, schema: u64, design: &Value, parameters: &Va
     }
 }
 
+/// Whether the hash of a file as JSON with sorted keys, without its `checksum`, is the one that is written there.
+pub(crate) fn whole(head: &str, mut value: Value, written: &str) -> Finding {
+    if let Some(map) = value.as_object_mut() {
+        map.remove("checksum");
+    }
+    let mut canonical = String::new();
+    sorted(&value, &mut canonical);
+    let found = sha256(canonical.as_bytes());
+    if found == written {
+        say(Verdict::Proved, format!("{head} is as it was written"))
+    } else {
+        say(Verdict::False, format!("{head} was edited: its hash is {found}, {written} is written"))
+    }
+}
+
 fn sorted(value: &Value, out: &mut String) {
     let mut list = |open: char, close: char, items: Vec<(Option<&String>, &Value)>| {
         out.push(open);

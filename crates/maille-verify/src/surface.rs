@@ -10,7 +10,7 @@ use crate::{
     curvature::{ZERO_MODE, curvature},
     curve_pair::closed_points,
     dual::{edges, walks},
-    files::{RECORDS, checksum, inputs_of, say},
+    files::{RECORDS, checksum, inputs_of, say, whole},
     gaps::gaps_and_links,
     record::{Design, Pose, Row, State, Unreadable, json},
     report::{Check, Finding, Verdict},
@@ -49,6 +49,8 @@ pub struct SurfaceTexts<'a> {
     pub states: &'a str,
     /// `boundary.csv`.
     pub table: &'a str,
+    /// Files of meshes that are there, with their names.
+    pub meshes: &'a [(&'a str, &'a str)],
 }
 
 #[derive(Deserialize)]
@@ -59,6 +61,8 @@ struct Head {
     cells: BTreeMap<String, Vec<String>>,
     /// SHA-256 of each file.
     files: BTreeMap<String, String>,
+    /// SHA-256 of the rest of the file.
+    checksum: Option<String>,
 }
 
 #[derive(Deserialize)]
@@ -110,6 +114,10 @@ impl SurfaceVerifier {
         let decide = ["effort", "starts", "seed", "cells"];
         let parameters: Value = decide.map(|name| (name, value["parameters"][name].clone())).into_iter().collect();
         files.push(inputs_of(HEAD, RECORDS, &value["design"], &parameters, &head.input_hash));
+        files.extend(head.checksum.as_ref().map(|written| whole(HEAD, value, written)));
+        // Meshes of older versions have no checksum.
+        let known = texts.meshes.iter().filter(|(name, _)| head.files.contains_key(*name));
+        files.extend(known.map(|(name, text)| checksum(HEAD, &head.files, name, text)));
         let start_of = |(cell, names): (&String, &Vec<String>)| {
             let names: Vec<&str> = names.iter().map(String::as_str).collect();
             let parsed = sheet::cell(cell).ok_or_else(|| format!("\"{cell}\" is no cell"));

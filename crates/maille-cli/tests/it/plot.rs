@@ -149,6 +149,21 @@ fn a_surface_is_plotted_tabulated_and_verified() {
     std::fs::write(folder.join("s/surface.json"), head.replacen("\"starts\":1,", "\"starts\":64,", 1)).unwrap();
     let (code, out, _) = maille(folder, &["verify", "s", "--quiet"]);
     assert!(code == Some(4) && out.contains("design or parameters of surface.json were edited"), "{out}");
+    // What decides nothing about a ray, and the mesh.
+    for (from, to) in
+        [("\"tolerance\":", "\"tolerance\":1"), ("\"arch\":", "\"arch\":1"), ("\"triangles\":[[", "\"triangles\":[[1")]
+    {
+        assert!(head.contains(from), "{from}");
+        std::fs::write(folder.join("s/surface.json"), head.replacen(from, to, 1)).unwrap();
+        let (code, out, _) = maille(folder, &["verify", "s", "--quiet"]);
+        assert!(code == Some(4) && out.contains("surface.json was edited"), "{from}: {out}");
+    }
+    std::fs::write(folder.join("s/surface.json"), &head).unwrap();
+    let mesh = text("s/boundary.obj");
+    std::fs::write(folder.join("s/boundary.obj"), mesh.replacen("\nf ", "\nf 1", 1)).unwrap();
+    let (code, out, _) = maille(folder, &["verify", "s", "--quiet"]);
+    assert!(code == Some(4) && out.contains("boundary.obj was edited"), "{out}");
+    std::fs::write(folder.join("s/boundary.obj"), &mesh).unwrap();
     // A ring moved by a tenth of R: its state, whose checksum is made right again, is refuted.
     std::fs::write(folder.join("s/surface.json"), &head).unwrap();
     let first = states.lines().next().unwrap();
@@ -163,7 +178,10 @@ fn a_surface_is_plotted_tabulated_and_verified() {
         use sha2::Digest;
         sha2::Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
     };
-    std::fs::write(folder.join("s/surface.json"), head.replace(&sum(&states), &sum(&edited))).unwrap();
+    let mut forged: serde_json::Value = serde_json::from_str(&head).unwrap();
+    forged["files"]["surface.jsonl"] = sum(&edited).into();
+    forged.as_object_mut().unwrap().remove("checksum");
+    std::fs::write(folder.join("s/surface.json"), forged.to_string()).unwrap();
     let (code, out, _) = maille(folder, &["verify", "s", "--quiet"]);
     assert!(code == Some(4) && !out.contains("was edited") && out.contains("FALSE: rings"), "{out}");
 }

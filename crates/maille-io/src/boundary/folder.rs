@@ -8,6 +8,7 @@ use maille::{
     survey::surface::{Boundary, BoundaryOptions, BoundaryVertex},
 };
 use serde::{Deserialize, Serialize};
+use serde_json::json;
 use std::{collections::BTreeMap, fs, path::Path};
 
 /// Name of the file of states.
@@ -40,21 +41,24 @@ pub struct SurfaceRecord {
     pub jumps: usize,
     /// Whether all rays were solved.
     pub complete: bool,
-    /// SHA-256 of the states and of the table.
+    /// SHA-256 of the states, of the table and of the meshes.
     pub files: BTreeMap<String, String>,
+    /// SHA-256 of all else in this file, as JSON with sorted keys; none of older versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub checksum: Option<String>,
 }
 
 impl SurfaceRecord {
-    /// That of a surface; `table` and `states` are its files as written.
+    /// That of a surface; `files` are its other files as written, with their names.
     pub fn new(
         design: &Design,
         options: &BoundaryOptions,
         surface: &Boundary,
         cells: BTreeMap<String, Vec<String>>,
-        [table, states]: [&[u8]; 2],
+        files: &[(&str, &[u8])],
     ) -> Self {
         let BoundaryHead { program_version, input_hash, .. } = BoundaryHead::new(design, options);
-        SurfaceRecord {
+        let mut record = SurfaceRecord {
             schema: SCHEMA,
             program_version,
             input_hash,
@@ -66,8 +70,13 @@ impl SurfaceRecord {
             open: surface.open,
             jumps: surface.jumps,
             complete: surface.complete,
-            files: [(TABLE.to_owned(), sha256(table)), (SURFACE_STATES.to_owned(), sha256(states))].into(),
-        }
+            files: files.iter().map(|(name, bytes)| ((*name).to_owned(), sha256(bytes))).collect(),
+            checksum: None,
+        };
+        let mut all = json!(record);
+        all.sort_all_objects();
+        record.checksum = Some(sha256(all.to_string().as_bytes()));
+        record
     }
 
     /// How near the triangles are expected to be, and why not nearer.

@@ -163,6 +163,7 @@ impl OpenMap {
         found: &(dyn Fn(&LimitRow, &StateRecord) + Sync),
     ) -> Result<Record, MapError> {
         let open: Vec<Task> = self.open().collect();
+        let there = self.total() - open.len();
         let collected = Mutex::new(&mut self.collected);
         let receive = |finished: Finished| {
             found(&finished.row, &finished.state);
@@ -181,11 +182,17 @@ impl OpenMap {
             let known: Vec<_> = rows.into_iter().zip(states).collect();
             extremes(&self.models, radius, &self.map.question, &known, cancel, work, &receive);
         }
-        self.finish()
+        // Stopped before it has found anything: what lies beside the record is up to date, and many such maps end soon.
+        let nothing_new = cancel.load(Ordering::Relaxed) && self.total() - self.left() == there;
+        self.finished(!nothing_new)
     }
 
     /// Writes the record with what was found, and its plot, and gives it.
     pub fn finish(self) -> Result<Record, MapError> {
+        self.finished(true)
+    }
+
+    fn finished(self, beside: bool) -> Result<Record, MapError> {
         let OpenMap { map, design, parameters, mut collected, .. } = self;
         if let Some(error) = collected.failure {
             return Err(error.into());
@@ -195,7 +202,9 @@ impl OpenMap {
         let run = RunRecord { counters: Counters::of(&rows), ..RunRecord::new(&design, &parameters, VERSION) };
         let mut record = Record { run, rows, states };
         if let Some(folder) = &mut collected.folder {
-            write_beside(&record, folder, map.quantity, map.sensitivities)?;
+            if beside {
+                write_beside(&record, folder, map.quantity, map.sensitivities)?;
+            }
             record.run = folder.run().clone();
         }
         Ok(record)

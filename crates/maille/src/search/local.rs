@@ -160,6 +160,13 @@ impl Rounds<'_> {
             let before = program.value(&x);
             let end = maximize(program, x, known, &options, self.cancel);
             self.iterations += end.iterations as u64;
+            if self.cancel.load(Ordering::Relaxed) {
+                // What was stopped on its way is no answer, and its polish can take seconds.
+                let certificate = certify(program, &end.point, &end.multipliers);
+                let (contacts, flat) = (Vec::new(), program.flat_pairs().clone());
+                let (links_ok, certified) = (false, false);
+                return (end.point.clone(), Solve { x: end.point, certificate, contacts, links_ok, certified, flat });
+            }
             let used_up = larger && end.iterations >= options.max_iterations;
             gain = program.value(&end.point) - before;
             let stalled = used_up && gain < STALLED_GAIN;
