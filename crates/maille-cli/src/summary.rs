@@ -176,12 +176,18 @@ impl Summary {
             1 => output::say!("1 limit by symmetry, the image of another; see image_of_deg"),
             count => output::say!("{count} limits by symmetry, images of others; see image_of_deg"),
         }
+        // A run that is stopped before it has found anything draws nothing.
+        let picture = self.record.join("polar.png");
+        let drawn = picture.is_file();
         output::say!(
-            "{} in {:.1} s; {}, states.jsonl, run.json, polar.svg",
+            "{} in {:.1} s; {}, states.jsonl, run.json{}",
             counted(self.solved, "limit"),
             self.wall_s,
-            self.record.join("limits.csv").display()
+            self.record.join("limits.csv").display(),
+            if drawn { ", polar.svg" } else { "" }
         );
-        output::say!("look at {}", self.record.join("polar.png").display());
+        if drawn {
+            output::say!("look at {}", picture.display());
+        }
     }
 }

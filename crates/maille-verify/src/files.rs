@@ -211,10 +211,21 @@ fn rows_and_states(run: &Run, rows: &[Row], states: &[State]) -> Vec<Finding> {
     let (directions, l2) = (numbers("directions_deg"), numbers("l2"));
     let asked: BTreeSet<_> = directions.iter().flat_map(|&d| l2.iter().map(move |&l2| key(d, l2))).collect();
     let sought = run.parameters["extremes"].as_bool().unwrap_or(false);
-    for row in rows.iter().filter(|row| !asked.contains(&key(row.direction_deg, row.l2))) {
-        if sought && let Some(extreme) = &row.extreme {
-            wrong.extend(not_extreme(row, extreme, rows, &directions, &l2));
-            continue;
+    for row in rows {
+        match (asked.contains(&key(row.direction_deg, row.l2)), &row.extreme) {
+            (true, None) => continue,
+            (true, Some(extreme)) => {
+                wrong.push(format!(
+                    "{}°, l2 = {} was asked for, and is called the {extreme} between those",
+                    row.direction_deg, row.l2
+                ));
+                continue;
+            }
+            (false, Some(extreme)) if sought => {
+                wrong.extend(not_extreme(row, extreme, rows, &directions, &l2));
+                continue;
+            }
+            _ => {}
         }
         wrong.push(format!("{}°, l2 = {} was not asked for in {RUN}", row.direction_deg, row.l2));
     }

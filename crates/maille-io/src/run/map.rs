@@ -169,6 +169,9 @@ impl OpenMap {
             found(&finished.row, &finished.state);
             let mut collected = collected.lock().unwrap_or_else(|e| e.into_inner());
             let place = place(&self.all, &finished.row);
+            if place.is_none() && finished.row.extreme.is_none() {
+                return;
+            }
             if let Err(error) = collected.keep(place, finished) {
                 collected.failure = Some(error);
                 cancel.store(true, Ordering::Relaxed);

@@ -34,6 +34,8 @@ use std::{
 
 /// What a place must promise beyond the best l1 to be tried.
 const ENOUGH: f64 = 1e-7;
+/// An l1 that is no farther beyond the map's own is theirs.
+const SAME: f64 = 1e-9;
 /// Limits that are solved for one extreme, at most.
 const MOST: usize = 40;
 /// Directions closer than this are not divided, in degrees.
@@ -133,7 +135,7 @@ impl Search<'_> {
         let Some(mut best) = self.points.iter().filter_map(|point| point.height).max_by(f64::total_cmp) else {
             return Vec::new();
         };
-        let mut found = Vec::new();
+        let (own, mut found) = (best, Vec::new());
         for count in 0..MOST {
             let promising = self.places(count % 2 == 1).max_by(|a, b| {
                 // Of images, which differ by rounding, the first.
@@ -155,7 +157,7 @@ impl Search<'_> {
                 found = tried;
             }
         }
-        found
+        if best > own + SAME { found } else { Vec::new() }
     }
 
     /// A limit, along each image of its direction in the range of the map.

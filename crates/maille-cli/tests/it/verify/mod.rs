@@ -619,6 +619,14 @@ fn an_extreme_between_the_directions_is_one() {
     let (code, found) = specimen.verified();
     let words = "is called the largest l1 of its l2, and another row goes beyond it";
     assert!(code == 4 && said(&found, "files", "false").iter().any(|w| w.ends_with(words)), "{found:#}");
+    specimen.forge("limits.csv", &(lines.join("\n") + "\n"));
+    specimen.forge_row(&[("extreme", "largest")]);
+    let (code, found) = specimen.verified();
+    assert!(
+        code == 4 && said(&found, "files", "false").iter().any(|w| w.contains("was asked for, and is")),
+        "{found:#}"
+    );
+    specimen.forge("limits.csv", &(lines.join("\n") + "\n"));
     specimen.forge_run(|run| run["parameters"]["extremes"] = json!(false));
     let (code, found) = specimen.verified();
     assert!(code == 4 && said(&found, "files", "false").iter().any(|w| w.contains("was not asked for")), "{found:#}");
