@@ -23,8 +23,9 @@ use maille_io::{
         BoundaryHead, SURFACE, SURFACE_STATES, SurfaceFolder, SurfaceRecord, boundary_csv, boundary_obj, boundary_ply,
         surface_states,
     },
-    plot::{Layout, boundary_svg, svg_to_png},
+    plot::{Layout, boundary_svg},
 };
+use maille_svg::svg_to_png;
 use miette::{IntoDiagnostic, Report, Result, WrapErr};
 use std::{
     collections::{BTreeMap, btree_map::Entry},

@@ -6,7 +6,8 @@ use crate::{
     output::{self, say},
     units::parse_length,
 };
-use maille_io::plot::{Layout, Paper, outlined_svg, svg_to_pdf, svg_to_png, with_palette};
+use maille_io::plot::{Layout, Paper};
+use maille_svg::{outlined_svg, svg_to_pdf, svg_to_png, with_palette};
 use miette::{IntoDiagnostic, Result, WrapErr};
 use std::path::{Path, PathBuf};
 

@@ -17,11 +17,12 @@ use maille_io::{
     Quantity,
     fit::{FIT, FitRecord, FitRequest, FittedTarget, open_fit, target_rows},
     numbers::distinct,
-    plot::{Layout, PolarPlot, poisson_svg, polar_svg, svg_to_png},
+    plot::{Layout, PolarPlot, poisson_svg, polar_svg},
     record::{NamedRecord, Record},
     run::Map,
     write_design,
 };
+use maille_svg::svg_to_png;
 use miette::{IntoDiagnostic, Result, WrapErr};
 use std::{path::Path, time::Duration};
 

@@ -11,11 +11,12 @@ use crate::{
     units,
 };
 use maille::lattice::Direction;
-use maille_io::{Tile, plot::with_palette};
+use maille_io::Tile;
 use maille_render::{
     Background, Caption, ColorBy, Extent, Forces, Picture, RenderError, RenderOptions, Subject, View, film,
     render_frames,
 };
+use maille_svg::with_palette;
 use miette::{IntoDiagnostic, Report, Result};
 use std::{
     path::{Path, PathBuf},

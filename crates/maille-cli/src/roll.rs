@@ -18,9 +18,10 @@ use maille::{
 };
 use maille_io::{
     boundary::SURFACE,
-    plot::{Layout, roll_svg, svg_to_png},
+    plot::{Layout, roll_svg},
     roll::{Axis, Kind, ROLL, Roll, RollError, RollFolder, RollKey, RollQuestion, Sought, find_rolls, rolls_json},
 };
+use maille_svg::svg_to_png;
 use miette::{IntoDiagnostic, Report, Result, WrapErr};
 use std::{
     fs,

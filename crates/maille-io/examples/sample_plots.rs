@@ -9,8 +9,9 @@ mod rows;
 use maille::record::{LimitRow, Status};
 use maille_io::{
     Quantity,
-    plot::{Curve, CurveKind, Layout, PolarPlot, polar_svg, svg_to_png},
+    plot::{Curve, CurveKind, Layout, PolarPlot, polar_svg},
 };
+use maille_svg::svg_to_png;
 use std::error::Error;
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! Plots of records, as SVG, PDF and PNG. Each kind is a file.
+//! Plots of records, as SVG. Each kind is a file.
 
 mod boundary;
 mod canvas;
@@ -10,12 +10,9 @@ mod difference;
 mod effort;
 mod force;
 mod frame;
-mod letters;
 mod look;
 mod outcome;
 mod palette;
-mod pdf;
-mod png;
 mod poisson;
 mod polar;
 mod radius;
@@ -31,8 +28,6 @@ pub use difference::difference_svg;
 pub use effort::{Cost, cost_svg};
 pub use force::{NamedSimulation, force_svg};
 pub use frame::{Layout, Paper};
-pub use pdf::{outlined_svg, svg_to_pdf};
-pub use png::{COLOURS, PlotError, SAMPLE, svg_to_png, with_palette};
 pub use poisson::poisson_svg;
 pub use polar::{PolarPlot, Ray, RayKind, polar_svg, roll_svg};
 pub use radius::radius_svg;

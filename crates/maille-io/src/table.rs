@@ -6,7 +6,9 @@
 //! | `condition.rs` | which rows: `l2<0,status=local` |
 //! | `order.rs` | in which order: `l2,-l1` |
 //! | `text.rs`, `csv.rs`, `json.rs`, `parquet.rs` | the formats |
+//! | `arrow_schema.rs` | units and meanings in a Parquet file |
 
+mod arrow_schema;
 mod condition;
 mod csv;
 mod field;

@@ -2,7 +2,7 @@
 
 use super::picture::Picture;
 use color_quant::NeuQuant;
-use maille_io::plot::{COLOURS, PlotError, SAMPLE};
+use maille_svg::{COLOURS, PlotError, SAMPLE};
 
 /// A film as GIF that repeats for ever, all frames in one palette, which is that of the first, middle and last one.
 ///

@@ -10,7 +10,7 @@ use super::{
     stage::{Pixel, Stage},
     tube::Tube,
 };
-use maille_io::plot::svg_to_png;
+use maille_svg::svg_to_png;
 use resvg::tiny_skia::{Pixmap, PixmapPaint, PremultipliedColorU8, Transform};
 
 /// The dark background.

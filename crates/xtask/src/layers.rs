@@ -15,7 +15,7 @@ use std::{collections::BTreeMap, path::Path, process::Command};
 
 /// The crates, lowest first. A crate depends only on crates of the rows before its own; dev-dependencies are free.
 const CRATES: &[&[&str]] = &[
-    &["maille-geometry"],
+    &["maille-geometry", "maille-svg"],
     &["maille", "maille-verify"],
     &["maille-io", "maille-prove"],
     &["maille-mesh", "maille-render"],

@@ -26,6 +26,7 @@ const PROFILE: &str = "dist";
 /// Crates in the order in which they are published.
 pub const CRATES: &[&str] = &[
     "maille-geometry",
+    "maille-svg",
     "maille-features",
     "maille",
     "maille-verify",

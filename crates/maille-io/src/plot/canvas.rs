@@ -156,13 +156,6 @@ fn with_subscripts(text: &str, size: f64) -> String {
     out
 }
 
-/// The title of an SVG, as it was given.
-pub(super) fn title_of(svg: &str) -> String {
-    let title =
-        svg.split_once("<title>").and_then(|(_, rest)| rest.split_once("</title>")).map_or("", |(title, _)| title);
-    title.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&")
-}
-
 /// Width of a text in pixels, by the widths of the font's letters, a little too large rather than too small.
 pub(super) fn text_width(text: &str, size: f64) -> f64 {
     let em = |c: char| match c {

@@ -26,7 +26,7 @@ pub enum MapError {
     /// Its plot could not be drawn.
     #[cfg(feature = "plot")]
     #[error("cannot draw the plot")]
-    Plot(#[from] crate::plot::PlotError),
+    Plot(#[from] maille_svg::PlotError),
 }
 
 /// A map of one design, and where its record is.
@@ -263,7 +263,8 @@ fn write_polar(_: &Record, _: &RecordFolder, _: Quantity) -> Result<(), MapError
 /// The plot of a record, where plots are built in.
 #[cfg(feature = "plot")]
 fn write_polar(record: &Record, folder: &RecordFolder, quantity: Quantity) -> Result<(), MapError> {
-    use crate::plot::{Layout, PolarPlot, parameter_words, polar_svg, svg_to_png};
+    use crate::plot::{Layout, PolarPlot, parameter_words, polar_svg};
+    use maille_svg::svg_to_png;
     let words = parameter_words(&record.run);
     let svg = polar_svg(&PolarPlot::from_rows(&record.run.design, &record.rows, quantity, &words), Layout::Beside);
     let png = svg_to_png(&svg, 2.0)?;

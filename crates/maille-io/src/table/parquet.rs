@@ -1,14 +1,14 @@
 //! A table as Apache Parquet, with units beside the columns and the records' inputs in the file.
 
+use super::arrow_schema::{ArrowField, KEY, arrow_schema};
 use super::{Field, Table, json};
-use arrow_array::{ArrayRef, BooleanArray, Float64Array, Int64Array, RecordBatch, StringArray};
-use arrow_schema::{ArrowError, DataType, Schema};
 use maille::record::{Entry, Kind, RECORD_SCHEMA, StateRecord};
-use parquet::arrow::ArrowWriter;
-use parquet::basic::Compression;
+use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
+use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
-use std::collections::HashMap;
+use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
+use parquet::schema::types::{Type, TypePtr};
 use std::io::Write;
 use std::sync::Arc;
 use thiserror::Error;
@@ -16,12 +16,34 @@ use thiserror::Error;
 /// A table that cannot be written as Parquet.
 #[derive(Debug, Error)]
 pub enum ParquetError {
-    /// The columns do not make a table.
-    #[error("the table has no form in Arrow")]
-    Arrow(#[from] ArrowError),
+    /// A count that the column's type does not hold.
+    #[error("{column} is {value}, too large for a signed number of 64 bits")]
+    Count {
+        /// The column.
+        column: String,
+        /// Its value.
+        value: u64,
+    },
+    /// A state is not a line of JSON.
+    #[error("a state has no form in JSON")]
+    Json(#[from] serde_json::Error),
     /// The bytes could not be written.
     #[error("the table cannot be written as Parquet")]
     Parquet(#[from] parquet::errors::ParquetError),
+}
+
+/// The values of a column; none where a row has none.
+enum Values {
+    Text(Vec<Option<ByteArray>>),
+    Number(Vec<Option<f64>>),
+    Flag(Vec<Option<bool>>),
+    /// Signed, so that the difference of two counts is right in every reader.
+    Count(Vec<Option<i64>>),
+}
+
+struct Column<'a> {
+    field: ArrowField<'a>,
+    values: Values,
 }
 
 impl Table<'_> {
@@ -34,67 +56,91 @@ impl Table<'_> {
     /// The same with a last column `state`, the line of `states.jsonl` of each row: all that a record has of them. `states` go
     /// with the rows of this table.
     pub fn parquet_with_states(&self, states: &[StateRecord], out: impl Write + Send) -> Result<(), ParquetError> {
-        let lines =
-            states.iter().map(|state| serde_json::to_string(state).map_err(|e| ArrowError::JsonError(e.to_string())));
-        let lines: ArrayRef = Arc::new(StringArray::from(lines.collect::<Result<Vec<_>, _>>()?));
-        let meaning = HashMap::from([("meaning".to_owned(), "the line of states.jsonl".to_owned())]);
-        self.write_parquet(
-            out,
-            vec![(arrow_schema::Field::new("state", DataType::Utf8, true).with_metadata(meaning), lines)],
-        )
+        let line = |state| Ok(Some(serde_json::to_string(state)?.into_bytes().into()));
+        let lines = states.iter().map(line).collect::<Result<_, ParquetError>>()?;
+        let metadata = vec![("meaning", "the line of states.jsonl".to_owned())];
+        let field = ArrowField { name: "state", kind: Kind::Text, metadata };
+        self.write_parquet(out, vec![Column { field, values: Values::Text(lines) }])
     }
 
-    fn write_parquet(
-        &self,
-        out: impl Write + Send,
-        more: Vec<(arrow_schema::Field, ArrayRef)>,
-    ) -> Result<(), ParquetError> {
-        let column = |field: &Field| {
-            let array = self.array(field)?;
-            Ok((self.arrow_field(field, array.data_type().clone()), array))
-        };
-        let mut columns: Vec<_> = self.fields.iter().map(column).collect::<Result<_, ArrowError>>()?;
-        columns.extend(more);
-        let schema = columns.iter().map(|(field, _)| field.clone());
+    fn write_parquet(&self, out: impl Write + Send, more: Vec<Column<'_>>) -> Result<(), ParquetError> {
+        let columns = self.fields.iter().map(|field| self.column(field)).collect::<Result<Vec<_>, _>>()?;
+        let (fields, values): (Vec<_>, Vec<_>) = columns.into_iter().chain(more).map(|c| (c.field, c.values)).unzip();
         let records: serde_json::Value = self.records.iter().map(json::inputs).collect();
         let metadata = [("maille.schema", RECORD_SCHEMA.to_string()), ("maille.records", records.to_string())];
         // Twice: pyarrow shows those of the Arrow schema, DuckDB those of the file.
-        let of_file = metadata.clone().map(|(key, value)| KeyValue::new(key.to_owned(), value));
-        let of_schema = HashMap::from(metadata.map(|(key, value)| (key.to_owned(), value)));
-        let schema = Arc::new(Schema::new_with_metadata(schema.collect::<Vec<_>>(), of_schema));
-        let batch = RecordBatch::try_new(schema.clone(), columns.into_iter().map(|(_, array)| array).collect())?;
+        let schema = (KEY, arrow_schema(&fields, &metadata));
+        let of_file = metadata.into_iter().chain([schema]).map(|(key, value)| KeyValue::new(key.to_owned(), value));
         let properties = WriterProperties::builder()
             .set_compression(Compression::SNAPPY)
             .set_created_by(concat!("maille ", env!("CARGO_PKG_VERSION")).to_owned())
-            .set_key_value_metadata(Some(of_file.into()))
+            .set_key_value_metadata(Some(of_file.collect()))
             .build();
-        let mut writer = ArrowWriter::try_new(out, schema, Some(properties))?;
-        writer.write(&batch)?;
+        let mut writer = SerializedFileWriter::new(out, parquet_schema(&fields)?, Arc::new(properties))?;
+        if !self.rows.is_empty() {
+            let mut group = writer.next_row_group()?;
+            for values in &values {
+                let mut column = group.next_column()?.expect("as many columns as fields of the schema");
+                values.write(&mut column)?;
+                column.close()?;
+            }
+            group.close()?;
+        }
         writer.close()?;
         Ok(())
     }
 
-    fn arrow_field(&self, field: &Field, kind: DataType) -> arrow_schema::Field {
-        let mut metadata = HashMap::from([("meaning".to_owned(), field.meaning().to_owned())]);
-        metadata.extend(self.unit(field).map(|unit| ("unit".to_owned(), unit.to_owned())));
-        arrow_schema::Field::new(field.name(), kind, true).with_metadata(metadata)
-    }
-
-    /// The values of a column. A count is a signed integer, so that the difference of two is right in every reader.
-    fn array(&self, field: &Field) -> Result<ArrayRef, ArrowError> {
+    fn column<'a>(&self, field: &'a Field) -> Result<Column<'a>, ParquetError> {
+        let unit = self.unit(field).map(|unit| ("unit", unit.to_owned()));
+        let metadata = [("meaning", field.meaning().to_owned())].into_iter().chain(unit).collect();
         let cells = self.rows.iter().map(|row| field.of(row));
-        Ok(match field.kind() {
-            Kind::Text => Arc::new(cells.map(Entry::text).collect::<StringArray>()),
-            Kind::Number => Arc::new(cells.map(Entry::number).collect::<Float64Array>()),
-            Kind::Flag => Arc::new(cells.map(Entry::flag).collect::<BooleanArray>()),
+        let values = match field.kind() {
+            Kind::Text => Values::Text(cells.map(|cell| cell.text().map(ByteArray::from)).collect()),
+            Kind::Number => Values::Number(cells.map(Entry::number).collect()),
+            Kind::Flag => Values::Flag(cells.map(Entry::flag).collect()),
             Kind::Count => {
-                let signed = |n: u64| {
-                    let wide = |_| ArrowError::CastError(format!("{} is {n}, too large for Int64", field.name()));
-                    i64::try_from(n).map_err(wide)
-                };
-                let counts = cells.map(|cell| cell.count().map(signed).transpose());
-                Arc::new(counts.collect::<Result<Int64Array, _>>()?)
+                let column = || field.name().to_owned();
+                let signed = |value| i64::try_from(value).map_err(|_| ParquetError::Count { column: column(), value });
+                Values::Count(cells.map(|cell| cell.count().map(signed).transpose()).collect::<Result<_, _>>()?)
             }
-        })
+        };
+        Ok(Column { field: ArrowField { name: field.name(), kind: field.kind(), metadata }, values })
     }
+}
+
+impl Values {
+    fn write(&self, column: &mut SerializedColumnWriter<'_>) -> Result<(), parquet::errors::ParquetError> {
+        match self {
+            Self::Text(values) => write::<ByteArrayType>(column, values),
+            Self::Number(values) => write::<DoubleType>(column, values),
+            Self::Flag(values) => write::<BoolType>(column, values),
+            Self::Count(values) => write::<Int64Type>(column, values),
+        }
+    }
+}
+
+/// Writes the values that are there, and for each row whether there is one: Parquet's definition level.
+fn write<T: DataType>(
+    column: &mut SerializedColumnWriter<'_>,
+    values: &[Option<T::T>],
+) -> Result<(), parquet::errors::ParquetError> {
+    let levels: Vec<i16> = values.iter().map(|value| value.is_some().into()).collect();
+    let values: Vec<T::T> = values.iter().flatten().cloned().collect();
+    column.typed::<T>().write_batch(&values, Some(&levels), None)?;
+    Ok(())
+}
+
+fn parquet_schema(fields: &[ArrowField<'_>]) -> Result<TypePtr, parquet::errors::ParquetError> {
+    let column = |field: &ArrowField<'_>| {
+        let (physical, logical) = match field.kind {
+            Kind::Text => (Physical::BYTE_ARRAY, Some(LogicalType::String)),
+            Kind::Number => (Physical::DOUBLE, None),
+            Kind::Flag => (Physical::BOOLEAN, None),
+            Kind::Count => (Physical::INT64, None),
+        };
+        let column = Type::primitive_type_builder(field.name, physical).with_repetition(Repetition::OPTIONAL);
+        Ok(Arc::new(column.with_logical_type(logical).build()?))
+    };
+    let columns = fields.iter().map(column).collect::<Result<_, parquet::errors::ParquetError>>()?;
+    Ok(Arc::new(Type::group_type_builder("limits").with_fields(columns).build()?))
 }

@@ -7,9 +7,9 @@ use maille::relaxation::simulate::End;
 use maille_io::plot::Layout;
 use maille_io::plot::NamedSimulation;
 use maille_io::plot::force_svg;
-use maille_io::plot::svg_to_png;
 use maille_io::record::ForceTable;
 use maille_io::record::SimulationRecord;
+use maille_svg::svg_to_png;
 
 /// A simulation of a sheet with a force at each stretch, and nothing in one frame.
 fn simulation(name: &str, tile: &str, end: End, curve: &[(f64, f64)]) -> NamedSimulation {

@@ -13,10 +13,10 @@ use maille_io::plot::Paper;
 use maille_io::plot::PolarPlot;
 use maille_io::plot::cost_svg;
 use maille_io::plot::difference_svg;
-use maille_io::plot::outlined_svg;
 use maille_io::plot::polar_svg;
-use maille_io::plot::svg_to_pdf;
-use maille_io::plot::svg_to_png;
+use maille_svg::outlined_svg;
+use maille_svg::svg_to_pdf;
+use maille_svg::svg_to_png;
 
 #[test]
 fn the_picture_has_the_size_asked_for_and_is_not_blank() {
@@ -38,7 +38,7 @@ fn a_palette_saves_bytes_and_keeps_the_picture() {
     let svg = "<svg xmlns='http://www.w3.org/2000/svg' width='200' height='100'><rect width='200' height='100' fill='#fff'/>\
         <circle cx='60' cy='50' r='40' fill='#c04010'/><circle cx='110' cy='50' r='40' fill='#2060c0' fill-opacity='0.5'/></svg>";
     let full = svg_to_png(svg, 1.0).unwrap();
-    let small = maille_io::plot::with_palette(&full).unwrap();
+    let small = maille_svg::with_palette(&full).unwrap();
     assert!(4 * small.len() < 3 * full.len(), "{} of {} bytes", small.len(), full.len());
     let [full, small] = [full, small].map(|png| resvg::tiny_skia::Pixmap::decode_png(&png).unwrap());
     assert_eq!((small.width(), small.height()), (200, 100));

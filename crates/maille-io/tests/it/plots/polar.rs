@@ -11,7 +11,7 @@ use maille_io::plot::CurveKind;
 use maille_io::plot::Layout;
 use maille_io::plot::PolarPlot;
 use maille_io::plot::polar_svg;
-use maille_io::plot::svg_to_png;
+use maille_svg::svg_to_png;
 
 #[test]
 fn the_plot_says_what_it_shows() {

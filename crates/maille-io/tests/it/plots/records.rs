@@ -17,8 +17,8 @@ use maille_io::plot::difference_svg;
 use maille_io::plot::poisson_svg;
 use maille_io::plot::polar_svg;
 use maille_io::plot::radius_svg;
-use maille_io::plot::svg_to_png;
 use maille_io::record::NamedRecord;
+use maille_svg::svg_to_png;
 
 #[test]
 fn several_records_differ_in_colour_and_in_line() {

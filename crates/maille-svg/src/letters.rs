@@ -4,8 +4,8 @@ use roxmltree::{Document, Error, Node};
 use std::{collections::HashMap, fmt::Write, ops::Range, sync::OnceLock};
 
 /// Characters with their outlines; `fonts/README.md` says how they were made.
-const REGULAR: &str = include_str!("../../fonts/regular.tsv");
-const BOLD: &str = include_str!("../../fonts/bold.tsv");
+const REGULAR: &str = include_str!("../fonts/regular.tsv");
+const BOLD: &str = include_str!("../fonts/bold.tsv");
 /// Units of the outlines in the size of a letter.
 const UNITS: f64 = 2048.0;
 /// Size of a text that names none.
@@ -42,7 +42,7 @@ fn letter(line: &'static str) -> Option<(char, Letter)> {
 }
 
 /// The SVG with each text as paths. A character that the fonts have not is an empty box.
-pub(super) fn outlined(svg: &str) -> Result<String, Error> {
+pub(crate) fn outlined(svg: &str) -> Result<String, Error> {
     let document = Document::parse(svg)?;
     let mut out = String::with_capacity(svg.len());
     let mut done = 0;

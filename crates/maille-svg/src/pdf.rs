@@ -1,7 +1,7 @@
 //! SVG to PDF: lines and areas stay what they are, and letters are outlines, so that a reader needs no font.
 
-use super::canvas::title_of;
-use super::png::{PlotError, tree};
+use crate::png::{PlotError, tree};
+use crate::title_of;
 use flate2::{Compression, write::ZlibEncoder};
 use pdf_writer::{
     Content, Filter, Finish, Name, Pdf, Rect, Ref, TextStr,

@@ -1,6 +1,6 @@
 //! SVG to PNG, and PNG of 256 colours.
 
-use super::{canvas::title_of, letters};
+use crate::{letters, title_of};
 use color_quant::NeuQuant;
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree};
@@ -64,7 +64,7 @@ fn encoded(pixmap: Pixmap, title: &str) -> Result<Vec<u8>, png::EncodingError> {
 }
 
 /// The SVG, its letters as outlines.
-pub(super) fn tree(svg: &str) -> Result<Tree, PlotError> {
+pub(crate) fn tree(svg: &str) -> Result<Tree, PlotError> {
     let outlined = letters::outlined(svg).map_err(|e| PlotError::Svg(e.to_string()))?;
     Tree::from_str(&outlined, &Options::default()).map_err(|e| PlotError::Svg(e.to_string()))
 }
