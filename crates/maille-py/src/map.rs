@@ -17,7 +17,7 @@ use maille::{
 use maille_io::{
     Quantity,
     numbers::{distinct, parse},
-    record::{NamedRecord, SensitivityRow},
+    record::{NamedRecord, SensitivityRow, read_limits, read_run, read_states, write_limits, write_run, write_states},
     run::{Map, save_record, sensitivities},
     table::{Field, Table},
 };
@@ -224,7 +224,23 @@ impl Record {
 
     /// `run.json`.
     fn run(&self) -> String {
-        maille_io::record::write_run(&self.record.run)
+        write_run(&self.record.run)
+    }
+
+    /// What [`Record::of_texts`] makes it of again: its name, `run.json`, `limits.csv` and `states.jsonl`.
+    fn texts(&self) -> PyResult<(String, String, String, String)> {
+        let limits = write_limits(&self.record.rows).map_err(|e| error::record(&e))?;
+        let states = write_states(&self.record.states).map_err(|e| error::record(&e))?;
+        Ok((self.name.clone(), self.run(), limits, states))
+    }
+
+    /// A record that travelled as texts.
+    #[staticmethod]
+    fn of_texts(name: String, run: &str, limits: &str, states: &str) -> PyResult<Self> {
+        let run = read_run("run.json", run).map_err(|e| error::record(&e))?;
+        let rows = read_limits("limits.csv", limits).map_err(|e| error::record(&e))?;
+        let states = read_states("states.jsonl", states).map_err(|e| error::record(&e))?;
+        Ok(Self { name, record: maille_io::record::Record { run, rows, states } })
     }
 
     /// The design that was computed.

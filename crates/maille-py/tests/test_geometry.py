@@ -112,11 +112,16 @@ def test_results_depend_neither_on_neighbours_nor_on_the_way_arrays_lie():
     whole = circle_distance_minima(*a)
     some = slice(1234, 1301)
     part = circle_distance_minima(*(x[some] for x in a))
-    # Sliced with steps, Fortran order, and other types of numbers are copied, to the same bits.
+    # Sliced with steps, Fortran order, other types of numbers, and unaligned columns of a packed record are copied, to the same bits.
+    packed = np.zeros(len(a[0]), dtype=[("first", "u1"), *((str(k), "f8", x.shape[1:]) for k, x in enumerate(a))])
+    for k, x in enumerate(a):
+        packed[str(k)] = x
+    unaligned = circle_distance_minima(*(packed[str(k)] for k in range(len(a))))
     strided = circle_distance_minima(*(np.asfortranarray(np.repeat(x, 2, axis=0))[::2] for x in a))
     for name in ("count", "distance", "point_a", "point_b", "kind_code"):
         assert np.array_equal(getattr(part, name), getattr(whole, name)[some], equal_nan=True), name
         assert np.array_equal(getattr(strided, name), getattr(whole, name), equal_nan=True), name
+        assert np.array_equal(getattr(unaligned, name), getattr(whole, name), equal_nan=True), name
 
 
 def test_one_circle_is_paired_with_all():

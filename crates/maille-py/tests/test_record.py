@@ -215,3 +215,11 @@ def test_designs_travel_to_other_processes():
     design = maille.Design.builtin("3.1").with_minor_radius(0.07)
     again = pickle.loads(pickle.dumps(design))
     assert again == design and again.minor_radius == 0.07
+
+
+def test_records_travel_to_other_processes():
+    record = maille.characterize("1.1", [0, 30], [0, 0.1])
+    again = pickle.loads(pickle.dumps(record))
+    assert again.to_arrow().equals(record.to_arrow(), check_metadata=True)
+    assert again.run == record.run and again.design == record.design
+    assert [state.document for state in again.states] == [state.document for state in record.states]

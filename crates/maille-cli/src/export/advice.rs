@@ -11,6 +11,19 @@ use maille_io::Tile;
 use maille_mesh::{Format, Scene};
 use miette::{Report, Result};
 
+/// Refuses a clearance that linked rings cannot have: one runs through the other, so their cores are no farther apart than its radius.
+/// All pairs of a large tile would be looked at.
+pub fn possible(clearance: f64, mm: f64, source: &Source) -> Result<()> {
+    let radius = source.model.largest_radius * source.model.unit * mm;
+    if clearance <= radius {
+        return Ok(());
+    }
+    let help = "linked rings cannot be that far apart; --scale writes a larger sheet";
+    let problem =
+        format!("--min-clearance {clearance} mm is more than the largest ring's radius, {} mm", short(radius));
+    Err(wrong(exit::USAGE, problem, help))
+}
+
 /// What would fuse, and what would help.
 pub fn fuse(close: &maille_mesh::TooClose, clearance: f64, mm: f64, source: &Source) -> Report {
     let design = &source.design;

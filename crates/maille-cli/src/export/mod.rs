@@ -15,7 +15,7 @@ use crate::{
     source::{Source, SourceArgs, Wanted},
     units::{Length, parse_length},
 };
-use advice::{fuse, gaps, large, size, summary};
+use advice::{fuse, gaps, large, possible, size, summary};
 use destination::{Destination, FormatArg, destination, with_ending};
 use maille::{design::Design, topology};
 use maille_io::Tile;
@@ -289,6 +289,7 @@ fn write_frames(
     let Source { design, model, .. } = source;
     let fineness = fineness(args, design);
     let options = write_options(args);
+    args.min_clearance.map_or(Ok(()), |clearance| possible(clearance, mm, source))?;
     let (mut series, mut origin) = (Vec::new(), None);
     for (k, frame) in frames.iter().enumerate() {
         let mut scene = scene(source, frame, tile, fineness, mm)?;

@@ -264,6 +264,9 @@ fn a_clearance_has_a_unit() {
     // The gap of the meshes is 0.8 mm.
     assert_eq!(["0.7", "0.7mm", "0.07cm"].map(asked), [Some(0); 3]);
     assert_eq!(["0.9", "0.9mm", "0.09cm"].map(asked), [Some(2); 3]);
+    // Pairs of far cells are not looked for: 3 GB, before.
+    let far = maille(folder, &format!("{line} 1e308 --warn"));
+    assert!(far.code == Some(2) && far.err.contains("largest ring's radius, 4.800 mm"), "{}", far.err);
 }
 
 /// Squares whose corners are rounded less than the thickest wire needs: no pair of elements shows it.

@@ -158,7 +158,7 @@ def _pairs(**arguments: ArrayLike) -> tuple[list[NDArray[np.float64]], int]:
         vector = name.startswith(("center", "normal"))
         right = "(N, 3), or (3,) for a single circle" if vector else "(N,), or a number for a single circle"
         try:
-            array = np.ascontiguousarray(argument, dtype=np.float64)
+            array = np.require(argument, np.float64, ["C", "A", "E"])  # columns of packed records are not aligned
             shape = np.shape(argument)
         except (TypeError, ValueError) as error:
             raise ShapeError(name, f"is no array of numbers ({error})", f"give numbers of the shape {right}") from None

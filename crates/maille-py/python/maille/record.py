@@ -74,6 +74,9 @@ class Record(Columns):
     def __len__(self) -> int:
         return len(self._inner)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (_again, self._inner.texts())
+
     def __repr__(self) -> str:
         return f"<maille.Record of {self.design.name!r}, {len(self)} limits>"
 
@@ -188,6 +191,11 @@ class Sensitivities(Columns):
         columns = {name: [row[k] for row in self._rows] for k, name in enumerate(self._COLUMNS)}
         # A missing number becomes NaN.
         return {name: np.array(c, dtype=np.str_ if name == "number" else np.float64) for name, c in columns.items()}
+
+
+def _again(name: str, run: str, limits: str, states: str) -> Record:
+    """A record that came from another process."""
+    return Record(_native.Record.of_texts(name, run, limits, states))
 
 
 def read_record(folder: str | os.PathLike[str]) -> Record:
