@@ -86,6 +86,7 @@ async fn next(
 /// Finds the limits; the ticket is given back at the end, before the last word.
 fn run(work: &Work, map: &Map, request: &Solve, ticket: Ticket, send: &UnboundedSender<SolveEvent>) {
     let cancel = Arc::clone(&ticket.cancel);
+    // Of packages and tests; with the profile `release` a panic ends the viewer.
     let found = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
         if cancel.load(Ordering::Relaxed) {
             return Ok(());
