@@ -20,7 +20,7 @@ pub fn possible(clearance: f64, mm: f64, source: &Source) -> Result<()> {
     }
     let help = "linked rings cannot be that far apart; --scale writes a larger sheet";
     let problem =
-        format!("--min-clearance {clearance} mm is more than the largest ring's radius, {} mm", short(radius));
+        format!("--min-clearance {clearance:?} mm is more than the largest ring's radius, {} mm", short(radius));
     Err(wrong(exit::USAGE, problem, help))
 }
 
