@@ -73,9 +73,9 @@ pub(crate) fn most_width(forces: &[Vec3]) -> f64 {
     let mut seen = seeds.map(|n| f(&climbed(forces, n))).fold(0.0, f64::max);
     let mut left = octants(&f);
     for _ in 0..MOST {
-        let enough = (seen * (1.0 + CLOSE)).min(all);
-        // Of all that are left this one can hold the most.
-        if left.peek().is_none_or(|triangle| triangle.most <= enough) {
+        let enough = seen * (1.0 + CLOSE);
+        // Forces in one plane reach the sum of all, beyond which nothing is. Of all that are left, the first can hold the most.
+        if enough >= all || left.peek().is_none_or(|triangle| triangle.most <= enough) {
             break;
         }
         let Some(Triangle { corners: [a, b, c], values: [p, q, r], .. }) = left.pop() else { break };

@@ -1,6 +1,6 @@
 //! Cells of a plane lattice: supercells, the images within reach, directions, and what of a stretch is held or free.
 
-use crate::error::InvalidInput;
+use maille_design::InvalidInput;
 use maille_geometry::Vec3;
 use nalgebra::{Matrix2, Vector2};
 use serde::{Deserialize, Serialize};

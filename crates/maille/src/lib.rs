@@ -45,10 +45,7 @@
 //! The formulas and proofs are in the repository's `docs/theory`.
 
 pub mod answer;
-pub mod design;
-pub mod error;
 pub mod fit;
-pub mod formula;
 pub mod lattice;
 pub mod model;
 pub mod question;
@@ -74,9 +71,8 @@ pub mod topology;
 
 pub use answer::Answer;
 pub use bound::BoundKind;
-pub use design::Design;
-pub use error::InvalidInput;
 pub use lattice::{Across, Cell, Direction};
+pub use maille_design::{self as design, Design, InvalidInput, error, formula};
 pub use model::Model;
 pub use program::Contact;
 pub use question::{Effort, Goal, Question, Sense, Strain};

@@ -7,11 +7,11 @@ pub use rolled::{OfRolled, RollStrains, Turn};
 
 use self::number::{MOST, finite, width, within};
 use crate::{
-    error::InvalidInput,
     lattice::{Across, Direction},
     model::Model,
     program::metric::factor,
 };
+use maille_design::InvalidInput;
 use nalgebra::Matrix2;
 use serde::{Deserialize, Serialize};
 use std::{fmt, str::FromStr};

@@ -2,8 +2,6 @@
 
 use crate::{
     answer::{Answer, CellTrend},
-    design::Design,
-    error::InvalidInput,
     lattice::{Across, Cell, Direction},
     model::{Model, of_cell},
     program::{Contact, metric::factor},
@@ -20,6 +18,7 @@ use crate::{
     state::{Pose, State},
     survey::{CellChoice, KnownRoll, RollTask, one, rolls},
 };
+use maille_design::{Design, InvalidInput};
 use maille_geometry::Vec3;
 use nalgebra::{Matrix2, Rotation3, UnitQuaternion};
 use std::{

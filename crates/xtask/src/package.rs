@@ -28,6 +28,7 @@ pub const CRATES: &[&str] = &[
     "maille-geometry",
     "maille-svg",
     "maille-features",
+    "maille-design",
     "maille",
     "maille-verify",
     "maille-prove",

@@ -129,6 +129,19 @@ impl Block {
     }
 }
 
+/// The command, with a small picture if it draws one: most of its time goes into pixels.
+fn small(command: String) -> String {
+    if !command.starts_with("maille render ") {
+        return command;
+    }
+    let mut words: Vec<&str> = command.split(' ').collect();
+    if let Some(at) = words.iter().position(|word| *word == "--size") {
+        words.drain(at..(at + 2).min(words.len()));
+    }
+    words.extend(["--size", "320x240"]);
+    words.join(" ")
+}
+
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().expect("the repository")
 }
@@ -160,6 +173,7 @@ fn run(page: &str, slow: bool) {
         let before = block.before.iter().map(|command| (block.line, command.clone(), None));
         let shown = block.commands().into_iter().map(|(line, command)| (line, command, block.ends));
         for (line, command, ends) in before.chain(shown) {
+            let command = small(command);
             let begun = Instant::now();
             let mut shell = Command::new("sh");
             shell.args(["-c", &command]).current_dir(folder.path()).env("PATH", &path).env("NO_COLOR", "1");

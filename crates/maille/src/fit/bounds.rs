@@ -6,11 +6,11 @@
 
 use crate::{
     bound::{Bound, ChainBound, DualForce, LinkBound, TieKind, best_bound, lowered},
-    design::Design,
     lattice::{Across, Direction},
     model::Model,
     sensitivity::{DesignVector, is_link},
 };
+use maille_design::Design;
 
 /// A model with the radii of another design of its family: enough for bounds.
 pub(super) fn with_radii(model: &Model, design: &Design) -> Model {

@@ -1,6 +1,7 @@
 //! Designs with free numbers.
 
-use crate::{design::Design, error::InvalidInput, sensitivity::DesignVector};
+use crate::sensitivity::DesignVector;
+use maille_design::{Design, InvalidInput};
 use serde::{Deserialize, Serialize};
 
 /// A number of a design that may change.

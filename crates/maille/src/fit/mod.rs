@@ -28,12 +28,10 @@ pub use options::{FitOptions, Norm};
 pub use place::linked_alike;
 pub use target::{Measure, Target, Targets, Wanted};
 
-use crate::{
-    answer::Answer, design::Design, error::InvalidInput, lattice::Cell as LatticeCell, model::Model,
-    sensitivity::permutations, sheet::Sheet,
-};
+use crate::{answer::Answer, lattice::Cell as LatticeCell, model::Model, sensitivity::permutations, sheet::Sheet};
 use descent::descend;
 use forbid::family_bounds;
+use maille_design::{Design, InvalidInput};
 use search::{Point, Refused, Search, head};
 use serde::{Deserialize, Serialize};
 use starts::{solved_in_place, start};

@@ -1,6 +1,7 @@
 //! How a fit searches.
 
-use crate::{error::InvalidInput, question::Effort, survey::CellChoice};
+use crate::{question::Effort, survey::CellChoice};
+use maille_design::InvalidInput;
 use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
 

@@ -6,7 +6,6 @@
 
 use super::family::Family;
 use crate::{
-    design::Design,
     lattice::Cell,
     model::Model,
     search::{
@@ -14,6 +13,7 @@ use crate::{
         extreme::{Extreme, extreme},
     },
 };
+use maille_design::Design;
 use std::sync::atomic::AtomicBool;
 
 /// Steps from the given design to another one: the largest and the smallest, of the whole way.

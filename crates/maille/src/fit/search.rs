@@ -9,8 +9,6 @@ use super::{
 };
 use crate::{
     answer::Answer,
-    design::Design,
-    error::InvalidInput,
     lattice::Direction,
     model::{Link, Model},
     question::Question,
@@ -18,6 +16,7 @@ use crate::{
     sensitivity::DesignVector,
     sheet::Sheet,
 };
+use maille_design::{Design, InvalidInput};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::{cell::Cell, sync::atomic::AtomicBool};

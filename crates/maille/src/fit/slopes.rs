@@ -9,10 +9,10 @@ use super::{
 };
 use crate::{
     answer::Answer,
-    error::InvalidInput,
     sensitivity::{self, DesignVector},
     sheet::Sheet,
 };
+use maille_design::InvalidInput;
 use nalgebra::DMatrix;
 
 /// How far a number is moved for a Poisson ratio, as a share of its range.

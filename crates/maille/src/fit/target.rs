@@ -2,10 +2,10 @@
 
 use crate::{
     answer::Answer,
-    error::InvalidInput,
     lattice::{Across, Direction},
     question::{Goal, Question, Sense},
 };
+use maille_design::InvalidInput;
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 

@@ -2,12 +2,11 @@
 
 use super::{Curve, Element, FAR, MANY, Model, Ring};
 use crate::{
-    design::{CurveSpec, Design, shape::CorePieces},
-    error::InvalidInput,
     lattice::{self, Cell},
     state::{Pose, State},
     topology,
 };
+use maille_design::{CurveSpec, Design, InvalidInput, shape::CorePieces};
 use maille_geometry::{Circle, Piece, Vec3, smallest_ball_center};
 use nalgebra::{Matrix2, Unit, UnitQuaternion};
 use std::sync::{Arc, OnceLock};

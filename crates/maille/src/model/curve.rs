@@ -8,12 +8,10 @@ pub use minima::{CurveMinimum, curve_distance_minima};
 pub(crate) use minima::{curve_distance, distance_lower_bound, owned_distance_minima};
 
 use self::{level::Middle, tree::Node};
-use crate::{
-    design::{
-        CurveKind,
-        shape::{CorePieces, Owned, SMOOTH},
-    },
-    state::{Pose, images::Image},
+use crate::state::{Pose, images::Image};
+use maille_design::{
+    CurveKind,
+    shape::{CorePieces, Owned, SMOOTH},
 };
 use maille_geometry::{Circle, Piece, Place, Vec3};
 use nalgebra::UnitQuaternion;

@@ -4,10 +4,10 @@ mod compile;
 pub mod curve;
 
 use crate::{
-    design::Design,
     lattice::{Cell, Shift},
     state::{NeutralSurface, State},
 };
+use maille_design::Design;
 use maille_geometry::{Circle, Vec3};
 use nalgebra::{Matrix2, Unit, UnitVector3};
 use std::{

@@ -1,6 +1,6 @@
 //! Numbers that a question may have.
 
-use crate::error::InvalidInput;
+use maille_design::InvalidInput;
 
 /// Directions, in degrees, and strains are at most this in size: beyond, a float has too few digits left for a direction, or for a width
 /// to be held.

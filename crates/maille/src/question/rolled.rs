@@ -1,7 +1,8 @@
 //! What is asked of a sheet that is rolled.
 
 use super::number::{width, within};
-use crate::{error::InvalidInput, lattice::Across};
+use crate::lattice::Across;
+use maille_design::InvalidInput;
 use serde::{Deserialize, Serialize};
 
 /// How far a sheet is rolled.

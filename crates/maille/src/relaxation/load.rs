@@ -3,12 +3,12 @@
 
 use super::barrier::barrier;
 use crate::{
-    error::InvalidInput,
     model::{Core, Model},
     solver::curvature::Curvature,
     state::{Pose, State},
     topology::{broad_phase::in_chunks, linked_parts},
 };
+use maille_design::InvalidInput;
 use maille_geometry::Vec3;
 use nalgebra::{Matrix3, Matrix4, Vector4};
 

@@ -1,13 +1,13 @@
 //! Options of the energy method, with what a record needs to repeat a run.
 
 use crate::{
-    error::InvalidInput,
     model::Model,
     relaxation::{
         ContactOptions, HessianMethod, MinimaMethod, barrier::ContactLaw, flat::FLAT_CURVATURE, target::Protocol,
     },
     solver::newton::NewtonOptions,
 };
+use maille_design::InvalidInput;
 use serde::{Deserialize, Serialize};
 
 /// How the energy is minimised.

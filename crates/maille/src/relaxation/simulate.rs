@@ -8,7 +8,6 @@
 pub mod force;
 
 use crate::{
-    error::InvalidInput,
     model::Model,
     record::{FrameRecord, pose_records},
     relaxation::{
@@ -20,6 +19,7 @@ use crate::{
     state::State,
     topology,
 };
+use maille_design::InvalidInput;
 use maille_geometry::Vec3;
 use serde::{Deserialize, Serialize};
 use std::{

@@ -6,7 +6,8 @@ use super::{
     options::ExtremeOptions,
     room::{Room, largest_room},
 };
-use crate::{answer::Answer, design::Design, lattice::Cell, model::Model};
+use crate::{answer::Answer, lattice::Cell, model::Model};
+use maille_design::Design;
 use std::sync::atomic::AtomicBool;
 
 /// What is as large, or as small, as can be.

@@ -7,12 +7,12 @@ use super::{
 };
 use crate::{
     answer::Answer,
-    error::InvalidInput,
     lattice::Direction,
     model::Model,
     program::LatticeFamily,
     question::{Goal, Question},
 };
+use maille_design::InvalidInput;
 
 /// The family of lattices in which the first parameter was maximised, and all parameters in the state of `answer`.
 ///

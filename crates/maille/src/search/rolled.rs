@@ -18,7 +18,6 @@ use super::{
 };
 use crate::{
     answer::Answer,
-    error::InvalidInput,
     lattice::Direction,
     model::Model,
     program::{LatticeFamily, Parameter, SheetProgram},
@@ -28,6 +27,7 @@ use crate::{
     state::{Roll, State},
     topology::{links_kept, smallest_gap, winding::winds},
 };
+use maille_design::InvalidInput;
 use std::{
     f64::consts::TAU,
     sync::atomic::{AtomicBool, Ordering},

@@ -34,7 +34,6 @@ use self::{
 };
 use crate::{
     answer::Answer,
-    error::InvalidInput,
     lattice::Shift,
     model::{Model, RingPair},
     program::{SheetProgram, key::pair_of_key},
@@ -44,6 +43,7 @@ use crate::{
     state::State,
     symmetry::Operation,
 };
+use maille_design::InvalidInput;
 use maille_geometry::{Vec3, point_circle_distance};
 use nalgebra::Matrix2;
 use std::sync::OnceLock;

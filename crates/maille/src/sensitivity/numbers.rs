@@ -1,10 +1,7 @@
 //! The raw numbers of a design as one vector: a change of them, or the derivatives by them.
 
-use crate::{
-    design::{Design, RingSpec},
-    error::InvalidInput,
-    symmetry::Image,
-};
+use crate::symmetry::Image;
+use maille_design::{Design, InvalidInput, RingSpec};
 use maille_geometry::Vec3;
 use nalgebra::{UnitQuaternion, Vector2};
 

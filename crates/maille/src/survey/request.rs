@@ -1,7 +1,6 @@
 //! What a map asks, and what comes back of each limit.
 
 use crate::{
-    error::InvalidInput,
     lattice::{Across, Cell},
     model::Model,
     question::{Goal, Question, Sense},
@@ -9,6 +8,7 @@ use crate::{
     relaxation::limit::EnergyOptions,
     search::ExactOptions,
 };
+use maille_design::InvalidInput;
 use serde::{Deserialize, Serialize};
 use std::str::FromStr;
 

@@ -14,7 +14,6 @@ use super::{
     request::CellChoice,
 };
 use crate::{
-    error::InvalidInput,
     lattice::Cell,
     model::Model,
     question::{Effort, Goal, Question, Sense, StrainQuery},
@@ -22,6 +21,7 @@ use crate::{
     search::strain::{OtherStarts, StrainMethod, StrainOptions},
     state::{Pose, State},
 };
+use maille_design::InvalidInput;
 use maille_geometry::Vec3;
 use nalgebra::{Matrix2, Quaternion, UnitQuaternion};
 use rayon::prelude::*;

@@ -1,6 +1,6 @@
 //! The threads of a survey.
 
-use crate::error::InvalidInput;
+use maille_design::InvalidInput;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 /// Threads at most: more than any machine has cores, and fewer than a system refuses.

@@ -1,7 +1,8 @@
 //! What is odd about a design that can be solved: most often a slip of the pen.
 
 use super::{binding_vectors, close_pairs, core_distance, linked_parts, neighbours};
-use crate::{design::CurveKind, error::InvalidInput, model::Model};
+use crate::model::Model;
+use maille_design::{CurveKind, InvalidInput};
 
 /// A ring that is linked to nothing is called far from this gap on, in reference radii.
 const FAR_GAP: f64 = 2.0;

@@ -114,7 +114,7 @@ fn a_circle_of_thousands_of_sides_is_no_ring() {
         let corner = |k: usize| [(TAU * k as f64 / n as f64).cos(), (TAU * k as f64 / n as f64).sin(), 0.0];
         format!("polyline = {{ points = {} }}", points(&(0..n).map(corner).collect::<Vec<_>>()))
     };
-    for n in [100, 5_000] {
+    for n in [100, 2_000] {
         let expected = 2.0 * (2.0 - corner_in_corner(TAU / 4.0 - TAU / 2.0 / n as f64, 0.1));
         let (status, found) = locked(&of_two(3.0, &polygon(n), 0.1), 3.0);
         assert!(status == "local" && (found - expected).abs() < 1e-9, "{n}: {status} {found} {expected}");

@@ -9,7 +9,8 @@
 //! On an arc a''' = −κ² a', so the first differs from its value in the middle by at most κ_a² |W| h_a + κ_a h_b, the second by at most κ_a h_a +
 //! κ_b h_b. The slope in t is that of the pair with its sides changed.
 
-use crate::{design::shape::SMOOTH, state::Pose};
+use crate::state::Pose;
+use maille_design::shape::SMOOTH;
 use maille_geometry::{Piece, Vec3};
 
 /// The middle of a piece.

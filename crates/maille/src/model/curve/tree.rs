@@ -1,6 +1,6 @@
 //! Runs of a curve's pieces, halved again and again: what can be ruled out of two runs at once.
 
-use crate::design::shape::ball;
+use maille_design::shape::ball;
 use maille_geometry::{Piece, Vec3};
 use std::f64::consts::PI;
 

@@ -1,12 +1,9 @@
 //! A design's numbers as formulas over its parameters: computed anew, checked, and dropped where they no longer hold.
 
-use super::{
-    Design,
-    parameters::{Computation, Parameter, TAKEN, unknown},
-};
 use crate::{
-    error::InvalidInput,
+    Design, InvalidInput,
     formula::{Formula, is_name, is_reserved},
+    parameters::{Computation, Parameter, TAKEN, unknown},
 };
 use std::collections::BTreeMap;
 

@@ -6,9 +6,9 @@ mod frame;
 mod overlap;
 mod smooth;
 
-pub(crate) use self::core::{CorePieces, MOST_PIECES, Owned, SMOOTH, ball};
-pub use self::core::{CurveKind, PathPart};
-pub(super) use overlap::tightest;
+pub(crate) use self::core::MOST_PIECES;
+pub use self::core::{CorePieces, CurveKind, Owned, PathPart, SMOOTH, ball};
+pub(crate) use overlap::tightest;
 
 use self::{
     corners::{Polygon, Problem, are_one, problem_of_parts, stadium, through_parts},
@@ -202,7 +202,7 @@ impl Shape {
     }
 
     /// As [`Self::scale`].
-    pub(crate) fn scaled(&self, factor: f64) -> Self {
+    pub fn scaled(&self, factor: f64) -> Self {
         let mut out = self.clone();
         out.scale(factor);
         out
@@ -315,7 +315,7 @@ impl Shape {
     }
 
     /// Its closed curves: one, that of an open curve there and back, or those of a frame (`docs/theory/curves.md`).
-    pub(crate) fn cores(&self, tolerance: f64) -> Option<Vec<CorePieces>> {
+    pub fn cores(&self, tolerance: f64) -> Option<Vec<CorePieces>> {
         if let Shape::Frame { vertices, edges } = self {
             return frame::cores(vertices, edges);
         }
@@ -325,7 +325,7 @@ impl Shape {
     }
 
     /// The radius of the circle about the origin, in z = 0, that it is in other words.
-    pub(crate) fn circle(&self) -> Option<f64> {
+    pub fn circle(&self) -> Option<f64> {
         match self {
             Shape::Stadium { straight, radius } if *straight == 0.0 => Some(*radius),
             Shape::Square { side, fillet } if *side == 2.0 * fillet => Some(*fillet),

@@ -5,7 +5,7 @@ use maille_geometry::{Piece, PieceMinimum, Vec3, piece_distance_minima};
 use std::f64::consts::PI;
 
 /// Least radius of the arcs among `pieces`; none where all are straight.
-pub(in super::super) fn tightest(pieces: &[Piece]) -> Option<f64> {
+pub(crate) fn tightest(pieces: &[Piece]) -> Option<f64> {
     let radii = pieces.iter().filter_map(|piece| match piece {
         Piece::Segment(_) => None,
         Piece::Arc(arc) => Some(arc.circle().radius),

@@ -1,6 +1,6 @@
 //! Several cells of a design as one.
 
-use super::{Design, ElementSpec};
+use crate::{Design, ElementSpec};
 use std::collections::BTreeMap;
 
 impl Design {

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// Most pieces of one curve.
 pub(crate) const MOST_PIECES: usize = 10_000;
 /// Sine of the angle below which two tangents are one.
-pub(crate) const SMOOTH: f64 = 1e-7;
+pub const SMOOTH: f64 = 1e-7;
 
 /// What a closed curve of pieces stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,7 +21,7 @@ pub enum CurveKind {
 
 /// The pieces of one closed core curve.
 #[derive(Clone, Debug)]
-pub(crate) struct CorePieces {
+pub struct CorePieces {
     /// What it stands for.
     pub kind: CurveKind,
     /// Segments and arcs, in order.
@@ -50,7 +50,7 @@ impl CorePieces {
 
 /// What of a piece belongs to its curve. A strut of a frame lies on several cycles, and belongs to the first; so does a vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Owned {
+pub struct Owned {
     /// The piece without its ends.
     pub inside: bool,
     /// Its first point.
@@ -92,7 +92,8 @@ pub struct PathPart {
 }
 
 /// A ball around a piece.
-pub(crate) fn ball(piece: &Piece) -> (Vec3, f64) {
+#[inline]
+pub fn ball(piece: &Piece) -> (Vec3, f64) {
     let middle = (piece.point(0.0) + piece.point(1.0)) * 0.5;
     let at = match piece {
         Piece::Arc(arc) if arc.sweep_rad() > std::f64::consts::PI => arc.circle().center,

@@ -1,16 +1,18 @@
-//! The design: what the file says, editable, one to one.
+//! The design: what the file says, editable, one to one; and what can be wrong with it.
 
-use crate::error::InvalidInput;
 use maille_geometry::Vec3;
 use nalgebra::{Rotation3, UnitQuaternion};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
+pub mod error;
+pub mod formula;
 mod formulas;
 mod parameters;
 mod repeat;
-pub(crate) mod shape;
+pub mod shape;
 
+pub use error::InvalidInput;
 pub use parameters::{Parameter, TAKEN};
 pub use shape::{CurveKind, PathPart, Shape};
 
@@ -205,7 +207,7 @@ impl CurveSpec {
     }
 
     /// From the form's frame to the element's. None where its normal is zero, or its x axis points along the normal.
-    pub(crate) fn rotation(&self) -> Option<UnitQuaternion<f64>> {
+    pub fn rotation(&self) -> Option<UnitQuaternion<f64>> {
         let normal = Vec3::from(self.normal);
         let normal = (normal / normal.amax()).try_normalize(0.0)?;
         let along = Vec3::from(self.along);
