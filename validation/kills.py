@@ -45,6 +45,8 @@ COMMANDS = {
     "sweep": "sweep study.toml --out out --quiet",
     "reproduce": "reproduce --quick --only 1.1 --out out --quiet",
     "boundary": "boundary european-4-in-1 --vertices 162 --tolerance 0.5 --starts 1 --out out --quiet",
+    "roll": "roll european-4-in-1 --directions 0:180:15 --axis below --effort low --out out --quiet",
+    "simulate": "simulate 1.1 --tile 3x2 --fix left --pull right=5,0,0 --gravity 0,0,-1 --floor -3 --frames out/all --out out --quiet",
     "dask": "-m maille.dask study.toml --workers 1 --out out --quiet",
 }
 #: Files that show times, or hold them in a form that is not compared here.
@@ -113,7 +115,7 @@ class Campaign:
                     break
                 figures.kills += 1
                 there = self.check(out)
-                figures.lost += len(before.keys() - there.keys())
+                figures.lost += len(lost(before, there, out))
                 before = there
             figures.kept += len(before)
             self.goes_on(Path(folder))
@@ -122,12 +124,14 @@ class Campaign:
         """The same command ends as it should, with the files of the undisturbed run and no row less."""
         out = folder / "out"
         before = rows(out)
-        code = self.run(folder, None)
+        # A simulation that is done is not begun again.
+        done = (out / "simulation.json").exists() and not (out / "steps.jsonl").exists()
+        code = self.code if done else self.run(folder, None)
         self.figures.resumed += 1
         if code != self.code:
             self.differs(f"went on to exit code {code}, not {self.code}")
         found = contents(out)
-        self.figures.lost += len(before.keys() - rows(out).keys())
+        self.figures.lost += len(lost(before, rows(out), out))
         for name in sorted(found.keys() | self.files.keys()):
             if found.get(name) != self.files.get(name):
                 self.differs(f"{name} differs" if name in found and name in self.files else f"{name} is there, or is not")
@@ -141,7 +145,8 @@ class Campaign:
                 self.differs(f"{path.relative_to(out)}: {words}")
         there = rows(out)
         for key, row in there.items():
-            if self.rows.get(key) != row:
+            # Steps are gone when all is done.
+            if key[0] != "step" and self.rows.get(key) != row:
                 self.differs(f"row {key} is false")
         records = [path.parent for path in files(out) if path.name == "run.json"]
         for record in records if len(records) < 3 else self.chance.sample(records, 2):
@@ -172,7 +177,7 @@ def broken(path: Path) -> str | None:
     text = data.decode()
     lines = text.split("\n")
     if path.suffix in (".journal", ".jsonl"):
-        may_be_cut = path.name in ("limits.journal", "boundary.jsonl")
+        may_be_cut = path.name in ("limits.journal", "boundary.jsonl", "rolls.jsonl", "steps.jsonl")
         try:
             for line in lines[:-1]:
                 json.loads(line)
@@ -220,7 +225,19 @@ def rows(out: Path) -> dict[tuple[str, ...], tuple[str, ...]]:
         elif path.name == "boundary.jsonl":
             for line in path.read_text().split("\n")[1:-1]:
                 found["ray", *map(repr, json.loads(line)["direction"])] = (line,)
+        elif path.name == "rolls.jsonl":
+            for roll in map(json.loads, path.read_text().split("\n")[1:-1]):
+                found["roll", repr(roll["direction_deg"]), str(roll["axis"])] = (roll["status"],)
+        elif path.name == "steps.jsonl":
+            for line in path.read_text().split("\n")[1:-1]:
+                found["step", str(json.loads(line)["step"]["runs"])] = (line,)
     return found
+
+
+def lost(before: dict[tuple[str, ...], tuple[str, ...]], there: dict[tuple[str, ...], tuple[str, ...]], out: Path) -> set:
+    """Results that were on the disk and are not. Steps of a simulation go when it is done."""
+    done = not (out / "steps.jsonl").exists()
+    return {key for key in before.keys() - there.keys() if key[0] != "step" or not done}
 
 
 def contents(out: Path) -> dict[str, object]:
@@ -232,12 +249,15 @@ def contents(out: Path) -> dict[str, object]:
             found[name] = None
         elif path.suffix == ".csv":
             found[name] = timeless(path)
-        elif path.name == "run.json":
+        elif path.name in ("run.json", "roll.json"):
             run = json.loads(path.read_text())
             run.pop("files", None)  # older records have none
             found[name] = json.dumps(run)
         elif path.name == "boundary.jsonl":
             found[name] = sorted(path.read_text().split("\n"))
+        elif path.name == "rolls.jsonl":
+            lines = [json.loads(line) for line in path.read_text().splitlines()]
+            found[name] = sorted(json.dumps({key: line[key] for key in line if key not in ("wall_s", "sum")}) for line in lines)
         else:
             found[name] = path.read_bytes()
     return found

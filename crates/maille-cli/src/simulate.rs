@@ -16,20 +16,25 @@ use maille::{
     record::{FrameRecord, pose_records},
     relaxation::{
         limit::EnergyOptions,
-        simulate::{Accepted, End, Simulation, TAU, along, simulate},
+        simulate::{Accepted, End, Simulation, Step, TAU, along, simulate_from},
     },
 };
 use maille_geometry::Vec3;
 use maille_io::{
     Tile,
-    record::{ForceTable, LoadedPlace, PulledPlace, SIMULATION, SheetPlan, SimulationFolder, SimulationRecord},
+    record::{
+        ForceTable, KeptStep, LoadedPlace, PulledPlace, RecordError, SIMULATION, SheetPlan, SimulationFolder,
+        SimulationRecord,
+    },
 };
 use miette::{Report, Result};
 use serde_json::json;
 use std::{
+    cell::RefCell,
     collections::BTreeMap,
     path::{Path, PathBuf},
     process::ExitCode,
+    sync::atomic::Ordering,
     time::Instant,
 };
 
@@ -38,7 +43,7 @@ use std::{
 /// The sheet has no images: its edges are free but for what is fixed or pulled. Rings come to rest by the energy method,
 /// then the pull grows in equal steps until it is done or the sheet locks. Writes simulation.json (what was done, what
 /// came out), frames.jsonl (the sheet at rest after each step) and forces.csv (the force of each held place, stretch,
-/// deformation gradient and energy after each step).
+/// deformation gradient and energy after each step). A run that was stopped or killed goes on by the same command.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -58,7 +63,8 @@ Examples:
 Places: left and right are the first and last elements along a1, bottom and top those along a2. Or an element: by its \
 name, in all cells (flat), or with its cell (flat@0,2). Fixed and pulled elements may turn.
 
-Exit codes: 0 the pull was done, or the sheet locked; 5 a step did not converge; 130 interrupted.")]
+Exit codes: 0 the pull was done, or the sheet locked; 5 a step did not converge; 130 interrupted, and the same \
+command continues.")]
 pub struct Args {
     #[command(flatten)]
     design: DesignArgs,
@@ -213,11 +219,25 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     }
     let folder = SimulationFolder::open(&out)?;
     let frames = args.frames.as_ref().map(|folder| SimulationFolder::open(folder)).transpose()?;
-    for folder in [Some(&out), args.frames.as_ref()].into_iter().flatten() {
-        args.replace.check(&folder.join(SIMULATION[0]))?;
+    // What is there of a run that was not done is this one's.
+    if !folder.has_steps() {
+        for folder in [Some(&out), args.frames.as_ref()].into_iter().flatten() {
+            args.replace.check(&folder.join(SIMULATION[0]))?;
+        }
+    }
+    let (all_frames, overwrite) = (args.frames.is_some(), args.replace.overwrite);
+    let (mut steps, known) = folder.steps(&input.design, tile, &plan, all_frames, overwrite)?;
+    if !known.is_empty() && !args.quiet {
+        eprintln!("goes on after {}", counted(known.len(), "step"));
     }
     let begun = Instant::now();
-    let mut all = Vec::new();
+    // The states of all steps, and those of the one that is not done.
+    let (mut all, since) = (Vec::new(), RefCell::new(Vec::new()));
+    let mut done = Vec::new();
+    for KeptStep { step, frames } in known {
+        all.extend(frames);
+        done.push(step);
+    }
     let progress = Spinner::new(args.quiet);
     let mut watch = |x: &Accepted<'_>| {
         progress.says(|| {
@@ -231,12 +251,30 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         });
         if args.frames.is_some() {
             let poses = pose_records(&model, x.state);
-            all.push(FrameRecord { run: x.run, share: x.share, energy: x.energy, poses });
+            since.borrow_mut().push(FrameRecord { run: x.run, share: x.share, energy: x.energy, poses });
         }
     };
     let cancel = interrupt::flag(args.quiet)?;
-    let end = simulate(&model, &setup, &cancel, &mut watch).map_err(refused)?;
+    let mut failure = None::<RecordError>;
+    let mut keep = |step: &Step| {
+        let kept = KeptStep { step: step.clone(), frames: since.take() };
+        if let Err(error) = steps.keep(&kept) {
+            failure.get_or_insert(error);
+            cancel.store(true, Ordering::Relaxed);
+        }
+        all.extend(kept.frames);
+    };
+    let end = simulate_from(&model, &setup, done, &cancel, &mut watch, &mut keep);
     progress.finish();
+    let end = match end {
+        Ok(end) => end,
+        Err(problem) => {
+            folder.forget_steps(steps)?;
+            return Err(refused(problem));
+        }
+    };
+    failure.map_or(Ok(()), Err)?;
+    all.extend(since.take());
     let forces = ForceTable::new(&plan, &model, &setup, &end).map_err(refused)?;
     let record = SimulationRecord::new(&input.design, tile, plan, &model, &end);
     // A run that failed at once has reached nothing: its last state is shown.
@@ -245,6 +283,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     folder.save(record.clone(), &rests, Some(&forces))?;
     if let Some(folder) = frames {
         folder.save(record.clone(), &all, None)?;
+    }
+    if end.end != End::Interrupted {
+        folder.forget_steps(steps)?;
     }
     let wall_s = begun.elapsed().as_secs_f64();
     let last = forces.rows.last();

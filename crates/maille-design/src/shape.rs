@@ -201,7 +201,7 @@ impl Shape {
         lengths.chain(coordinates).fold(0.0, |most, x| most.max(x.abs()))
     }
 
-    /// As [`Self::scale`].
+    /// The same form with all its lengths multiplied by `factor`.
     pub fn scaled(&self, factor: f64) -> Self {
         let mut out = self.clone();
         out.scale(factor);

@@ -40,7 +40,7 @@ pub(crate) use run::sha256;
 pub use run::{Counters, RunRecord, input_hash, read_run, write_run};
 pub use sensitivities::{SENSITIVITY_COLUMNS, SensitivityRow, read_sensitivities, write_sensitivities};
 pub use simulation::{
-    SIMULATION, SimulationFiles, SimulationFolder, SimulationOutcome, SimulationRecord, open_simulation, read_frames,
-    read_simulation, write_frames, write_simulation,
+    KeptStep, SIMULATION, SimulationFiles, SimulationFolder, SimulationOutcome, SimulationRecord, StepJournal,
+    open_simulation, read_frames, read_simulation, write_frames, write_simulation,
 };
 pub use states::{read_states, write_states};

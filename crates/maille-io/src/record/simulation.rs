@@ -1,22 +1,26 @@
 //! `simulation.json`, `frames.jsonl` and `forces.csv`: what a simulated sheet leaves behind.
 //!
 //! Their folder is never a mixture: `simulation.json` is removed first and written last, and has the checksums of all three.
+//!
+//! While a run is not done its steps are in `steps.jsonl`, and the same run goes on from them.
 
 use super::{
     error::{RecordError, complete},
     forces::{ForceTable, read_forces, write_forces},
+    journal::{Journal, line, parse},
     lock::{FolderLock, Mark},
     plan::SheetPlan,
-    run::sha256,
+    run::{input_hash, sha256},
 };
 use crate::{files, tile::Tile};
 use maille::{
     design::Design,
     model::Model,
     record::FrameRecord,
-    relaxation::simulate::{End, Simulation},
+    relaxation::simulate::{End, Simulation, Step},
 };
 use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -24,8 +28,11 @@ use std::{
 
 /// Names of the files of the record; the last one only where the frames are states at rest.
 pub const SIMULATION: [&str; 3] = ["simulation.json", "frames.jsonl", "forces.csv"];
-/// A run that is killed while it writes leaves frames alone.
-const MARKS: [Mark; 2] = [
+/// Name of the file with the steps of a run that is not done.
+const STEPS: &str = "steps.jsonl";
+/// A run that is killed leaves steps alone, or while it writes frames.
+const MARKS: [Mark; 3] = [
+    Mark::File(STEPS, &["program_version", "input_hash"]),
     Mark::File(SIMULATION[0], &["schema", "version", "outcome"]),
     Mark::File(SIMULATION[1], &["share", "energy", "poses"]),
 ];
@@ -121,6 +128,53 @@ impl SimulationFolder {
         Ok(SimulationFolder { path: path.to_owned(), _lock: FolderLock::take(path, &MARKS)? })
     }
 
+    /// Opens the steps of a run of this design and plan, with those of an earlier one that was not done. `all_frames`: every accepted state is
+    /// kept as well.
+    ///
+    /// # Errors
+    /// Where there are steps of another run and they are not to be overwritten, or files cannot be read or written.
+    pub fn steps(
+        &self,
+        design: &Design,
+        tile: Tile,
+        plan: &SheetPlan,
+        all_frames: bool,
+        overwrite: bool,
+    ) -> Result<(StepJournal, Vec<KeptStep>), RecordError> {
+        let parameters = json!({ "tile": tile.to_string(), "setup": plan, "all_frames": all_frames });
+        let head =
+            StepHead { program_version: env!("CARGO_PKG_VERSION").into(), input_hash: input_hash(design, &parameters) };
+        let path = self.path.join(STEPS);
+        let known = match path.exists() {
+            true => read_steps(&path, &head)?,
+            false => Some(Vec::new()),
+        };
+        if known.is_none() && !overwrite {
+            let difference = "the steps of a simulation that was not done, in steps.jsonl".into();
+            return Err(RecordError::OtherInputs { folder: self.path.clone(), difference });
+        }
+        let known = known.unwrap_or_default();
+        // Anew: a line that was cut off does not stay.
+        let text = line(&head) + &known.iter().map(line).collect::<String>();
+        files::write(&path, text.as_bytes()).map_err(RecordError::io("write", &path))?;
+        Ok((StepJournal(Journal::open(&path)?), known))
+    }
+
+    /// Whether there are steps of a run that was not done.
+    pub fn has_steps(&self) -> bool {
+        self.path.join(STEPS).exists()
+    }
+
+    /// Removes the steps of a run that is done.
+    ///
+    /// # Errors
+    /// Where they cannot be removed.
+    pub fn forget_steps(&self, steps: StepJournal) -> Result<(), RecordError> {
+        drop(steps);
+        let path = self.path.join(STEPS);
+        fs::remove_file(&path).map_err(RecordError::io("remove", &path))
+    }
+
     /// Writes a simulation in place of one that is there.
     ///
     /// # Errors
@@ -146,6 +200,54 @@ impl SimulationFolder {
         }
         Ok(())
     }
+}
+
+/// First line of `steps.jsonl`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StepHead {
+    program_version: String,
+    input_hash: String,
+}
+
+/// A step of a run that is not done.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct KeptStep {
+    /// The step.
+    pub step: Step,
+    /// Where they are asked for: the states that its minimisations accepted.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub frames: Vec<FrameRecord>,
+}
+
+/// The steps of a run, as they are found.
+#[derive(Debug)]
+pub struct StepJournal(Journal);
+
+impl StepJournal {
+    /// Keeps a step.
+    ///
+    /// # Errors
+    /// Where it cannot be written.
+    pub fn keep(&mut self, step: &KeptStep) -> Result<(), RecordError> {
+        self.0.write(&line(step))
+    }
+}
+
+/// The steps of a run with this head, none where no line is whole; `None` if they are of another one.
+fn read_steps(path: &Path, wanted: &StepHead) -> Result<Option<Vec<KeptStep>>, RecordError> {
+    let file = path.display().to_string();
+    let bytes = fs::read(path).map_err(RecordError::io("read", path))?;
+    let mut lines = parse::<Value>(&file, &bytes)?.into_iter();
+    let malformed = |line: usize, e: serde_json::Error| RecordError::malformed(&file, line, e.to_string());
+    let Some(first) = lines.next() else { return Ok(Some(Vec::new())) };
+    let head: StepHead = serde_json::from_value(first).map_err(|e| malformed(1, e))?;
+    if head != *wanted {
+        return Ok(None);
+    }
+    let step = |(k, line): (usize, Value)| serde_json::from_value(line).map_err(|e| malformed(k + 2, e));
+    lines.enumerate().map(step).collect::<Result<_, _>>().map(Some)
 }
 
 /// Reads a simulation from its folder.

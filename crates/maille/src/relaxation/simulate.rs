@@ -16,14 +16,15 @@ use crate::{
         load::{Bend, Drag, Floor, Loads, PositionTarget},
     },
     solver::newton::{Outcome, minimize},
-    state::State,
+    state::{Pose, State},
     topology,
 };
 use maille_design::InvalidInput;
 use maille_geometry::Vec3;
+use nalgebra::{Quaternion, UnitQuaternion};
 use serde::{Deserialize, Serialize};
 use std::{
-    collections::BTreeSet,
+    collections::{BTreeSet, VecDeque},
     sync::atomic::{AtomicBool, Ordering},
 };
 
@@ -138,6 +139,40 @@ pub struct Accepted<'a> {
     pub state: &'a State,
 }
 
+/// What a step came to, be it reached or not: a run goes on from those of an earlier one, to the same end bit for bit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Step {
+    /// Share of the pull that it aims at.
+    pub share: f64,
+    /// Minimisations up to its end.
+    pub runs: u32,
+    /// Their Newton iterations.
+    pub iterations: usize,
+    /// Their random kicks.
+    pub kicks: usize,
+    /// Energy at its end, in β R².
+    pub energy: f64,
+    /// How it ended; `None` for a minimum.
+    pub failed: Option<Failed>,
+    /// Norm of the last gradient.
+    pub gradient_norm: f64,
+    /// Largest distance of a pulled element from its target, in R.
+    pub miss: f64,
+    /// Position, in R, and unit quaternion w, x, y, z of each element.
+    pub poses: Vec<[f64; 7]>,
+}
+
+/// Why a step is no minimum.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Failed {
+    /// Too many iterations.
+    NotConverged,
+    /// No decrease was found.
+    Stalled,
+}
+
 /// What came out.
 #[derive(Clone, Debug)]
 pub struct Simulation {
@@ -172,6 +207,10 @@ struct Run<'a> {
     setup: &'a Setup,
     cancel: &'a AtomicBool,
     watch: &'a mut dyn FnMut(&Accepted<'_>),
+    keep: &'a mut dyn FnMut(&Step),
+    known: VecDeque<Step>,
+    /// Whether all steps so far are kept.
+    keeps: bool,
     runs: u32,
     iterations: usize,
     kicks: usize,
@@ -274,6 +313,39 @@ impl Run<'_> {
     /// Comes to rest, or makes a step against the drag. A weight is small against α, so that elements would bounce along stiff walls for long: with soft
     /// contacts first they do not. The softest ones are for the fall, before the pull.
     fn relax(&mut self, share: f64, from: &State) -> Rest {
+        let rest = match self.known.pop_front().filter(|step| step.share == share) {
+            Some(step) => self.again(&step),
+            None => {
+                self.known.clear();
+                self.anew(share, from)
+            }
+        };
+        if self.reached(&rest) {
+            self.unbalanced += usize::from(rest.outcome != Outcome::Minimum);
+            let poses = pose_records(self.model, &rest.state);
+            self.path.push(FrameRecord { run: self.runs - 1, share, energy: rest.energy, poses });
+            self.rests.push(rest.state.clone());
+        }
+        rest
+    }
+
+    /// The end of a step of an earlier run.
+    fn again(&mut self, step: &Step) -> Rest {
+        (self.runs, self.iterations, self.kicks) = (step.runs, step.iterations, step.kicks);
+        Rest {
+            state: State { poses: step.poses.iter().map(pose).collect(), ..self.model.start.clone() },
+            energy: step.energy,
+            outcome: match step.failed {
+                None => Outcome::Minimum,
+                Some(Failed::NotConverged) => Outcome::NotConverged,
+                Some(Failed::Stalled) => Outcome::Stalled,
+            },
+            gradient_norm: step.gradient_norm,
+            miss: step.miss,
+        }
+    }
+
+    fn anew(&mut self, share: f64, from: &State) -> Rest {
         let comes_to_rest_slowly = self.setup.drag.is_none() && !self.setup.is_weightless();
         let softer = match (comes_to_rest_slowly, self.runs) {
             (false, _) => &[],
@@ -285,13 +357,27 @@ impl Run<'_> {
             from = self.minimise(share, &from, *softness).state;
         }
         let rest = self.minimise(share, &from, 1.0);
-        if self.reached(&rest) {
-            self.unbalanced += usize::from(rest.outcome != Outcome::Minimum);
-            let poses = pose_records(self.model, &rest.state);
-            self.path.push(FrameRecord { run: self.runs - 1, share, energy: rest.energy, poses });
-            self.rests.push(rest.state.clone());
+        // A run goes on from the first step that is not kept.
+        match self.step(share, &rest).filter(|_| self.keeps) {
+            Some(step) => (self.keep)(&step),
+            None => self.keeps = false,
         }
         rest
+    }
+
+    /// A step to keep: none that was stopped on its way, or has numbers that are none.
+    fn step(&self, share: f64, rest: &Rest) -> Option<Step> {
+        let failed = match rest.outcome {
+            Outcome::Minimum => None,
+            Outcome::NotConverged => Some(Failed::NotConverged),
+            Outcome::Stalled => Some(Failed::Stalled),
+            Outcome::Interrupted | Outcome::Eigen(_) => return None,
+        };
+        let &Rest { energy, gradient_norm, miss, .. } = rest;
+        let &Run { runs, iterations, kicks, .. } = self;
+        let whole = [energy, gradient_norm, miss].iter().all(|x| x.is_finite()) && !self.cancel.load(Ordering::Relaxed);
+        let poses = rest.state.poses.iter().map(numbers).collect();
+        whole.then_some(Step { share, runs, iterations, kicks, energy, failed, gradient_norm, miss, poses })
     }
 
     /// Minimises with the part `softness` of α.
@@ -351,6 +437,15 @@ impl Run<'_> {
     }
 }
 
+fn numbers(pose: &Pose) -> [f64; 7] {
+    let (x, turn) = (pose.position, pose.rotation.quaternion());
+    [x.x, x.y, x.z, turn.w, turn.i, turn.j, turn.k]
+}
+
+fn pose(&[x, y, z, w, i, j, k]: &[f64; 7]) -> Pose {
+    Pose { position: Vec3::new(x, y, z), rotation: UnitQuaternion::new_unchecked(Quaternion::new(w, i, j, k)) }
+}
+
 /// Lets the finite sheet `model` come to rest, then pulls it; with a drag, moves it step by step. `watch` sees every accepted state.
 pub fn simulate(
     model: &Model,
@@ -358,9 +453,36 @@ pub fn simulate(
     cancel: &AtomicBool,
     watch: &mut dyn FnMut(&Accepted<'_>),
 ) -> Result<Simulation, InvalidInput> {
+    simulate_from(model, setup, Vec::new(), cancel, watch, &mut |_| {})
+}
+
+/// The same, going on from the steps of an earlier run of this model and setup, which are `known` in their order; `keep` is given each
+/// one that is new.
+pub fn simulate_from(
+    model: &Model,
+    setup: &Setup,
+    known: Vec<Step>,
+    cancel: &AtomicBool,
+    watch: &mut dyn FnMut(&Accepted<'_>),
+    keep: &mut dyn FnMut(&Step),
+) -> Result<Simulation, InvalidInput> {
     setup.check(model)?;
-    let (path, rests) = (Vec::new(), Vec::new());
-    let mut run = Run { model, setup, cancel, watch, runs: 0, iterations: 0, kicks: 0, unbalanced: 0, path, rests };
+    let (path, rests, known) = (Vec::new(), Vec::new(), known.into());
+    let mut run = Run {
+        model,
+        setup,
+        cancel,
+        watch,
+        keep,
+        known,
+        keeps: true,
+        runs: 0,
+        iterations: 0,
+        kicks: 0,
+        unbalanced: 0,
+        path,
+        rests,
+    };
     let (mut share, mut rest) = (0.0, run.relax(0.0, &model.start));
     // The last position that was reached, then the first one that was missed.
     let moves = !setup.pull.is_empty() || setup.drag.is_some() || setup.bend.is_some();

@@ -1,4 +1,4 @@
-//! A limit searched from the state of another design near by, whose rings are linked alike.
+//! A limit searched from a state near by: of another design, whose rings are linked alike, or along another direction.
 
 use super::{
     multistart::{CellStarts, Target},
@@ -46,6 +46,18 @@ impl ExactMethod<'_> {
         let best = search.run(&of_cell(self.models, cell), vec![start], StopRule::given_only()).best?;
         let Start { l1, l2, .. } = search.target.start(&best);
         best.certified.then_some([l1, l2])
+    }
+
+    /// The limit with width and shear held where one local search from the state of `near` ends, a limit along another direction; `None`
+    /// where that is not certified.
+    pub(crate) fn turned(&self, direction: Direction, l2: f64, near: &Answer, cancel: &AtomicBool) -> Option<Answer> {
+        let at = Stretch { direction, l2, across: Across::HELD, sign: 1.0 };
+        let (cell, start) = self.start_near(&at, near).pop()?;
+        let model = of_cell(self.models, cell);
+        let search = self.search(&at, f64::INFINITY, cancel);
+        let best = search.run(&model, vec![start], StopRule::given_only()).best.filter(|best| best.certified)?;
+        let (value, gradient) = (Some(best.value()), at.lattices(&model).gradient(&best.p, l2));
+        Some(Answer { value, gradient, state: best.state, ..Answer::new(&model, Status::Local) })
     }
 
     fn start_near(&self, at: &Stretch, near: &Answer) -> CellStarts {

@@ -12,6 +12,8 @@
 //! Between two directions a largest l1 is sought where their tangents meet, and where the cubic through values and slopes is largest, by
 //! turns: the one finds corners, the other smooth maxima. The place that promises most comes first, until none promises more than
 //! `ENOUGH`. Each limit is solved and certified as any other; images of a direction under the symmetries of the design count as solved.
+//! Towards a direction in which no state has the width, what has limits ends. While the height rises that way, the last limit's state is
+//! followed to the end, each direction by one local search from the state before; the last of them is solved as any other.
 //! What rises and falls again between two directions whose tangents do not tell of it is not found.
 
 use super::{
@@ -20,9 +22,10 @@ use super::{
     row::Asked,
 };
 use crate::{
+    answer::Answer,
     lattice::Direction,
     model::{Model, of_cell},
-    record::{ContactRecord, LimitRow, StateRecord},
+    record::{ContactRecord, LimitRow, StateRecord, Status},
     symmetry::mirrored,
 };
 use nalgebra::{Matrix2, Vector2};
@@ -40,6 +43,10 @@ const SAME: f64 = 1e-9;
 const MOST: usize = 40;
 /// Directions closer than this are not divided, in degrees.
 const CLOSE_DEG: f64 = 4e-6;
+/// The end of the directions with a state is found to this, in degrees.
+const END_DEG: f64 = 1e-3;
+/// Directions to which a state is followed, at most.
+const MOST_TURNS: usize = 60;
 /// Directions that are tried are multiples of this part of a degree.
 const STEPS_PER_DEGREE: f64 = 1e6;
 /// A place is tried no nearer to the ends of its interval than this share of its width.
@@ -83,15 +90,18 @@ pub fn extremes(
     }
     let one = OneLimit::new(models, options, cancel);
     sought.par_iter().with_max_len(1).for_each(|&(l2, which)| {
-        let mut search = Search { question, one: &one, minor_radius, l2, sign: which.sign(), points: Vec::new() };
+        let (points, states) = (Vec::new(), Vec::new());
+        let mut search = Search { question, one: &one, minor_radius, l2, sign: which.sign(), points, states };
         let there = |row: &LimitRow| row.l2 == l2 && row.extreme.as_deref() == Some(which.name());
         let there: Vec<f64> = known.iter().filter(|(row, _)| there(row)).map(|(row, _)| row.direction_deg).collect();
         // A run can be stopped between images.
         if there.first().is_some_and(|deg| search.images(*deg).len() == there.len()) {
             return;
         }
-        let of_l2 = known.iter().filter(|(row, _)| row.l2 == l2 && row.extreme.is_none());
-        of_l2.for_each(|(row, state)| search.add(row, state));
+        for (row, state) in known.iter().filter(|(row, _)| row.l2 == l2 && row.extreme.is_none()) {
+            search.add(row, state);
+            search.keep(row, state);
+        }
         for Finished { mut row, state } in search.run(cancel, work) {
             row.extreme = Some(which.name().to_owned());
             if !there.contains(&row.direction_deg) {
@@ -106,6 +116,8 @@ pub fn extremes(
 struct Point {
     deg: f64,
     height: Option<f64>,
+    /// Whether no state was found: what has limits ends before it.
+    ends: bool,
     /// Derivative of the height by the angle in radians; none where it is not known.
     slope: Option<f64>,
     /// Whether a mirror maps the direction to itself: then a state and its image have opposite slopes, and each side has one of them.
@@ -117,6 +129,8 @@ struct Point {
 struct Place {
     deg: f64,
     promise: f64,
+    /// The limit whose state is followed this way, as far as it goes.
+    from_deg: Option<f64>,
 }
 
 struct Search<'a> {
@@ -127,6 +141,8 @@ struct Search<'a> {
     sign: f64,
     /// In the order of their angles.
     points: Vec<Point>,
+    /// The limits with their states; images have their own.
+    states: Vec<(f64, Answer)>,
 }
 
 impl Search<'_> {
@@ -135,14 +151,24 @@ impl Search<'_> {
         let Some(mut best) = self.points.iter().filter_map(|point| point.height).max_by(f64::total_cmp) else {
             return Vec::new();
         };
-        let (own, mut found) = (best, Vec::new());
+        // With free width no direction is without it.
+        let held = matches!(&self.question.method, Method::Exact(options) if !options.across.any());
+        let (own, mut found, mut followed) = (best, Vec::new(), Vec::new());
         for count in 0..MOST {
-            let promising = self.places(count % 2 == 1).max_by(|a, b| {
+            let ends = self.ends().filter(|end| held && !followed.contains(&(end.from_deg, end.deg)));
+            let promising = self.places(count % 2 == 1).chain(ends).max_by(|a, b| {
                 // Of images, which differ by rounding, the first.
-                let rounded = |place: &Place| (place.promise / (1e-3 * ENOUGH)).round();
-                rounded(a).total_cmp(&rounded(b)).then(b.deg.total_cmp(&a.deg))
+                let coarse = |place: &Place| (place.promise / (1e-3 * ENOUGH)).round();
+                coarse(a).total_cmp(&coarse(b)).then(b.deg.total_cmp(&a.deg))
             });
-            let Some(place) = promising.filter(|place| place.promise > best + ENOUGH) else { break };
+            let Some(mut place) = promising.filter(|place| place.promise > best + ENOUGH) else { break };
+            if let Some(from_deg) = place.from_deg {
+                followed.push((place.from_deg, place.deg));
+                let Some(last_deg) = self.follow(from_deg, place.deg, cancel) else { continue };
+                let beyond_deg = last_deg + END_DEG.copysign(place.deg - last_deg);
+                self.insert_images(Point { deg: beyond_deg, height: None, ends: true, slope: None, mirrored: false });
+                place.deg = last_deg;
+            }
             let task = Task { direction_deg: place.deg, l2: self.l2 };
             work(task, Work::Begins);
             let tried = self.solve(task);
@@ -152,6 +178,7 @@ impl Search<'_> {
             }
             let Some(one) = tried.first() else { break };
             self.add(&one.row, &one.state);
+            tried.iter().for_each(|image| self.keep(&image.row, &image.state));
             if let Some(height) = one.row.l1.map(|l1| self.sign * l1).filter(|height| *height > best) {
                 best = height;
                 found = tried;
@@ -193,12 +220,47 @@ impl Search<'_> {
         let cell = row.cell.parse().unwrap_or_default();
         let slope = direction_slope(&of_cell(self.one.models, cell), state).map(|slope| self.sign * slope);
         let height = row.l1.map(|l1| self.sign * l1);
+        let ends = matches!(row.status, Status::L2Unreachable | Status::L2NotReached);
         let mirrored = mirrored(&self.one.operations, deg);
+        self.insert_images(Point { deg, height, ends, slope, mirrored });
+    }
+
+    /// Keeps the state of a limit.
+    fn keep(&mut self, row: &LimitRow, record: &StateRecord) {
+        let model = of_cell(self.one.models, row.cell.parse().unwrap_or_default());
+        let (Some(_), Some(state)) = (row.l1, record.state(&model)) else { return };
+        let [[xx, xy], [yx, yy]] = record.deformation_gradient;
+        let gradient = Matrix2::new(xx, xy, yx, yy);
+        let answer = Answer { value: row.l1, gradient, state, ..Answer::new(&model, Status::Local) };
+        self.states.push((row.direction_deg, answer));
+    }
+
+    /// The last direction towards `end_deg` to which the state of the limit along `from_deg` can be followed; none where it cannot be.
+    fn follow(&self, from_deg: f64, end_deg: f64, cancel: &AtomicBool) -> Option<f64> {
+        let near = |deg: f64| (deg - from_deg).abs() <= CLOSE_DEG / 4.0;
+        let mut at = self.states.iter().find(|(deg, _)| near(*deg))?.1.clone();
+        let (mut deg, mut step_deg) = (from_deg, 0.5 * (end_deg - from_deg));
+        for _ in 0..MOST_TURNS {
+            step_deg = step_deg.abs().min(0.5 * (end_deg - deg).abs()).copysign(end_deg - deg);
+            if step_deg.abs() < 0.5 * END_DEG || cancel.load(Ordering::Relaxed) {
+                break;
+            }
+            let next_deg = rounded(deg + step_deg);
+            match self.one.turned(next_deg, self.l2, &at) {
+                Some(next) => (deg, at, step_deg) = (next_deg, next, 2.0 * step_deg),
+                None => step_deg *= 0.5,
+            }
+        }
+        (deg != from_deg).then_some(deg)
+    }
+
+    /// Adds a point and its images.
+    fn insert_images(&mut self, point: Point) {
         for operation in &self.one.operations {
             let turned = if operation.mirrors() { -1.0 } else { 1.0 };
-            let slope = slope.map(|slope| slope * turned);
-            for deg in self.turns(operation.direction_deg(deg)) {
-                self.insert(Point { deg, height, slope, mirrored });
+            let slope = point.slope.map(|slope| slope * turned);
+            for deg in self.turns(operation.direction_deg(point.deg)) {
+                self.insert(Point { deg, slope, ..point });
             }
         }
     }
@@ -227,6 +289,28 @@ impl Search<'_> {
     fn places(&self, smooth: bool) -> impl Iterator<Item = Place> {
         self.points.windows(2).filter_map(move |pair| place(&pair[0], &pair[1], smooth))
     }
+
+    /// Directions without a state beside one with a limit, towards which the height rises.
+    fn ends(&self) -> impl Iterator<Item = Place> {
+        self.points.windows(2).filter_map(|pair| match pair[1].ends {
+            true => end(&pair[0], &pair[1]),
+            false => end(&pair[1], &pair[0]),
+        })
+    }
+}
+
+/// The way from a limit to a direction without a state, where the height rises that way: as high as its tangent at most.
+fn end(last: &Point, end: &Point) -> Option<Place> {
+    let width = (end.deg - last.deg).to_radians();
+    let slope = last.slope?;
+    let rise = if last.mirrored { slope.abs() * width.abs() } else { slope * width };
+    let promise = last.height? + rise;
+    let open = end.ends && !last.ends && rise > 0.0 && (end.deg - last.deg).abs() > 1.5 * END_DEG;
+    open.then_some(Place { deg: end.deg, promise, from_deg: Some(last.deg) })
+}
+
+fn rounded(deg: f64) -> f64 {
+    (deg * STEPS_PER_DEGREE).round() / STEPS_PER_DEGREE
 }
 
 /// Where between two directions the height may be larger, and how large: where the tangents meet, or where the cubic through both is largest.
@@ -259,8 +343,8 @@ fn place(a: &Point, b: &Point, smooth: bool) -> Option<Place> {
         (false, false) => None,
     };
     let share = share.unwrap_or(if from > to { 0.25 } else { 0.75 }).clamp(MARGIN, 1.0 - MARGIN);
-    let deg = ((a.deg + share * (b.deg - a.deg)) * STEPS_PER_DEGREE).round() / STEPS_PER_DEGREE;
-    (deg > a.deg && deg < b.deg).then_some(Place { deg, promise })
+    let deg = rounded(a.deg + share * (b.deg - a.deg));
+    (deg > a.deg && deg < b.deg).then_some(Place { deg, promise, from_deg: None })
 }
 
 /// Where in 0..1 the cubic with these ends and slopes has its peak.

@@ -175,6 +175,11 @@ impl<'a> OneLimit<'a> {
         both_shears(answer, &self.operations, solved_deg)
     }
 
+    /// Where one local search along a direction from a state near by ends: see [`ExactMethod::turned`].
+    pub fn turned(&self, direction_deg: f64, l2: f64, near: &Answer) -> Option<Answer> {
+        self.exact.turned(Direction::of_degrees(direction_deg), l2, near, self.cancel)
+    }
+
     /// The limit that was solved, along it or along an image of it, with the model of its cell.
     pub fn along(&self, answer: &Answer, solved_deg: f64, direction_deg: f64) -> (Cow<'a, Model>, Answer) {
         if solved_deg != direction_deg {

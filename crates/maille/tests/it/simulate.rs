@@ -11,9 +11,9 @@ use maille::{
         limit::EnergyOptions,
         load::{Bend, Drag, Floor, Loads, PositionTarget},
         simulate::{
-            End, Setup, Simulation, TAU, WEIGHT_UNIT, along, elements_at,
+            End, Setup, Simulation, Step, TAU, WEIGHT_UNIT, along, elements_at,
             force::{Grip, deformation_gradient, force_row},
-            simulate,
+            simulate, simulate_from,
         },
     },
     solver::{newton::Objective, sparse::Patterns},
@@ -63,6 +63,36 @@ fn run(model: &Model, setup: &Setup) -> Simulation {
 
 fn run_unchecked(model: &Model, setup: &Setup) -> Simulation {
     simulate(model, setup, &AtomicBool::new(false), &mut |_| {}).unwrap()
+}
+
+/// From any of its steps on a run comes to the same end, bit for bit, and solves no step again: one that locks, and one under weight.
+#[test]
+fn a_run_goes_on_from_its_steps() {
+    let model = sheet("1.1", "2x2");
+    let pulled = setup(&model, "left", Some(("right", Vec3::new(2.5, 0.0, 0.0))), Vec3::zeros());
+    let weighed = setup(&model, "top", Some(("bottom", Vec3::new(0.0, -0.5, 0.0))), Vec3::new(0.0, 0.0, -1.0));
+    for setup in [pulled, weighed] {
+        let go = |known: &[Step]| {
+            let mut kept = Vec::new();
+            let mut keep = |step: &Step| kept.push(step.clone());
+            let go = AtomicBool::new(false);
+            let end = simulate_from(&model, &setup, known.to_vec(), &go, &mut |_| {}, &mut keep).unwrap();
+            (kept, format!("{end:?}"))
+        };
+        let (steps, whole) = go(&[]);
+        assert!(steps.len() > 4);
+        // As they are written and read.
+        let text = serde_json::to_string(&steps).unwrap();
+        let steps: Vec<Step> = serde_json::from_str(&text).unwrap();
+        for known in [1, 3, steps.len() - 1, steps.len()] {
+            let (rest, end) = go(&steps[..known]);
+            assert_eq!(rest, steps[known..], "after {known}");
+            assert!(end == whole, "after {known}");
+        }
+        // Steps of another run are none of this one.
+        let other = Step { share: 0.123, ..steps[1].clone() };
+        assert_eq!(go(&[steps[0].clone(), other]).0, steps[1..]);
+    }
 }
 
 #[test]
