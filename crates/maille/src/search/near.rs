@@ -55,7 +55,7 @@ impl ExactMethod<'_> {
         let (cell, start) = self.start_near(&at, near).pop()?;
         let model = of_cell(self.models, cell);
         let search = self.search(&at, f64::INFINITY, cancel);
-        let best = search.run(&model, vec![start], StopRule::given_only()).best.filter(|best| best.certified)?;
+        let best = search.solve_nearby(&model, start).best.filter(|best| best.certified)?;
         let (value, gradient) = (Some(best.value()), at.lattices(&model).gradient(&best.p, l2));
         Some(Answer { value, gradient, state: best.state, ..Answer::new(&model, Status::Local) })
     }

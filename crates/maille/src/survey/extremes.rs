@@ -162,16 +162,18 @@ impl Search<'_> {
                 coarse(a).total_cmp(&coarse(b)).then(b.deg.total_cmp(&a.deg))
             });
             let Some(mut place) = promising.filter(|place| place.promise > best + ENOUGH) else { break };
+            let mut near = None;
             if let Some(from_deg) = place.from_deg {
                 followed.push((place.from_deg, place.deg));
-                let Some(last_deg) = self.follow(from_deg, place.deg, cancel) else { continue };
+                let Some((last_deg, state)) = self.follow(from_deg, place.deg, cancel) else { continue };
+                near = Some(state);
                 let beyond_deg = last_deg + END_DEG.copysign(place.deg - last_deg);
                 self.insert_images(Point { deg: beyond_deg, height: None, ends: true, slope: None, mirrored: false });
                 place.deg = last_deg;
             }
             let task = Task { direction_deg: place.deg, l2: self.l2 };
             work(task, Work::Begins);
-            let tried = self.solve(task);
+            let tried = self.solve(task, near.as_ref());
             work(task, Work::Ends);
             if cancel.load(Ordering::Relaxed) {
                 return Vec::new();
@@ -187,11 +189,14 @@ impl Search<'_> {
         if best > own + SAME { found } else { Vec::new() }
     }
 
-    /// A limit, along each image of its direction in the range of the map.
-    fn solve(&self, Task { direction_deg, l2 }: Task) -> Vec<Finished> {
+    /// A limit, along each image of its direction in the range of the map; searched from a state near by, where one is given.
+    fn solve(&self, Task { direction_deg, l2 }: Task, near: Option<&Answer>) -> Vec<Finished> {
         let begun = Instant::now();
-        let solved_deg = self.one.representative_deg(direction_deg);
-        let solved = self.one.solve(solved_deg, l2);
+        let solved_deg = near.map_or_else(|| self.one.representative_deg(direction_deg), |_| direction_deg);
+        let solved = match near {
+            Some(near) => self.one.solve_near(solved_deg, l2, near),
+            None => self.one.solve(solved_deg, l2),
+        };
         let wall_s = begun.elapsed().as_secs_f64();
         let along = |direction_deg: f64| {
             let (model, answer) = self.one.along(&solved, solved_deg, direction_deg);
@@ -235,8 +240,9 @@ impl Search<'_> {
         self.states.push((row.direction_deg, answer));
     }
 
-    /// The last direction towards `end_deg` to which the state of the limit along `from_deg` can be followed; none where it cannot be.
-    fn follow(&self, from_deg: f64, end_deg: f64, cancel: &AtomicBool) -> Option<f64> {
+    /// The last direction towards `end_deg` to which the state of the limit along `from_deg` can be followed, with the limit there; none where
+    /// it cannot be.
+    fn follow(&self, from_deg: f64, end_deg: f64, cancel: &AtomicBool) -> Option<(f64, Answer)> {
         let near = |deg: f64| (deg - from_deg).abs() <= CLOSE_DEG / 4.0;
         let mut at = self.states.iter().find(|(deg, _)| near(*deg))?.1.clone();
         let (mut deg, mut step_deg) = (from_deg, 0.5 * (end_deg - from_deg));
@@ -251,7 +257,7 @@ impl Search<'_> {
                 None => step_deg *= 0.5,
             }
         }
-        (deg != from_deg).then_some(deg)
+        (deg != from_deg).then_some((deg, at))
     }
 
     /// Adds a point and its images.

@@ -180,6 +180,11 @@ impl<'a> OneLimit<'a> {
         self.exact.turned(Direction::of_degrees(direction_deg), l2, near, self.cancel)
     }
 
+    /// The limit along this direction itself, searched from a state near by first: see [`ExactMethod::limit_near`].
+    pub fn solve_near(&self, direction_deg: f64, l2: f64, near: &Answer) -> Answer {
+        self.exact.limit_near(Direction::of_degrees(direction_deg), l2, near, self.cancel)
+    }
+
     /// The limit that was solved, along it or along an image of it, with the model of its cell.
     pub fn along(&self, answer: &Answer, solved_deg: f64, direction_deg: f64) -> (Cow<'a, Model>, Answer) {
         if solved_deg != direction_deg {

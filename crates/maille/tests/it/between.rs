@@ -1,11 +1,11 @@
 //! The largest and the smallest l1 between the directions of a map.
 
-use crate::common::{design, exact_map, map, rows};
+use crate::common::{self, design, exact_map, map, rows};
 use maille::{
     design::Design,
     lattice::{Across, Cell},
     model::Model,
-    record::{LimitRow, StateRecord},
+    record::{LimitRow, StateRecord, Status},
     search::ExactOptions,
     survey::{Finished, MapQuestion, direction_slope, extremes},
 };
@@ -112,5 +112,20 @@ fn a_range_and_a_mirror_image_have_the_same_corner() {
     assert_eq!((right.len(), left.len()), (2, 2));
     for (a, b) in right.iter().zip(&left) {
         assert!(a.0 == b.0 && (a.1 - b.1).abs() < 1e-6, "{a:?} {b:?}");
+    }
+}
+
+/// Where no state has the width further on, the last limit is followed towards there: what is found is certified, near the end, and lower than all
+/// around it.
+#[test]
+fn the_smallest_l1_can_lie_at_the_end_of_the_directions_with_a_state() {
+    let models = compiled(&common::builtin("european-4-in-1"));
+    let options = ExactOptions::default();
+    let found = sought(&models, &exact_map(&options, &[20.0, 30.0, 40.0], &[0.1]));
+    let smallest = found.iter().find(|f| f.row.extreme.as_deref() == Some("smallest")).unwrap();
+    assert!(matches!(smallest.row.status, Status::Local | Status::Global) && smallest.row.links_ok == Some(true));
+    assert!(l1(smallest) < -0.09 && (38.5..38.6).contains(&smallest.row.direction_deg), "{:?}", smallest.row);
+    for around in map(&models, &[30.0, 35.0, 38.0, 38.7], &[0.1], &options) {
+        assert!(around.row.l1.is_none_or(|l1_around| l1_around > l1(smallest)), "{:?}", around.row);
     }
 }
