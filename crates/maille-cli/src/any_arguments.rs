@@ -6,7 +6,7 @@ use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng, seq::IndexedRandom};
 use std::ffi::OsString;
 
 /// Command lines of one run; `MAILLE_COMMAND_LINES` asks for more.
-const LINES: u64 = 8_000;
+const LINES: u64 = 4_000;
 
 /// Values that are hard to read.
 const VALUES: [&str; 44] = [

@@ -11,6 +11,7 @@ use crate::{
     verify_roll::{self, VerifiedRolls, is_roll},
     verify_surface::{self, VerifiedSurface, is_surface},
 };
+use maille_io::record::read_run;
 use maille_verify::{Finding, RowReport, Texts, Verdict, Verifier};
 use miette::Result;
 use rayon::prelude::*;
@@ -123,6 +124,8 @@ fn verified(folder: &Path, pool: &rayon::ThreadPool, quiet: bool) -> Result<Veri
         sensitivities: sensitivities.as_deref(),
     };
     let verifier = Verifier::new(&texts).map_err(|e| unreadable(folder, &e))?;
+    // What follows from the design alone, and is no claim of the solver: how far its curves are from their arcs.
+    read_run(&format!("{name}/run.json"), &run)?;
     let progress = Progress::new("rows", 0, verifier.len(), quiet);
     let row = |k: usize| {
         let report = verifier.row(k);

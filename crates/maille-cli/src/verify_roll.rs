@@ -80,6 +80,11 @@ impl VerifiedRolls {
             output::say!("  {:<12} {}", "files", marked(finding));
         }
         say_checks(self.rolls.iter().map(|roll| &roll.findings[..]));
+        if self.rolls.iter().any(|roll| roll.wrap.is_none()) {
+            output::say!(
+                "  what is proved is proved of pieces that go half round, and of elements that one link joins, or two"
+            );
+        }
         let told = |roll: &&RollReport| all || roll.findings.iter().any(|f| f.verdict >= Verdict::Open);
         for roll in self.rolls.iter().filter(told) {
             let tube = roll.wrap.map(|cells| format!(", {cells} cells round, {}", roll.sought));

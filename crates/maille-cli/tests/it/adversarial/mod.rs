@@ -290,8 +290,10 @@ fn what_is_neither_held_nor_apart_has_no_number() {
     let stack = design([[0.5, 0.0, 0.0], [0.0, 4.0, 0.0]], 0.1, 1.0, &[([0.0; 3], X, 1.0, None)]);
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("stack.toml"), stack).unwrap();
-    let (code, _, said) =
-        outcome(folder.path(), "characterize stack.toml --directions 90.01 --l2 0 --cell 1x1 --out record --quiet");
+    let (code, _, said) = outcome(
+        folder.path(),
+        "characterize stack.toml --directions 90.01 --l2 0 --cell 1x1 --effort low --out record --quiet",
+    );
     assert_eq!(code, 5, "{said}");
     let row = &rows(folder.path())[0];
     assert_eq!(

@@ -95,6 +95,12 @@ elements = [
         global += rows.matches(",global,").count();
     }
     assert!(global >= 4, "{global}");
+    let run = dir.path().join("s0/run.json");
+    let text = fs::read_to_string(&run).unwrap();
+    fs::write(&run, text.replace("\"curve_deviation\": ", "\"curve_deviation\": 1")).unwrap();
+    let done = maille(dir.path(), "verify s0");
+    assert_eq!(code(&done), 4);
+    assert!(String::from_utf8_lossy(&done.stderr).contains("curve_deviation was edited"));
 }
 
 /// Rolls of squares and of cages, and a cage that is thicker than that of the states.
