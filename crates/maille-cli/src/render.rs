@@ -13,7 +13,7 @@ use crate::{
 use maille::lattice::Direction;
 use maille_io::Tile;
 use maille_render::{
-    Background, Caption, ColorBy, Extent, Forces, Picture, RenderError, RenderOptions, Subject, View, film,
+    Background, Caption, ColorBy, Extent, Forces, Picture, RenderError, RenderOptions, Subject, View, film, members,
     render_frames,
 };
 use maille_svg::with_palette;
@@ -235,8 +235,9 @@ pub fn run(args: &Args) -> Result<()> {
     let unit = source.design.unit.as_deref();
     let subjects: Vec<Subject<'_>> =
         frames.iter().map(|frame| Subject { model: &source.model, state: &frame.state, contacts, unit }).collect();
-    if let (Extent::Cells(cells), [frame], false) = (options.extent, &frames[..], args.quiet)
-        && let Some(overlap) = source.overlap_of(&frame.state, Tile(cells))
+    if let ([frame], false) = (&frames[..], args.quiet)
+        && let Ok((shown, _)) = members(&source.model, &frame.state, options.extent)
+        && let Some(overlap) = source.overlap_of(&frame.state, &shown)
     {
         eprintln!("note: {overlap}");
     }

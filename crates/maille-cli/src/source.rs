@@ -12,7 +12,7 @@ use crate::{
 use maille::{
     design::Design,
     error::InvalidInput,
-    lattice::Cell,
+    lattice::{Cell, Shift},
     model::{Model, RingPair},
     record::{ContactRecord, FrameRecord, StateRecord, Status},
     search::extreme::Extreme,
@@ -27,6 +27,7 @@ use maille_io::{
 };
 use miette::{Report, Result};
 use std::{
+    collections::BTreeSet,
     f64::consts::TAU,
     path::{Path, PathBuf},
 };
@@ -437,11 +438,24 @@ impl Source {
         (!limit).then(|| format!("the state is \"{}\": the last of its search, no limit", record.status.name()))
     }
 
-    /// What a reader should know about a tile of a roll: that rings of it overlap. Those that lie farther apart around the roll than
-    /// half a turn are in no certificate.
-    pub fn overlap_of(&self, state: &State, tile: Tile) -> Option<String> {
+    /// What a reader should know about elements of a roll, each with its cell: that rings of them overlap. Those that lie farther apart around
+    /// the roll than half a turn are in no certificate.
+    pub fn overlap_of(&self, state: &State, elements: &[(usize, Shift)]) -> Option<String> {
         let roll = state.roll.as_ref()?;
-        let pairs = topology::close_pairs_within(&self.model, state, tile.0, 0.0);
+        let there: BTreeSet<(usize, Shift)> = elements.iter().copied().collect();
+        let cells = [0, 1].map(|k| {
+            let (least, most) =
+                elements.iter().map(|e| e.1[k]).fold((0, 0), |(least, most), s| (least.min(s), most.max(s)));
+            most.abs_diff(least) + 1
+        });
+        let element = |ring: usize| self.model.rings[ring].element;
+        // Where a pair is.
+        let cells_of = |pair: &RingPair| {
+            let of_a = elements.iter().filter(|e| e.0 == element(pair.ring_a)).map(|e| e.1);
+            let with_b = of_a.map(|a| (a, [0, 1].map(|k| a[k] + pair.shift[k])));
+            with_b.into_iter().find(|(_, b)| there.contains(&(element(pair.ring_b), *b)))
+        };
+        let pairs = topology::close_pairs_within(&self.model, state, cells, 0.0);
         let gap = |pair: &RingPair| {
             let wires = self.model.contact_distance(pair.ring_a, pair.ring_b);
             topology::core_distance(&self.model, state, pair) - wires
@@ -450,14 +464,14 @@ impl Source {
             |pair: &RingPair| (0..2).map(|k| f64::from(pair.shift[k]) * roll.turn_rad[k]).sum::<f64>().abs() / TAU;
         let overlapping =
             pairs.into_iter().map(|pair| (turn(&pair), gap(&pair), pair)).filter(|found| found.1 < -OVERLAP);
+        let overlapping = overlapping.filter_map(|found| Some((cells_of(&found.2)?, found)));
         // The pair that the shortest piece has.
-        let (turn, gap, pair) = overlapping.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)))?;
-        let here = pair.shift.map(|k| (-k).max(0));
-        let there = [0, 1].map(|k| here[k] + pair.shift[k]);
-        let [a, b] = [(pair.ring_a, here), (pair.ring_b, there)].map(|(ring, cell)| self.model.ring_label(ring, cell));
+        let ((here, beside), (turn, gap, pair)) =
+            overlapping.min_by(|(_, a), (_, b)| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)))?;
+        let [a, b] = [(pair.ring_a, here), (pair.ring_b, beside)].map(|(ring, cell)| self.model.ring_label(ring, cell));
         let (overlap, unit) = (-gap * self.model.unit, self.design.unit.as_deref().unwrap_or("of the file's unit"));
         let found = format!(
-            "rings of this tile overlap: {a} and {b}, {turn:.2} of a turn apart around the roll, by {overlap:.4} {unit}"
+            "rings of this piece overlap: {a} and {b}, {turn:.2} of a turn apart around the roll, by {overlap:.4} {unit}"
         );
         let cure = "take a smaller --tile, or a tube that closes, of `maille roll --wrap`";
         Some(if turn > 0.5 { format!("{found}. A roll counts pairs up to half a turn; {cure}") } else { found })

@@ -162,3 +162,26 @@ fn sin_cos(degrees: f64) -> (f64, f64) {
         _ => turn.to_radians().sin_cos(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is at a place of the picture is what the ray through that place meets: no picture is mirrored or moved.
+    #[test]
+    fn rays_pass_through_what_is_projected_to_their_place() {
+        let (right, up, back) = (Vec3::new(0.6, 0.8, 0.0), Vec3::new(0.0, 0.0, 1.0), Vec3::new(0.8, -0.6, 0.0));
+        let target = Vec3::new(0.3, -0.2, 0.5);
+        for distance in [None, Some(9.0)] {
+            let camera = Camera { right, up, back, target, middle: [320.0, 200.0], pixel: 0.01, distance };
+            for p in [Vec3::new(1.0, 0.5, -0.3), Vec3::new(-0.7, 0.9, 1.1), Vec3::new(0.2, -1.3, 0.4)] {
+                let [x, y] = camera.project(&p);
+                let ray = camera.ray(x, y, 50.0);
+                let way = p - ray.origin;
+                assert!(way.cross(&ray.direction).norm() < 1e-9 * way.norm() && way.dot(&ray.direction) > 0.0);
+                assert_eq!(x > 320.0, (p - target).dot(&right) > 0.0, "right is right");
+                assert_eq!(y < 200.0, (p - target).dot(&up) > 0.0, "up is up");
+            }
+        }
+    }
+}

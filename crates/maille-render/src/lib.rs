@@ -30,5 +30,5 @@ pub use error::RenderError;
 pub use film::film;
 pub use options::{Background, Caption, ColorBy, Extent, Forces, RenderOptions};
 pub use picture::{Picture, render, render_frames};
-pub use scene::{Subject, kinds};
+pub use scene::{Subject, kinds, members};
 pub use torus::{Ray, first_hit};

@@ -143,8 +143,11 @@ impl Scene {
     }
 }
 
-/// The elements of the patch with their cells, and the cell in its middle.
-fn members(model: &Model, state: &State, extent: Extent) -> Result<(Vec<(usize, Shift)>, Shift), RenderError> {
+/// The elements that a picture shows, with their cells, and the cell in its middle.
+///
+/// # Errors
+/// [`RenderError::TooManyRings`].
+pub fn members(model: &Model, state: &State, extent: Extent) -> Result<(Vec<(usize, Shift)>, Shift), RenderError> {
     let elements = model.elements.len();
     let too_many = |cells: f64| RenderError::TooManyRings { rings: cells * model.rings.len() as f64, most: MOST_RINGS };
     match extent {

@@ -88,7 +88,10 @@ pub fn gaps(scene: &Scene, source: &Source, state: &State, tile: Tile) {
             false => output::say!("smallest gap between rings: {} {unit}, here {} mm", six(gap), six(gap * scene.mm)),
         }
     }
-    if let Some(overlap) = source.overlap_of(state, tile) {
+    let [m, n] = tile.0.map(|cells| cells as i32);
+    let cells = (0..m).flat_map(|i| (0..n).map(move |j| [i, j]));
+    let elements: Vec<_> = cells.flat_map(|cell| (0..model.elements.len()).map(move |e| (e, cell))).collect();
+    if let Some(overlap) = source.overlap_of(state, &elements) {
         eprintln!("note: {overlap}");
     }
     match maille_mesh::smallest_clearance(scene, model, state, tile) {

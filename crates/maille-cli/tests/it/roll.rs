@@ -372,7 +372,7 @@ fn a_tile_that_overlaps_around_the_roll_is_named() {
     let roll = "roll stadium-sheet --directions 0 --axis below --out st --quiet";
     assert_eq!(outcome(dir.path(), roll).0, 0);
     let at = "stadium-sheet --from st --at direction=0,axis=below";
-    let overlap = "rings of this tile overlap: \"link-90\" and \"link-90\" in cell (+1,+0), 0.73 of a turn apart around the roll, by 0.1920";
+    let overlap = "rings of this piece overlap: \"link-90\" and \"link-90\" in cell (+1,+0), 0.73 of a turn apart around the roll, by 0.1920";
     for line in
         [format!("export {at} --tile 2x1 --out two.stl"), format!("render {at} --tile 2x1 --size 64x48 --out two.png")]
     {

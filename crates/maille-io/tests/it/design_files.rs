@@ -1,6 +1,10 @@
 //! Design files: the built-in ones, the round trip, and what the reader accepts.
 
-use maille::design::{Design, Source};
+use maille::{
+    Model,
+    design::{Design, Source},
+    lattice::Cell,
+};
 use maille_io::{builtin, builtin_designs, read_design, write_design};
 
 fn design(name: &str) -> Design {
@@ -53,6 +57,19 @@ fn smooth_curves_deviate_by_less_than_their_tolerance() {
             ),
             None => assert!(!["ellipses", "torus-knots"].contains(&builtin.name), "{}", builtin.name),
         }
+    }
+}
+
+/// In reference radii a design that is scaled by a power of two is the same bit for bit: no length is left out.
+#[test]
+fn every_length_of_a_design_is_scaled() {
+    for builtin in builtin_designs() {
+        let design = design(builtin.name);
+        let model = |design: &Design| {
+            let Model { rings, start, .. } = Model::compile(design, Cell::PRIMITIVE).unwrap();
+            format!("{rings:?} {start:?}")
+        };
+        assert!(model(&design) == model(&design.scaled(4.0)), "{}", builtin.name);
     }
 }
 
