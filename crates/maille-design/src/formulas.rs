@@ -25,7 +25,7 @@ impl Design {
     /// [`problems`](Design::problems).
     ///
     /// ```
-    /// # use maille::design::{Design, Parameter};
+    /// # use maille_design::{Design, Parameter};
     /// # let design = maille_io::read_design("1.1", maille_io::builtin("1.1").unwrap()).unwrap();
     /// let wire = Parameter { name: "wire".into(), value: 0.2, formula: None, min: Some(0.1), max: None };
     /// let formulas = [("minor_radius".to_owned(), "wire / 2".to_owned())].into();

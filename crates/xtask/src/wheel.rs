@@ -107,17 +107,7 @@ impl Environment {
 
     /// Installs more packages, as a lockfile names them.
     pub fn add(&self, lock: &str) -> Result<(), String> {
-        // Modules are compiled as they are imported; most of them never are.
-        let install = [
-            "-m",
-            "pip",
-            "install",
-            "--quiet",
-            "--no-compile",
-            "--disable-pip-version-check",
-            "--require-hashes",
-            "-r",
-        ];
+        let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--require-hashes", "-r"];
         let done = self.run(self.python().args(install).arg(self.root.join(lock)), "install packages");
         done.map_err(|e| {
             format!("{e}\npip must reach a package index, or find wheels by PIP_FIND_LINKS; wanted: those of {lock}")
