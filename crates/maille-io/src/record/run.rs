@@ -50,6 +50,24 @@ impl RunRecord {
         }
     }
 
+    /// Refuses a deviation of curves that is not the design's, but for the last digits of sines on other machines; older records have none. `file`
+    /// is the name to show.
+    ///
+    /// # Errors
+    /// Where it was edited.
+    pub fn check_curve_deviation(&self, file: &str) -> Result<(), RecordError> {
+        let (found, expected) = (self.curve_deviation, self.design.curve_deviation());
+        let near = |found: f64| expected.is_some_and(|expected| (found - expected).abs() <= 1e-6 * expected);
+        match found {
+            Some(found) if !near(found) => {
+                let of_design = expected.map_or("none".to_owned(), |expected| expected.to_string());
+                let problem = format!("curve_deviation was edited: it is {found}, that of the design {of_design}");
+                Err(RecordError::malformed(file, 1, problem))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// What was asked.
     ///
     /// # Errors
@@ -95,19 +113,6 @@ pub fn input_hash(design: &impl Serialize, parameters: &Value) -> String {
     sha256(inputs.to_string().as_bytes())
 }
 
-/// It follows from the design, but for the last digits of sines on other machines; older records do not have it.
-fn check_curve_deviation(run: &RunRecord) -> Result<(), String> {
-    let (found, expected) = (run.curve_deviation, run.design.curve_deviation());
-    let near = |found: f64| expected.is_some_and(|expected| (found - expected).abs() <= 1e-6 * expected);
-    match found {
-        Some(found) if !near(found) => {
-            let of_design = expected.map_or("none".to_owned(), |expected| expected.to_string());
-            Err(format!("curve_deviation was edited: it is {found}, that of the design {of_design}"))
-        }
-        _ => Ok(()),
-    }
-}
-
 /// SHA-256 in hexadecimal.
 pub(crate) fn sha256(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
@@ -131,7 +136,7 @@ pub fn read_run(file: &str, text: &str) -> Result<RunRecord, RecordError> {
                     format!("design or parameters were edited: their hash is {found}, not {}", run.input_hash);
                 return Err(RecordError::malformed(file, 1, problem));
             }
-            check_curve_deviation(&run).map_err(|problem| RecordError::malformed(file, 1, problem))?;
+            run.check_curve_deviation(file)?;
             Ok(run)
         }
         Some(other) => {
