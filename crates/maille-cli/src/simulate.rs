@@ -266,10 +266,11 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     };
     let end = simulate_from(&model, &setup, done, &cancel, &mut watch, &mut keep);
     progress.finish();
+    drop(steps);
     let end = match end {
         Ok(end) => end,
         Err(problem) => {
-            folder.forget_steps(steps)?;
+            folder.forget_steps()?;
             return Err(refused(problem));
         }
     };
@@ -285,7 +286,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         folder.save(record.clone(), &all, None)?;
     }
     if end.end != End::Interrupted {
-        folder.forget_steps(steps)?;
+        folder.forget_steps()?;
     }
     let wall_s = begun.elapsed().as_secs_f64();
     let last = forces.rows.last();

@@ -79,6 +79,8 @@ pub fn save_simulation(folder: PathBuf, record: &str, frames: &str, forces: Opti
     let frames = read_frames(SIMULATION[1], frames).map_err(|e| error::record(&e))?;
     let forces = forces.map(|text| read_forces(SIMULATION[2], text)).transpose().map_err(|e| error::record(&e))?;
     let folder = SimulationFolder::open(&folder).map_err(|e| error::record(&e))?;
+    // Steps of another run would go on over it.
+    folder.forget_steps().map_err(|e| error::record(&e))?;
     folder.save(record, &frames, forces.as_ref()).map_err(|e| error::record(&e))
 }
 

@@ -23,6 +23,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::{
     fs,
+    io::ErrorKind,
     path::{Path, PathBuf},
 };
 
@@ -128,11 +129,11 @@ impl SimulationFolder {
         Ok(SimulationFolder { path: path.to_owned(), _lock: FolderLock::take(path, &MARKS)? })
     }
 
-    /// Opens the steps of a run of this design and plan, with those of an earlier one that was not done. `all_frames`: every accepted state is
-    /// kept as well.
+    /// Opens the steps of a run of this design and plan, with those of an earlier one that was not done; with `overwrite` it
+    /// begins anew. `all_frames`: every accepted state is kept as well.
     ///
     /// # Errors
-    /// Where there are steps of another run and they are not to be overwritten, or files cannot be read or written.
+    /// Where there are steps of another run, or files cannot be read or written.
     pub fn steps(
         &self,
         design: &Design,
@@ -145,15 +146,13 @@ impl SimulationFolder {
         let head =
             StepHead { program_version: env!("CARGO_PKG_VERSION").into(), input_hash: input_hash(design, &parameters) };
         let path = self.path.join(STEPS);
-        let known = match path.exists() {
-            true => read_steps(&path, &head)?,
-            false => Some(Vec::new()),
-        };
-        if known.is_none() && !overwrite {
-            let difference = "the steps of a simulation that was not done, in steps.jsonl".into();
-            return Err(RecordError::OtherInputs { folder: self.path.clone(), difference });
+        let mut known = Vec::new();
+        if !overwrite && path.exists() {
+            known = read_steps(&path, &head)?.ok_or_else(|| RecordError::OtherInputs {
+                folder: self.path.clone(),
+                difference: "the steps of a simulation that was not done, in steps.jsonl".into(),
+            })?;
         }
-        let known = known.unwrap_or_default();
         // Anew: a line that was cut off does not stay.
         let text = line(&head) + &known.iter().map(line).collect::<String>();
         files::write(&path, text.as_bytes()).map_err(RecordError::io("write", &path))?;
@@ -165,14 +164,16 @@ impl SimulationFolder {
         self.path.join(STEPS).exists()
     }
 
-    /// Removes the steps of a run that is done.
+    /// Removes the steps of a run, if there are any: it is done, or another takes its place. Their journal must be closed.
     ///
     /// # Errors
     /// Where they cannot be removed.
-    pub fn forget_steps(&self, steps: StepJournal) -> Result<(), RecordError> {
-        drop(steps);
+    pub fn forget_steps(&self) -> Result<(), RecordError> {
         let path = self.path.join(STEPS);
-        fs::remove_file(&path).map_err(RecordError::io("remove", &path))
+        match fs::remove_file(&path) {
+            Err(e) if e.kind() != ErrorKind::NotFound => Err(RecordError::io("remove", &path)(e)),
+            _ => Ok(()),
+        }
     }
 
     /// Writes a simulation in place of one that is there.

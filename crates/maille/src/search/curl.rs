@@ -265,10 +265,7 @@ mod tests {
     use super::*;
     use crate::{
         lattice::Cell,
-        search::{
-            local::{Course, local_maximize},
-            options::ROUNDS,
-        },
+        search::local::{Course, local_maximize},
     };
 
     /// The largest l1 with the images of a flat sheet, or of a rolled one whose κ is held, from the written state or from another.
@@ -286,7 +283,7 @@ mod tests {
         let mut program = SheetProgram::new(model, &family);
         let x = program.posed(state, p);
         let stream = &mut rng(1, Use::Restart, 0);
-        let course = Course { restarts: 3, rounds: ROUNDS, first_radius: 0.1, floor: f64::NEG_INFINITY };
+        let course = Course { restarts: 3, first_radius: 0.1, floor: f64::NEG_INFINITY };
         let (found, _) = local_maximize(model, &mut program, x, course, stream, &AtomicBool::new(false));
         found.filter(|found| found.certified)
     }

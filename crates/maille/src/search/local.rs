@@ -2,7 +2,9 @@
 //! holds.
 
 use super::{
-    options::{FEASIBLE, HOPELESS_GAIN, HOPELESS_ROUNDS, RESTART_SIZE, SLOW_GAIN, SLOW_ITERATIONS, STALLED_GAIN},
+    options::{
+        FEASIBLE, HOPELESS_GAIN, HOPELESS_ROUNDS, RESTART_SIZE, ROUNDS, SLOW_GAIN, SLOW_ITERATIONS, STALLED_GAIN,
+    },
     starts::perturbed,
 };
 use crate::{
@@ -74,8 +76,8 @@ pub(super) fn local_maximize(
     rng: &mut ChaCha8Rng,
     cancel: &AtomicBool,
 ) -> (Option<LocalSolution>, u64) {
-    let Course { restarts, rounds, first_radius, floor } = course;
-    let mut rounds = Rounds { model, cancel, most: rounds, floor, iterations: 0, hopeless: false, last_resort: None };
+    let Course { restarts, first_radius, floor } = course;
+    let mut rounds = Rounds { model, cancel, floor, iterations: 0, hopeless: false, last_resort: None };
     let (mut x, mut best): (Posed, Option<Solve>) = (start, None);
     for restart in 0..=restarts {
         if restart > 0 {
@@ -107,8 +109,6 @@ pub(super) fn local_maximize(
 pub(super) struct Course {
     /// How often it begins again from a perturbed state where no certificate holds.
     pub restarts: usize,
-    /// How often it is maximised and polished at most, each time.
-    pub rounds: usize,
     /// First half width of the trust box.
     pub first_radius: f64,
     /// The best certified value of earlier starts in its cell. In a larger cell a start that will stay below it is given up.
@@ -118,7 +118,6 @@ pub(super) struct Course {
 struct Rounds<'a> {
     model: &'a Model,
     cancel: &'a AtomicBool,
-    most: usize,
     floor: f64,
     /// Whether the start was given up.
     hopeless: bool,
@@ -153,7 +152,7 @@ impl Rounds<'_> {
         let mut last = None;
         let larger = self.model.cell.copies() > 1;
         let mut gain = f64::INFINITY;
-        for round in 0..self.most {
+        for round in 0..ROUNDS {
             let mut options = SqpOptions { pause_at, first_radius, ..SqpOptions::default() };
             if larger && gain.abs() < SLOW_GAIN {
                 options.max_iterations = SLOW_ITERATIONS;

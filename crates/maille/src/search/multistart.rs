@@ -8,7 +8,7 @@ use super::{
     local::{Course, LocalSolution, local_maximize},
     options::{
         ATTAINED, BOUND_RETRIES, BOUND_RETRY_GAP, BOUND_RETRY_SIZE, CELL_PERTURBATION, EXPLORATIONS,
-        LARGER_CELL_RESTARTS, NEARBY_ROUNDS, OWN_IMAGE_FORCE, RESTARTS, ROUNDS, SAME_VALUE, WIRE_PAUSE,
+        LARGER_CELL_RESTARTS, OWN_IMAGE_FORCE, RESTARTS, SAME_VALUE, WIRE_PAUSE,
     },
     starts::{Start, Use, explored, perturbed, rng, tiled},
     stop::{StopRule, better_chance},
@@ -212,14 +212,14 @@ impl<T: Target> Multistart<'_, T> {
     /// One local maximisation, by the start's route.
     fn solve(&self, model: &Model, start: Start, number: u64, floor: f64) -> SearchResult {
         let restarts = if model.cell.copies() > 1 { LARGER_CELL_RESTARTS } else { RESTARTS };
-        let course = Course { restarts, rounds: ROUNDS, first_radius: start.route.first_radius, floor };
+        let course = Course { restarts, first_radius: start.route.first_radius, floor };
         self.solve_by(model, start, number, course)
     }
 
-    /// The same from a start that is near what is sought, or given up soon.
+    /// The same from a start that is near what is sought: without beginning again.
     pub(super) fn solve_nearby(&self, model: &Model, start: Start) -> SearchResult {
         let (first_radius, floor) = (start.route.first_radius, f64::NEG_INFINITY);
-        self.solve_by(model, start, 0, Course { restarts: 0, rounds: NEARBY_ROUNDS, first_radius, floor })
+        self.solve_by(model, start, 0, Course { restarts: 0, first_radius, floor })
     }
 
     fn solve_by(&self, model: &Model, start: Start, number: u64, course: Course) -> SearchResult {

@@ -109,8 +109,6 @@ pub(super) const STRAIGHT: f64 = 0.003;
 
 /// Rounds of maximising and polishing of one local maximisation.
 pub(super) const ROUNDS: usize = 10;
-/// The same of a start that is near what is sought.
-pub(super) const NEARBY_ROUNDS: usize = 10;
 /// A round in a larger cell that uses up its iterations for less than this is the last one: a perturbed state gets further in
 /// less time.
 pub(super) const STALLED_GAIN: f64 = 1e-3;
