@@ -20,7 +20,7 @@ use maille::{
 };
 use maille_io::{
     boundary::{
-        BoundaryHead, SURFACE, SURFACE_STATES, SurfaceFolder, SurfaceRecord, boundary_csv, boundary_obj, boundary_ply,
+        SURFACE, SURFACE_STATES, SurfaceFolder, SurfaceRecord, boundary_csv, boundary_obj, boundary_ply, surface_head,
         surface_states,
     },
     plot::{Layout, boundary_svg},
@@ -97,7 +97,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     has_surface(&model).map_err(|e| refused(&e))?;
     let usual = || PathBuf::from("maille-out").join(format!("{}-boundary", file_name(&input.design.name)));
     let out = args.out.clone().unwrap_or_else(usual);
-    let head = BoundaryHead::new(&input.design, &options);
+    let head = surface_head(&input.design, &options);
     output::folder(&out, "the surface is a folder")?;
     let (folder, known) = SurfaceFolder::open(&out, &head, args.run.overwrite)?;
     // Until all files are of this run, there is no surface to read.

@@ -6,7 +6,7 @@ mod folder;
 mod journal;
 
 pub use self::folder::{SURFACE_STATES, SurfaceRecord, open_surface, surface_states};
-pub use self::journal::{BoundaryHead, SURFACE, SurfaceFolder, read_surface, surface_line, write_surface};
+pub use self::journal::{SURFACE, SurfaceFolder, read_surface, surface_head, surface_line, write_surface};
 
 use crate::record::{csv_number, csv_text};
 use maille::{

@@ -31,6 +31,7 @@ pub(crate) use csv::{csv_number, csv_text};
 pub use error::RecordError;
 pub use folder::{NamedRecord, Record, RecordFolder, file_name};
 pub use forces::{BEND_COLUMN, FORCE_COLUMNS, ForceTable, PLACE_COLUMNS, read_forces, write_forces};
+pub use journal::JournalHead;
 pub(crate) use limits::csv_cell;
 pub use limits::{read_limits, write_limits};
 pub use lock::{FolderLock, Mark, RECORDS};

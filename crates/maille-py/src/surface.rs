@@ -12,7 +12,7 @@ use maille::{
         BoundaryOptions, BoundaryVertex, Pass, Ray, RaySolver, boundary_by as boundary_by_rays, has_surface,
     },
 };
-use maille_io::boundary::BoundaryHead;
+use maille_io::boundary::surface_head;
 use pyo3::prelude::*;
 use serde::de::DeserializeOwned;
 use std::{
@@ -95,7 +95,7 @@ impl SurfaceFolder {
     /// Opens the folder of `maille boundary`; with the rays of an earlier run as JSON.
     #[staticmethod]
     fn open(design: &Design, search: &str, folder: PathBuf, overwrite: bool) -> PyResult<(Self, Vec<String>)> {
-        let head = BoundaryHead::new(&design.design, &options(search)?);
+        let head = surface_head(&design.design, &options(search)?);
         let opened = maille_io::boundary::SurfaceFolder::open(&folder, &head, overwrite);
         let (open, known) = opened.map_err(|e| error::record(&e))?;
         Ok((Self { open: Mutex::new(Some(open)) }, known.iter().map(write).collect()))

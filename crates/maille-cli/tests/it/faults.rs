@@ -124,6 +124,36 @@ fn whatever_is_killed_goes_on_to_the_same_files() {
     }
 }
 
+/// Steps of another simulation, or damaged ones, are neither gone on from nor lost, but with --overwrite.
+#[test]
+fn a_simulation_goes_on_from_its_own_steps_alone() {
+    let line = "simulate 1.1 --tile 2x2 --fix left --pull right=3,0,0 --out out --quiet";
+    let (whole, folder) = (whole(line), tempfile::tempdir().unwrap());
+    let steps = folder.path().join("out/steps.jsonl");
+    let lines = || fs::read_to_string(&steps).map_or(0, |text| text.lines().count());
+    while lines() < 3 {
+        let mut run = command(folder.path(), line).spawn().unwrap();
+        while lines() < 3 && run.try_wait().unwrap().is_none() {
+            sleep(Duration::from_millis(1));
+        }
+        run.kill().unwrap();
+        run.wait().unwrap();
+        if !steps.exists() {
+            fs::remove_dir_all(folder.path().join("out")).unwrap(); // it was done before the kill
+        }
+    }
+    let kept = fs::read_to_string(&steps).unwrap();
+    let other = line.replace("right=3,0,0", "right=2,0,0");
+    let (code, text) = said(&maille(folder.path(), &other));
+    assert!(code == 4 && text.contains("other inputs") && text.contains("--overwrite"), "{code} {text}");
+    fs::write(&steps, kept.replacen("\"iterations\":", "\"iterations\":1", 1)).unwrap();
+    let (code, text) = said(&maille(folder.path(), line));
+    assert!(code == 4 && text.contains("steps.jsonl:2") && text.contains("--overwrite"), "{code} {text}");
+    let (code, text) = said(&maille(folder.path(), &format!("{line} --overwrite")));
+    assert_eq!(code, 0, "{text}");
+    same(&all(folder.path()), &whole, line);
+}
+
 #[test]
 fn two_runs_do_not_share_a_folder() {
     let reproduce = "reproduce --quick --only 1.1 --out out --quiet";
@@ -283,7 +313,7 @@ fn a_surface_that_was_edited_is_refused_and_one_that_was_cut_goes_on() {
         let (code, text) = said(&maille(folder.path(), line));
         if end <= 10 {
             // Not even the first line: nothing says whose it is.
-            assert_eq!((code, text.contains("no head of a surface")), (4, true), "{text}");
+            assert_eq!((code, text.contains("the first line is missing")), (4, true), "{text}");
         } else {
             assert!([0, 5].contains(&code), "{text}");
             same(&all(folder.path()), &whole, line);

@@ -1,8 +1,8 @@
 //! A surface as a record: `surface.json` says what it is of and how its rays are joined, `surface.jsonl` has a state for each
 //! row of `boundary.csv`. The journal has ends of rays as they were found first; neighbours can have handed on better ones.
 
-use super::journal::{BoundaryHead, SURFACE};
-use crate::record::{RecordError, sha256};
+use super::journal::{SURFACE, surface_head};
+use crate::record::{JournalHead, RecordError, sha256};
 use maille::{
     design::Design,
     survey::surface::{Boundary, BoundaryOptions, BoundaryVertex},
@@ -57,7 +57,7 @@ impl SurfaceRecord {
         cells: BTreeMap<String, Vec<String>>,
         files: &[(&str, &[u8])],
     ) -> Self {
-        let BoundaryHead { program_version, input_hash, .. } = BoundaryHead::new(design, options);
+        let JournalHead { program_version, input_hash, .. } = surface_head(design, options);
         let mut record = SurfaceRecord {
             schema: SCHEMA,
             program_version,

@@ -3,9 +3,17 @@
 //! A line is the object with one more field at its end, `"sum"`: the first 16 digits of the SHA-256 of the object without it. A
 //! kill cuts the last line off, which is then left out. Any other line without the right sum was edited or damaged: an error, not
 //! a gap.
+//!
+//! The first line of a journal of a run says of which run its items are: see [`JournalHead`].
 
-use super::{error::RecordError, run::sha256};
-use serde::{Serialize, de::DeserializeOwned};
+use super::{
+    error::RecordError,
+    run::{input_hash, sha256},
+};
+use crate::files;
+use maille::design::Design;
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use serde_json::Value;
 use std::{
     fs,
     io::{self, ErrorKind, Write},
@@ -55,6 +63,63 @@ pub(crate) fn parse<T: DeserializeOwned>(file: &str, bytes: &[u8]) -> Result<Vec
     whole.enumerate().map(read).collect()
 }
 
+/// First line of the journal of a run: what its items are of.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct JournalHead {
+    /// Version of the program.
+    pub program_version: String,
+    /// Hash of the design and of what decides what an item is.
+    pub input_hash: String,
+    /// Name of the design.
+    pub design: String,
+}
+
+impl JournalHead {
+    /// Keys by which a journal is known.
+    pub(crate) const KEYS: [&str; 2] = ["program_version", "input_hash"];
+
+    pub(crate) fn new(design: &Design, parameters: &Value) -> Self {
+        JournalHead {
+            program_version: env!("CARGO_PKG_VERSION").into(),
+            input_hash: input_hash(design, parameters),
+            design: design.name.clone(),
+        }
+    }
+
+    fn difference(&self, other: &JournalHead) -> String {
+        match self.program_version == other.program_version {
+            true => format!("its inputs have the hash {:.12}…", self.input_hash),
+            false => format!("it was computed by version {}, not {}", self.program_version, other.program_version),
+        }
+    }
+}
+
+/// The first line and the items of a journal's bytes. Of another run than `wanted` the first line alone is read: its items may have
+/// other keys. `file` is the name to show in errors.
+pub(crate) fn parse_run<T: DeserializeOwned>(
+    file: &str,
+    bytes: &[u8],
+    wanted: Option<&JournalHead>,
+) -> Result<(JournalHead, Vec<T>), RecordError> {
+    let malformed = |line: usize, e: serde_json::Error| RecordError::malformed(file, line, e.to_string());
+    let mut lines = parse::<Value>(file, bytes)?.into_iter();
+    let none = "the first line is missing: nothing says of which run the others are";
+    let first = lines.next().ok_or_else(|| RecordError::malformed(file, 1, none))?;
+    let head: JournalHead = serde_json::from_value(first).map_err(|e| malformed(1, e))?;
+    if wanted.is_some_and(|wanted| *wanted != head) {
+        return Ok((head, Vec::new()));
+    }
+    let item = |(k, line): (usize, Value)| serde_json::from_value(line).map_err(|e| malformed(k + 2, e));
+    let items = lines.enumerate().map(item).collect::<Result<_, _>>()?;
+    Ok((head, items))
+}
+
+/// A journal of a run as text.
+pub(crate) fn write_run<T: Serialize>(head: &JournalHead, items: &[T]) -> String {
+    line(head) + &items.iter().map(line).collect::<String>()
+}
+
 /// A journal to add to.
 #[derive(Debug)]
 pub(crate) struct Journal {
@@ -70,6 +135,31 @@ impl Journal {
         let file =
             fs::OpenOptions::new().create(true).append(true).open(path).map_err(RecordError::io("write", path))?;
         Ok(Journal { path: path.to_owned(), file, broken: None })
+    }
+
+    /// Opens the journal of a run in its folder, with the items of an earlier run of this head; with `overwrite` without. It is
+    /// written anew, so that a line that was cut off does not stay.
+    ///
+    /// # Errors
+    /// [`RecordError::OtherInputs`] for one of another run; where it cannot be read or written.
+    pub fn of_run<T: Serialize + DeserializeOwned>(
+        folder: &Path,
+        name: &str,
+        head: &JournalHead,
+        overwrite: bool,
+    ) -> Result<(Self, Vec<T>), RecordError> {
+        let path = folder.join(name);
+        let mut known = Vec::new();
+        if !overwrite && path.exists() {
+            let bytes = fs::read(&path).map_err(RecordError::io("read", &path))?;
+            let (old, items) = parse_run(&path.display().to_string(), &bytes, Some(head))?;
+            if old != *head {
+                return Err(RecordError::OtherInputs { folder: folder.into(), difference: old.difference(head) });
+            }
+            known = items;
+        }
+        files::write(&path, write_run(head, &known).as_bytes()).map_err(RecordError::io("write", &path))?;
+        Ok((Self::open(&path)?, known))
     }
 
     /// Adds lines in one write; nothing after one that failed.

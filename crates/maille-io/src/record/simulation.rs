@@ -7,10 +7,10 @@
 use super::{
     error::{RecordError, complete},
     forces::{ForceTable, read_forces, write_forces},
-    journal::{Journal, line, parse},
+    journal::{Journal, JournalHead, line},
     lock::{FolderLock, Mark},
     plan::SheetPlan,
-    run::{input_hash, sha256},
+    run::sha256,
 };
 use crate::{files, tile::Tile};
 use maille::{
@@ -20,7 +20,7 @@ use maille::{
     relaxation::simulate::{End, Simulation, Step},
 };
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde_json::json;
 use std::{
     fs,
     io::ErrorKind,
@@ -33,7 +33,7 @@ pub const SIMULATION: [&str; 3] = ["simulation.json", "frames.jsonl", "forces.cs
 const STEPS: &str = "steps.jsonl";
 /// A run that is killed leaves steps alone, or while it writes frames.
 const MARKS: [Mark; 3] = [
-    Mark::File(STEPS, &["program_version", "input_hash"]),
+    Mark::File(STEPS, &JournalHead::KEYS),
     Mark::File(SIMULATION[0], &["schema", "version", "outcome"]),
     Mark::File(SIMULATION[1], &["share", "energy", "poses"]),
 ];
@@ -143,20 +143,9 @@ impl SimulationFolder {
         overwrite: bool,
     ) -> Result<(StepJournal, Vec<KeptStep>), RecordError> {
         let parameters = json!({ "tile": tile.to_string(), "setup": plan, "all_frames": all_frames });
-        let head =
-            StepHead { program_version: env!("CARGO_PKG_VERSION").into(), input_hash: input_hash(design, &parameters) };
-        let path = self.path.join(STEPS);
-        let mut known = Vec::new();
-        if !overwrite && path.exists() {
-            known = read_steps(&path, &head)?.ok_or_else(|| RecordError::OtherInputs {
-                folder: self.path.clone(),
-                difference: "the steps of a simulation that was not done, in steps.jsonl".into(),
-            })?;
-        }
-        // Anew: a line that was cut off does not stay.
-        let text = line(&head) + &known.iter().map(line).collect::<String>();
-        files::write(&path, text.as_bytes()).map_err(RecordError::io("write", &path))?;
-        Ok((StepJournal(Journal::open(&path)?), known))
+        let head = JournalHead::new(design, &parameters);
+        let (journal, known) = Journal::of_run(&self.path, STEPS, &head, overwrite)?;
+        Ok((StepJournal(journal), known))
     }
 
     /// Whether there are steps of a run that was not done.
@@ -203,14 +192,6 @@ impl SimulationFolder {
     }
 }
 
-/// First line of `steps.jsonl`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct StepHead {
-    program_version: String,
-    input_hash: String,
-}
-
 /// A step of a run that is not done.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -234,21 +215,6 @@ impl StepJournal {
     pub fn keep(&mut self, step: &KeptStep) -> Result<(), RecordError> {
         self.0.write(&line(step))
     }
-}
-
-/// The steps of a run with this head, none where no line is whole; `None` if they are of another one.
-fn read_steps(path: &Path, wanted: &StepHead) -> Result<Option<Vec<KeptStep>>, RecordError> {
-    let file = path.display().to_string();
-    let bytes = fs::read(path).map_err(RecordError::io("read", path))?;
-    let mut lines = parse::<Value>(&file, &bytes)?.into_iter();
-    let malformed = |line: usize, e: serde_json::Error| RecordError::malformed(&file, line, e.to_string());
-    let Some(first) = lines.next() else { return Ok(Some(Vec::new())) };
-    let head: StepHead = serde_json::from_value(first).map_err(|e| malformed(1, e))?;
-    if head != *wanted {
-        return Ok(None);
-    }
-    let step = |(k, line): (usize, Value)| serde_json::from_value(line).map_err(|e| malformed(k + 2, e));
-    lines.enumerate().map(step).collect::<Result<_, _>>().map(Some)
 }
 
 /// Reads a simulation from its folder.

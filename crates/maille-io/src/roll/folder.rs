@@ -4,14 +4,14 @@ use super::{Kind, Roll, RollKey, RollQuestion, rolls_csv};
 use crate::{
     files,
     record::{
-        FolderLock, Mark, RecordError, input_hash,
-        journal::{Journal, line, parse},
+        FolderLock, JournalHead, Mark, RecordError,
+        journal::{Journal, line, parse_run, write_run},
         sha256,
     },
 };
 use maille::design::Design;
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde_json::json;
 use std::{collections::BTreeMap, fs, path::Path};
 
 /// Name of the file that says what the rolls are of.
@@ -21,8 +21,6 @@ pub const ROLLS: &str = "rolls.jsonl";
 /// Name of the table.
 pub const ROLLS_TABLE: &str = "rolls.csv";
 const SCHEMA: u32 = 1;
-/// Of both files.
-const KEYS: [&str; 2] = ["program_version", "input_hash"];
 
 /// `roll.json`: what the rolls of a folder are of.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -44,35 +42,20 @@ pub struct RollRecordFile {
     pub files: BTreeMap<String, String>,
 }
 
-/// First line of `rolls.jsonl`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Head {
-    program_version: String,
-    input_hash: String,
-    design: String,
-}
-
-impl Head {
-    /// Which directions, sides, cells and curvatures are asked does not decide where a roll ends.
-    fn new(design: &Design, question: &RollQuestion) -> Self {
-        let RollQuestion { cells, effort, seed, .. } = question;
-        let (strains, kind) = (question.strains(), question.kind());
-        let tubes = kind == Kind::Tubes;
-        let mut parameters =
-            json!({ "tubes": tubes, "free": strains.free, "cells": cells, "effort": effort, "seed": seed });
-        if kind == Kind::AtCurvature {
-            parameters["at_curvature"] = true.into();
-        }
-        if (strains.l2, strains.shear) != (0.0, 0.0) {
-            (parameters["l2"], parameters["gamma"]) = (strains.l2.into(), strains.shear.into());
-        }
-        Head {
-            program_version: env!("CARGO_PKG_VERSION").into(),
-            input_hash: input_hash(design, &parameters),
-            design: design.name.clone(),
-        }
+/// First line of `rolls.jsonl`. Which directions, sides, cells and curvatures are asked does not decide where a roll ends.
+fn head(design: &Design, question: &RollQuestion) -> JournalHead {
+    let RollQuestion { cells, effort, seed, .. } = question;
+    let (strains, kind) = (question.strains(), question.kind());
+    let tubes = kind == Kind::Tubes;
+    let mut parameters =
+        json!({ "tubes": tubes, "free": strains.free, "cells": cells, "effort": effort, "seed": seed });
+    if kind == Kind::AtCurvature {
+        parameters["at_curvature"] = true.into();
     }
+    if (strains.l2, strains.shear) != (0.0, 0.0) {
+        (parameters["l2"], parameters["gamma"]) = (strains.l2.into(), strains.shear.into());
+    }
+    JournalHead::new(design, &parameters)
 }
 
 /// The folder that a run writes to; no other run does meanwhile.
@@ -94,28 +77,14 @@ impl<'a> RollFolder<'a> {
         question: &RollQuestion,
         overwrite: bool,
     ) -> Result<(Self, Vec<Roll>), RecordError> {
-        let lock = FolderLock::take(folder, &[Mark::File(ROLL, &KEYS), Mark::File(ROLLS, &KEYS)])?;
-        let (path, head) = (folder.join(ROLLS), Head::new(design, question));
-        let mut known = Vec::new();
-        if !overwrite && path.exists() {
-            let (old, rolls) = read(&path, Some(&head))?;
-            if let Some(old) = old.filter(|old| *old != head) {
-                let difference = match old.program_version == head.program_version {
-                    true => format!("its inputs have the hash {:.12}…", old.input_hash),
-                    false => {
-                        format!("it was computed by version {}, not {}", old.program_version, head.program_version)
-                    }
-                };
-                return Err(RecordError::OtherInputs { folder: folder.into(), difference });
-            }
-            known = rolls;
-            // Of two lines of a roll the later one went further.
-            known.reverse();
-            in_order(&mut known);
-            known.dedup_by_key(|roll| roll.key());
-        }
-        write_states(&path, &head, &known)?;
-        Ok((RollFolder { folder, journal: Journal::open(&path)?, _lock: lock }, known))
+        let lock =
+            FolderLock::take(folder, &[Mark::File(ROLL, &JournalHead::KEYS), Mark::File(ROLLS, &JournalHead::KEYS)])?;
+        let (journal, mut known) = Journal::of_run::<Roll>(folder, ROLLS, &head(design, question), overwrite)?;
+        // Of two lines of a roll the later one went further.
+        known.reverse();
+        in_order(&mut known);
+        known.dedup_by_key(|roll| roll.key());
+        Ok((RollFolder { folder, journal, _lock: lock }, known))
     }
 
     /// Keeps a roll.
@@ -137,9 +106,11 @@ impl<'a> RollFolder<'a> {
             files::write(&path, bytes).map_err(RecordError::io("write", &path))
         };
         write(ROLLS_TABLE, table.as_bytes())?;
-        let head = Head::new(design, question);
-        let states = write_states(&self.folder.join(ROLLS), &head, rolls)?;
-        let Head { program_version, input_hash, .. } = head;
+        let head = head(design, question);
+        // Without the lines of rolls that went further.
+        let states = write_run(&head, rolls);
+        write(ROLLS, states.as_bytes())?;
+        let JournalHead { program_version, input_hash, .. } = head;
         let known = |asked: &RollKey| rolls.iter().any(|roll| roll.key() == *asked);
         let record = RollRecordFile {
             schema: SCHEMA,
@@ -154,30 +125,6 @@ impl<'a> RollFolder<'a> {
         let text = serde_json::to_string_pretty(&record).expect("no map with odd keys") + "\n";
         write(ROLL, text.as_bytes())
     }
-}
-
-/// Writes the first line and the rolls, anew: a line that was cut off does not stay, nor one of a roll that went further. Gives the text.
-fn write_states(path: &Path, head: &Head, rolls: &[Roll]) -> Result<String, RecordError> {
-    let text = line(head) + &rolls.iter().map(line).collect::<String>();
-    files::write(path, text.as_bytes()).map_err(RecordError::io("write", path))?;
-    Ok(text)
-}
-
-/// The first line and the rolls; neither where no line is whole. Of another run than `wanted` the first line alone is read: its rolls may have
-/// other keys.
-fn read(path: &Path, wanted: Option<&Head>) -> Result<(Option<Head>, Vec<Roll>), RecordError> {
-    let file = path.display().to_string();
-    let bytes = fs::read(path).map_err(RecordError::io("read", path))?;
-    let mut lines = parse::<Value>(&file, &bytes)?.into_iter();
-    let malformed = |line: usize, e: serde_json::Error| RecordError::malformed(&file, line, e.to_string());
-    let Some(first) = lines.next() else { return Ok((None, Vec::new())) };
-    let head: Head = serde_json::from_value(first).map_err(|e| malformed(1, e))?;
-    if wanted.is_some_and(|wanted| *wanted != head) {
-        return Ok((Some(head), Vec::new()));
-    }
-    let roll = |(k, line): (usize, Value)| serde_json::from_value(line).map_err(|e| malformed(k + 2, e));
-    let rolls = lines.enumerate().map(roll).collect::<Result<_, _>>()?;
-    Ok((Some(head), rolls))
 }
 
 /// Reads a folder of rolls, and checks that its files are those that were written.
@@ -203,7 +150,9 @@ pub fn open_rolls(folder: &Path) -> Result<(RollRecordFile, Vec<Roll>), RecordEr
             return Err(RecordError::Edited { file, found, expected, by: ROLL });
         }
     }
-    let (_, mut rolls) = read(&folder.join(ROLLS), None)?;
+    let path = folder.join(ROLLS);
+    let bytes = fs::read(&path).map_err(RecordError::io("read", &path))?;
+    let (_, mut rolls) = parse_run(&path.display().to_string(), &bytes, None)?;
     in_order(&mut rolls);
     Ok((record, rolls))
 }
