@@ -462,12 +462,12 @@ impl Source {
         };
         let turn =
             |pair: &RingPair| (0..2).map(|k| f64::from(pair.shift[k]) * roll.turn_rad[k]).sum::<f64>().abs() / TAU;
-        let overlapping =
-            pairs.into_iter().map(|pair| (turn(&pair), gap(&pair), pair)).filter(|found| found.1 < -OVERLAP);
-        let overlapping = overlapping.filter_map(|found| Some((cells_of(&found.2)?, found)));
+        let measured = pairs.into_iter().map(|pair| (turn(&pair), gap(&pair), pair));
+        let mut overlapping: Vec<_> = measured.filter(|found| found.1 < -OVERLAP).collect();
         // The pair that the shortest piece has.
-        let ((here, beside), (turn, gap, pair)) =
-            overlapping.min_by(|(_, a), (_, b)| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)))?;
+        overlapping.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        let at = |found: (f64, f64, RingPair)| Some((cells_of(&found.2)?, found));
+        let ((here, beside), (turn, gap, pair)) = overlapping.into_iter().find_map(at)?;
         let [a, b] = [(pair.ring_a, here), (pair.ring_b, beside)].map(|(ring, cell)| self.model.ring_label(ring, cell));
         let (overlap, unit) = (-gap * self.model.unit, self.design.unit.as_deref().unwrap_or("of the file's unit"));
         let found = format!(

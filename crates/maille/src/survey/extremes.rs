@@ -12,10 +12,12 @@
 //! Between two directions a largest l1 is sought where their tangents meet, and where the cubic through values and slopes is largest, by
 //! turns: the one finds corners, the other smooth maxima. The place that promises most comes first, until none promises more than
 //! `ENOUGH`. Each limit is solved and certified as any other; images of a direction under the symmetries of the design count as solved.
-//! Towards a direction in which no state has the width, what has limits ends. While the height rises that way, the last limit's state is
-//! followed to the end, each direction by one local search from the state before; the last of them is solved as any other.
+//! Beside a direction without a state the end of those that have one is sought: see `ends`.
 //! What rises and falls again between two directions whose tangents do not tell of it is not found.
 
+mod ends;
+
+use self::ends::END_DEG;
 use super::{
     map::OneLimit,
     request::{Finished, MapQuestion, Method, Task, Work},
@@ -43,10 +45,6 @@ const SAME: f64 = 1e-9;
 const MOST: usize = 40;
 /// Directions closer than this are not divided, in degrees.
 const CLOSE_DEG: f64 = 4e-6;
-/// The end of the directions with a state is found to this, in degrees.
-const END_DEG: f64 = 1e-3;
-/// Directions to which a state is followed, at most.
-const MOST_TURNS: usize = 60;
 /// Directions that are tried are multiples of this part of a degree.
 const STEPS_PER_DEGREE: f64 = 1e6;
 /// A place is tried no nearer to the ends of its interval than this share of its width.
@@ -240,26 +238,6 @@ impl Search<'_> {
         self.states.push((row.direction_deg, answer));
     }
 
-    /// The last direction towards `end_deg` to which the state of the limit along `from_deg` can be followed, with the limit there; none where
-    /// it cannot be.
-    fn follow(&self, from_deg: f64, end_deg: f64, cancel: &AtomicBool) -> Option<(f64, Answer)> {
-        let near = |deg: f64| (deg - from_deg).abs() <= CLOSE_DEG / 4.0;
-        let mut at = self.states.iter().find(|(deg, _)| near(*deg))?.1.clone();
-        let (mut deg, mut step_deg) = (from_deg, 0.5 * (end_deg - from_deg));
-        for _ in 0..MOST_TURNS {
-            step_deg = step_deg.abs().min(0.5 * (end_deg - deg).abs()).copysign(end_deg - deg);
-            if step_deg.abs() < 0.5 * END_DEG || cancel.load(Ordering::Relaxed) {
-                break;
-            }
-            let next_deg = rounded(deg + step_deg);
-            match self.one.turned(next_deg, self.l2, &at) {
-                Some(next) => (deg, at, step_deg) = (next_deg, next, 2.0 * step_deg),
-                None => step_deg *= 0.5,
-            }
-        }
-        (deg != from_deg).then_some((deg, at))
-    }
-
     /// Adds a point and its images.
     fn insert_images(&mut self, point: Point) {
         for operation in &self.one.operations {
@@ -295,24 +273,6 @@ impl Search<'_> {
     fn places(&self, smooth: bool) -> impl Iterator<Item = Place> {
         self.points.windows(2).filter_map(move |pair| place(&pair[0], &pair[1], smooth))
     }
-
-    /// Directions without a state beside one with a limit, towards which the height rises.
-    fn ends(&self) -> impl Iterator<Item = Place> {
-        self.points.windows(2).filter_map(|pair| match pair[1].ends {
-            true => end(&pair[0], &pair[1]),
-            false => end(&pair[1], &pair[0]),
-        })
-    }
-}
-
-/// The way from a limit to a direction without a state, where the height rises that way: as high as its tangent at most.
-fn end(last: &Point, end: &Point) -> Option<Place> {
-    let width = (end.deg - last.deg).to_radians();
-    let slope = last.slope?;
-    let rise = if last.mirrored { slope.abs() * width.abs() } else { slope * width };
-    let promise = last.height? + rise;
-    let open = end.ends && !last.ends && rise > 0.0 && (end.deg - last.deg).abs() > 1.5 * END_DEG;
-    open.then_some(Place { deg: end.deg, promise, from_deg: Some(last.deg) })
 }
 
 fn rounded(deg: f64) -> f64 {
