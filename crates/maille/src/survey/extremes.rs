@@ -12,12 +12,13 @@
 //! Between two directions a largest l1 is sought where their tangents meet, and where the cubic through values and slopes is largest, by
 //! turns: the one finds corners, the other smooth maxima. The place that promises most comes first, until none promises more than
 //! `ENOUGH`. Each limit is solved and certified as any other; images of a direction under the symmetries of the design count as solved.
-//! Beside a direction without a state the end of those that have one is sought: see `ends`.
+//! Towards a direction in which no state has the width, what has limits ends. While the height rises that way, the last limit's state is
+//! followed to the end, each direction by one local search from the state before; the last of them is solved as any other.
 //! What rises and falls again between two directions whose tangents do not tell of it is not found.
 
-mod ends;
+mod place;
 
-use self::ends::END_DEG;
+use self::place::{CLOSE_DEG, END_DEG, Place, Point, end, place, rounded};
 use super::{
     map::OneLimit,
     request::{Finished, MapQuestion, Method, Task, Work},
@@ -43,13 +44,8 @@ const ENOUGH: f64 = 1e-7;
 const SAME: f64 = 1e-9;
 /// Limits that are solved for one extreme, at most.
 const MOST: usize = 40;
-/// Directions closer than this are not divided, in degrees.
-const CLOSE_DEG: f64 = 4e-6;
-/// Directions that are tried are multiples of this part of a degree.
-const STEPS_PER_DEGREE: f64 = 1e6;
-/// A place is tried no nearer to the ends of its interval than this share of its width.
-const MARGIN: f64 = 0.02;
-
+/// Directions to which a state is followed, at most.
+const MOST_TURNS: usize = 60;
 /// Which l1 over all directions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Which {
@@ -107,28 +103,6 @@ pub fn extremes(
             }
         }
     });
-}
-
-/// A direction with its limit, as a height that is to be as large as can be.
-#[derive(Clone, Copy, Debug)]
-struct Point {
-    deg: f64,
-    height: Option<f64>,
-    /// Whether no state was found: what has limits ends before it.
-    ends: bool,
-    /// Derivative of the height by the angle in radians; none where it is not known.
-    slope: Option<f64>,
-    /// Whether a mirror maps the direction to itself: then a state and its image have opposite slopes, and each side has one of them.
-    mirrored: bool,
-}
-
-/// A place between two directions, and the height that it may have.
-#[derive(Clone, Copy, Debug)]
-struct Place {
-    deg: f64,
-    promise: f64,
-    /// The limit whose state is followed this way, as far as it goes.
-    from_deg: Option<f64>,
 }
 
 struct Search<'a> {
@@ -238,6 +212,26 @@ impl Search<'_> {
         self.states.push((row.direction_deg, answer));
     }
 
+    /// The last direction towards `end_deg` to which the state of the limit along `from_deg` can be followed, with the limit there; none where
+    /// it cannot be.
+    fn follow(&self, from_deg: f64, end_deg: f64, cancel: &AtomicBool) -> Option<(f64, Answer)> {
+        let near = |deg: f64| (deg - from_deg).abs() <= CLOSE_DEG / 4.0;
+        let mut at = self.states.iter().find(|(deg, _)| near(*deg))?.1.clone();
+        let (mut deg, mut step_deg) = (from_deg, 0.5 * (end_deg - from_deg));
+        for _ in 0..MOST_TURNS {
+            step_deg = step_deg.abs().min(0.5 * (end_deg - deg).abs()).copysign(end_deg - deg);
+            if step_deg.abs() < 0.5 * END_DEG || cancel.load(Ordering::Relaxed) {
+                break;
+            }
+            let next_deg = rounded(deg + step_deg);
+            match self.one.turned(next_deg, self.l2, &at) {
+                Some(next) => (deg, at, step_deg) = (next_deg, next, 2.0 * step_deg),
+                None => step_deg *= 0.5,
+            }
+        }
+        (deg != from_deg).then_some((deg, at))
+    }
+
     /// Adds a point and its images.
     fn insert_images(&mut self, point: Point) {
         for operation in &self.one.operations {
@@ -273,54 +267,14 @@ impl Search<'_> {
     fn places(&self, smooth: bool) -> impl Iterator<Item = Place> {
         self.points.windows(2).filter_map(move |pair| place(&pair[0], &pair[1], smooth))
     }
-}
 
-fn rounded(deg: f64) -> f64 {
-    (deg * STEPS_PER_DEGREE).round() / STEPS_PER_DEGREE
-}
-
-/// Where between two directions the height may be larger, and how large: where the tangents meet, or where the cubic through both is largest.
-/// None where it need not rise between them.
-fn place(a: &Point, b: &Point, smooth: bool) -> Option<Place> {
-    let width = (b.deg - a.deg).to_radians();
-    let (from, to) = (a.height?, b.height?);
-    // On a mirror's line: the slope that fits the other end and the rise between them, as of a parabola.
-    let (mut rise, mut fall, mean) = (a.slope?, b.slope?, (to - from) / width);
-    if a.mirrored {
-        rise = rise.abs().copysign(if b.mirrored { mean } else { 2.0 * mean - fall });
+    /// Directions without a state beside one with a limit, towards which the height rises.
+    fn ends(&self) -> impl Iterator<Item = Place> {
+        self.points.windows(2).filter_map(|pair| match pair[1].ends {
+            true => end(&pair[0], &pair[1]),
+            false => end(&pair[1], &pair[0]),
+        })
     }
-    if b.mirrored {
-        fall = fall.abs().copysign(if a.mirrored { mean } else { 2.0 * mean - rise });
-    }
-    if b.deg - a.deg < CLOSE_DEG {
-        return None;
-    }
-    let peaks = (rise > 0.0 && (fall < 0.0 || to < from)) || (fall < 0.0 && from < to);
-    if !peaks {
-        return None;
-    }
-    let meet = (to - from - fall * width) / (rise - fall);
-    let meets = rise > fall && meet > 0.0 && meet < width;
-    // Tangents that do not meet in between: the height bends up and down again.
-    let promise = if meets { from + rise * meet } else { from.max(to) + 0.25 * width * rise.max(-fall) };
-    let share = match (smooth, meets) {
-        (true, _) => cubic_peak(from, to, rise * width, fall * width),
-        (false, true) => Some(meet / width),
-        (false, false) => None,
-    };
-    let share = share.unwrap_or(if from > to { 0.25 } else { 0.75 }).clamp(MARGIN, 1.0 - MARGIN);
-    let deg = rounded(a.deg + share * (b.deg - a.deg));
-    (deg > a.deg && deg < b.deg).then_some(Place { deg, promise, from_deg: None })
-}
-
-/// Where in 0..1 the cubic with these ends and slopes has its peak.
-fn cubic_peak(from: f64, to: f64, rise: f64, fall: f64) -> Option<f64> {
-    // c₃ t³ + c₂ t² + rise t + from.
-    let (c2, c3) = (3.0 * (to - from) - 2.0 * rise - fall, rise + fall - 2.0 * (to - from));
-    let root = (c2 * c2 - 3.0 * c3 * rise).sqrt();
-    // The root where the second derivative 6 c₃ t + 2 c₂ is negative, without cancellation.
-    let t = if c2 < 0.0 { rise / (root - c2) } else { -(c2 + root) / (3.0 * c3) };
-    (t > 0.0 && t < 1.0).then_some(t)
 }
 
 /// dl1/dφ per radian, from the forces of a limit in the model of its cell; none where it carries none.
