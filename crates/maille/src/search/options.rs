@@ -94,6 +94,19 @@ pub(super) const EXPLORATIONS: [Exploration; 8] = [
     exploration(20, 0.1, &[0.2, 0.5, 0.8], FIRST_RADIUS),
     exploration(20, 0.1, &[], 0.03),
 ];
+/// Of a design with curves one of so many starts is one of these, the others are turned, see [`super::starts`] (decision 19 has the
+/// measurement).
+pub(super) const UNTURNED_SHARE: usize = 4;
+/// Turns of each element of a turned start.
+pub(super) const TURNS: usize = 4;
+/// Turns of all elements together, at most.
+pub(super) const MOST_TURNS: usize = 24;
+/// Largest angle of a turn about each axis, in radians.
+pub(super) const TURN_SIZE_RAD: f64 = 2.0;
+/// Largest shift along each axis that goes with it, in R.
+pub(super) const TURN_SHIFT: f64 = 0.6;
+/// A turn is made in so many steps, each as far as no curve can meet another.
+pub(super) const TURN_STEPS: u32 = 10;
 /// One of so many starts of a least stretch is buckled, see [`super::starts`].
 pub(super) const BUCKLED_SHARE: usize = 3;
 /// Its waves, in periods along the cell's two vectors: they take turns.
@@ -191,6 +204,12 @@ pub struct ExactParameters {
     same_value_within: f64,
     first_radius: f64,
     explorations: [Exploration; 8],
+    unturned_share: usize,
+    turns: usize,
+    most_turns: usize,
+    turn_size_rad: f64,
+    turn_shift: f64,
+    turn_steps: u32,
     wire_pause: f64,
     buckled_share: usize,
     buckled_waves: [[f64; 2]; 4],
@@ -243,6 +262,12 @@ impl ExactOptions {
             same_value_within: SAME_VALUE,
             first_radius: FIRST_RADIUS,
             explorations: EXPLORATIONS,
+            unturned_share: UNTURNED_SHARE,
+            turns: TURNS,
+            most_turns: MOST_TURNS,
+            turn_size_rad: TURN_SIZE_RAD,
+            turn_shift: TURN_SHIFT,
+            turn_steps: TURN_STEPS,
             wire_pause: WIRE_PAUSE,
             buckled_share: BUCKLED_SHARE,
             buckled_waves: BUCKLED_WAVES,

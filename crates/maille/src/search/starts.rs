@@ -1,7 +1,8 @@
 //! Starts of a search: states, and how they are perturbed and repeated over larger cells.
 
 use super::options::{
-    BUCKLED_HEIGHT, BUCKLED_SHARE, BUCKLED_STEPS, BUCKLED_WAVES, EXPLORATIONS, Exploration, FIRST_RADIUS, STRAIGHT,
+    BUCKLED_HEIGHT, BUCKLED_SHARE, BUCKLED_STEPS, BUCKLED_WAVES, EXPLORATIONS, Exploration, FIRST_RADIUS, MOST_TURNS,
+    STRAIGHT, TURN_SHIFT, TURN_SIZE_RAD, TURN_STEPS, TURNS, UNTURNED_SHARE,
 };
 use crate::{
     lattice::Cell,
@@ -61,6 +62,8 @@ pub(super) enum Use {
     Freeing,
     /// The buckled start of this number.
     Buckling,
+    /// The turned start of this number.
+    Turning,
 }
 
 /// The random numbers of one use.
@@ -71,8 +74,35 @@ pub(super) fn rng(seed: u64, what: Use, number: u64) -> ChaCha8Rng {
 }
 
 /// The start of number `k` in a cell: the design's state, every element moved and turned at random in some steps, no circle
-/// across another; see [`EXPLORATIONS`].
+/// across another; see [`EXPLORATIONS`]. Of a design with curves most are [`turned`].
 pub(super) fn explored(model: &Model, seed: u64, k: usize) -> Start {
+    let curved = model.rings.iter().any(|ring| ring.curve.is_some());
+    match k % UNTURNED_SHARE {
+        _ if !curved => walked(model, seed, k),
+        0 => walked(model, seed, k / UNTURNED_SHARE),
+        _ => turned(model, seed, k),
+    }
+}
+
+/// The design's state, its elements turned one after the other, each by up to [`TURN_SIZE_RAD`] about every axis, as far as no curve can
+/// meet another. A curve fits through another in many ways, and small motions do not lead from one to the next.
+fn turned(model: &Model, seed: u64, k: usize) -> Start {
+    let mut stream = rng(seed, Use::Turning, k as u64);
+    let elements = model.elements.len();
+    let first = stream.random_range(0..elements);
+    let mut state = model.start.clone();
+    for element in (first..).take((TURNS * elements).min(MOST_TURNS)).map(|turn| turn % elements) {
+        let mut vector =
+            |size: f64| Vec3::from_fn(|_, _| size * stream.random_range(-1.0..1.0)) / f64::from(TURN_STEPS);
+        let mut motion = Motion { elements: vec![(Vec3::zeros(), Vec3::zeros()); elements], ..Motion::default() };
+        motion.elements[element] = (vector(TURN_SHIFT), vector(TURN_SIZE_RAD));
+        state = (0..TURN_STEPS).fold(state, |state, _| moved(model, &state, &motion));
+    }
+    Start::written(state)
+}
+
+/// The walk of number `k`, of the kind whose turn it is.
+fn walked(model: &Model, seed: u64, k: usize) -> Start {
     let Exploration { steps, size, wires, first_radius } = EXPLORATIONS[k % EXPLORATIONS.len()];
     let mut stream = rng(seed, Use::Start, k as u64);
     let state = (0..steps).fold(model.start.clone(), |state, _| perturbed(model, &state, size, &mut stream));
@@ -114,8 +144,8 @@ fn buckled(model: &Model, seed: u64, k: usize) -> Start {
         (shift / steps, turn / steps)
     };
     let elements: Vec<(Vec3, Vec3)> = state.poses.iter().map(part).collect();
-    let motion = || Motion { elements: elements.clone(), ..Motion::default() };
-    Start::written((0..BUCKLED_STEPS).fold(state, |state, _| moved(model, &state, motion())))
+    let motion = Motion { elements, ..Motion::default() };
+    Start::written((0..BUCKLED_STEPS).fold(state, |state, _| moved(model, &state, &motion)))
 }
 
 /// [`explored`] without a change of the wire on the way.
@@ -128,12 +158,12 @@ pub(super) fn explored_with_own_wire(model: &Model, seed: u64, k: usize) -> Star
 pub(super) fn perturbed(model: &Model, state: &State, size: f64, rng: &mut ChaCha8Rng) -> State {
     let mut vector = || Vec3::from_fn(|_, _| size * rng.random_range(-1.0..1.0));
     let elements = state.poses.iter().map(|_| (vector(), vector())).collect();
-    moved(model, state, Motion { elements, ..Motion::default() })
+    moved(model, state, &Motion { elements, ..Motion::default() })
 }
 
 /// `state` after a motion of its elements; after less of it where circles could meet.
-pub(super) fn moved(model: &Model, state: &State, motion: Motion) -> State {
-    let fraction = StepBound::new(model, state).largest_fraction(model, &motion, f64::INFINITY);
+pub(super) fn moved(model: &Model, state: &State, motion: &Motion) -> State {
+    let fraction = StepBound::new(model, state).largest_fraction(model, motion, f64::INFINITY);
     let moved = state
         .poses
         .iter()

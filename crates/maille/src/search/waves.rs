@@ -205,7 +205,7 @@ impl FoundWaves {
         let copies: Vec<_> = model.cell.cosets().into_iter().map(|coset| self.of.copy_at(coset)).collect();
         let repeated = tiled(model, self.of, &from.state);
         let along = |size: f64| {
-            let state = moved(model, &repeated, wave.motion(&copies, size));
+            let state = moved(model, &repeated, &wave.motion(&copies, size));
             Start { state, ..from.clone() }
         };
         let order = model.cell.copies() / self.of.copies();
