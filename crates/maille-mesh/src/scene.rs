@@ -6,7 +6,7 @@ use super::{
     torus::{Fineness, TorusMesh},
 };
 use maille::{
-    model::{Model, Ring},
+    model::{MEMORY_LIMIT_BYTES, Model, Ring},
     record::{ContactRecord, StateRecord},
     state::{Pose, Roll, State},
 };
@@ -15,7 +15,9 @@ use maille_io::Tile;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
 /// Most rings of one export.
-const MOST_RINGS: usize = 5_000_000;
+const MOST_RINGS: usize = (MEMORY_LIMIT_BYTES / BYTES_OF_RING) as usize;
+/// Memory that a ring takes, in bytes: 0.13 GB for a glTF file of 43,200; other formats take less.
+const BYTES_OF_RING: f64 = 2500.0;
 
 /// A ring of a kind of element.
 #[derive(Clone, Debug)]

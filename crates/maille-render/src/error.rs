@@ -1,11 +1,16 @@
 //! What can go wrong.
 
+use maille::model::MEMORY_LIMIT_BYTES;
 use miette::Diagnostic;
 use std::fmt;
 use thiserror::Error;
 
 /// Most pixels on one side.
 pub(super) const MOST_SIDE: u32 = 16_384;
+/// Most pixels of a picture.
+pub(super) const MOST_PIXELS: u32 = (MEMORY_LIMIT_BYTES / BYTES_OF_PIXEL) as u32;
+/// Memory that a pixel takes while it is drawn, in bytes: 1.12 GB for 4000 × 3000.
+const BYTES_OF_PIXEL: f64 = 100.0;
 
 /// What keeps a picture from being drawn.
 #[derive(Debug, Error, PartialEq)]
@@ -40,7 +45,10 @@ pub enum RenderError {
 impl Diagnostic for RenderError {
     fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
         match self {
-            Self::Size { .. } => Some(Box::new(format!("take from 16 to {MOST_SIDE} pixels a side"))),
+            Self::Size { .. } => Some(Box::new(format!(
+                "take from 16 to {MOST_SIDE} pixels a side, and at most {} million in all",
+                MOST_PIXELS / 1_000_000
+            ))),
             Self::Nothing => Some(Box::new("take a larger patch or tile")),
             Self::TooManyRings { .. } => Some(Box::new("take a smaller patch or tile")),
             Self::NoForces | Self::Encode(_) => None,

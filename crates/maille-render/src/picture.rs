@@ -3,7 +3,7 @@
 use super::{
     camera::Camera,
     color::{self, Light},
-    error::{MOST_SIDE, RenderError},
+    error::{MOST_PIXELS, MOST_SIDE, RenderError},
     options::{Background, RenderOptions},
     overlay::{self, Overlay},
     scene::{Scene, Subject},
@@ -69,7 +69,7 @@ pub fn render_frames(
 
 fn camera(scenes: &[Scene], options: &RenderOptions) -> Result<Camera, RenderError> {
     let [width, height] = options.size;
-    if !(16..=MOST_SIDE).contains(&width) || !(16..=MOST_SIDE).contains(&height) {
+    if !options.size.iter().all(|side| (16..=MOST_SIDE).contains(side)) || width * height > MOST_PIXELS {
         return Err(RenderError::Size { width, height });
     }
     let margin = overlay::margin(options.size);

@@ -266,7 +266,7 @@ fn what_cannot_be_drawn_is_an_error() {
     let model = builtin("1.1");
     let options = RenderOptions { size: [64, 48], ..RenderOptions::new(Extent::Cells([2, 2])) };
     let error = |options: RenderOptions| render(&subject(&model), &options).unwrap_err();
-    for size in [[0, 100], [100, 15], [20_000, 100]] {
+    for size in [[0, 100], [100, 15], [20_000, 100], [8_000, 6_000]] {
         assert_eq!(
             error(RenderOptions { size, ..options.clone() }),
             RenderError::Size { width: size[0], height: size[1] }

@@ -19,6 +19,9 @@ use std::{
 
 pub use curve::{Core, Curve};
 
+/// Memory that a cell, a picture or a mesh may take, in bytes: what would take more is refused before it is begun.
+pub const MEMORY_LIMIT_BYTES: f64 = 4e9;
+
 /// A tube of an element round a circle or another curve, in the element's frame at the starting state.
 #[derive(Clone, Debug)]
 pub struct Ring {

@@ -107,6 +107,8 @@ pub(super) const TURN_SIZE_RAD: f64 = 2.0;
 pub(super) const TURN_SHIFT: f64 = 0.6;
 /// A turn is made in so many steps, each as far as no curve can meet another.
 pub(super) const TURN_STEPS: u32 = 10;
+/// A turn ends with a step of which less than this part is possible.
+pub(super) const TURN_BLOCKED: f64 = 0.1;
 /// One of so many starts of a least stretch is buckled, see [`super::starts`].
 pub(super) const BUCKLED_SHARE: usize = 3;
 /// Its waves, in periods along the cell's two vectors: they take turns.
@@ -210,6 +212,7 @@ pub struct ExactParameters {
     turn_size_rad: f64,
     turn_shift: f64,
     turn_steps: u32,
+    turn_blocked: f64,
     wire_pause: f64,
     buckled_share: usize,
     buckled_waves: [[f64; 2]; 4],
@@ -268,6 +271,7 @@ impl ExactOptions {
             turn_size_rad: TURN_SIZE_RAD,
             turn_shift: TURN_SHIFT,
             turn_steps: TURN_STEPS,
+            turn_blocked: TURN_BLOCKED,
             wire_pause: WIRE_PAUSE,
             buckled_share: BUCKLED_SHARE,
             buckled_waves: BUCKLED_WAVES,

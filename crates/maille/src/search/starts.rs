@@ -2,7 +2,7 @@
 
 use super::options::{
     BUCKLED_HEIGHT, BUCKLED_SHARE, BUCKLED_STEPS, BUCKLED_WAVES, EXPLORATIONS, Exploration, FIRST_RADIUS, MOST_TURNS,
-    STRAIGHT, TURN_SHIFT, TURN_SIZE_RAD, TURN_STEPS, TURNS, UNTURNED_SHARE,
+    STRAIGHT, TURN_BLOCKED, TURN_SHIFT, TURN_SIZE_RAD, TURN_STEPS, TURNS, UNTURNED_SHARE,
 };
 use crate::{
     lattice::Cell,
@@ -96,7 +96,13 @@ fn turned(model: &Model, seed: u64, k: usize) -> Start {
             |size: f64| Vec3::from_fn(|_, _| size * stream.random_range(-1.0..1.0)) / f64::from(TURN_STEPS);
         let mut motion = Motion { elements: vec![(Vec3::zeros(), Vec3::zeros()); elements], ..Motion::default() };
         motion.elements[element] = (vector(TURN_SHIFT), vector(TURN_SIZE_RAD));
-        state = (0..TURN_STEPS).fold(state, |state, _| moved(model, &state, &motion));
+        for _ in 0..TURN_STEPS {
+            let fraction = largest_fraction(model, &state, &motion);
+            state = moved_by(&state, &motion, fraction);
+            if fraction < TURN_BLOCKED {
+                break;
+            }
+        }
     }
     Start::written(state)
 }
@@ -163,7 +169,16 @@ pub(super) fn perturbed(model: &Model, state: &State, size: f64, rng: &mut ChaCh
 
 /// `state` after a motion of its elements; after less of it where circles could meet.
 pub(super) fn moved(model: &Model, state: &State, motion: &Motion) -> State {
-    let fraction = StepBound::new(model, state).largest_fraction(model, motion, f64::INFINITY);
+    moved_by(state, motion, largest_fraction(model, state, motion))
+}
+
+/// The part of a motion of elements in which no circles can meet.
+fn largest_fraction(model: &Model, state: &State, motion: &Motion) -> f64 {
+    StepBound::new(model, state).largest_fraction(model, motion, f64::INFINITY)
+}
+
+/// `state` after this part of a motion of its elements.
+fn moved_by(state: &State, motion: &Motion, fraction: f64) -> State {
     let moved = state
         .poses
         .iter()

@@ -255,7 +255,7 @@ fn derivatives_are_those_of_the_gaps() {
 /// Rings as stadia with sides of nearly no length are all that the general way sees; their limits are the rings'.
 #[test]
 fn limits_of_rings_written_as_curves_are_those_of_the_rings() {
-    let (directions, l2) = ([20.0, 45.0], [-0.1, 0.1]);
+    let (directions, l2) = ([20.0], [-0.1, 0.1]);
     for name in ["1.1", "1.2", "2", "3.1"] {
         let of = |design: &Design| {
             let model = compiled(design);

@@ -9,8 +9,8 @@ use std::{collections::BTreeMap, fmt::Write, path::Path};
 /// How long it takes, for a reader who wonders whether to wait.
 fn time(kind: Kind) -> &'static str {
     match kind {
-        Kind::Ci => "about 22 minutes on two cores from nothing",
-        Kind::Test => "about 18 minutes on two cores from nothing, 11 when all is built",
+        Kind::Ci => "about 20 minutes on two cores from nothing",
+        Kind::Test => "about 17 minutes on two cores from nothing, 10 when all is built",
         Kind::All => "an hour or more on two cores",
     }
 }

@@ -14,7 +14,7 @@ fn limits_of_curves_are_proved() {
         ("stadium-chain", ""),
         ("stadium-sheet", "--directions 0,30,45 --l2=-0.1,0"),
         // At 37.5° with l2 = −0.1 corners slide fast along sides: derivatives need short steps.
-        ("squares", "--directions 0,30,37.5,45 --l2=-0.1,-0.05,0,0.05"),
+        ("squares", "--directions 0,37.5 --l2=-0.1,0.05"),
     ] {
         let line = format!("characterize {name} {rest} --cell 1x1 --out {name} --quiet");
         assert_eq!(code(&maille(dir.path(), &line)), 0, "{line}");
@@ -85,24 +85,24 @@ elements = [
 #[test]
 fn rolls_of_curves_are_proved() {
     let dir = tempfile::tempdir().unwrap();
-    let verdicts = |name: &str, check: &str| {
+    let verdicts = |name: &str, checks: &[&str]| {
         let done = maille(dir.path(), &format!("verify {name} --json"));
         let found: Value = serde_json::from_slice(&done.stdout).unwrap();
-        let of = |roll: &Value| {
+        let of = |roll: &Value, check: &str| {
             let all = roll["findings"].as_array().unwrap();
             let one = all.iter().find(|finding| finding["check"] == check);
             one.map_or("none".into(), |finding| finding["verdict"].as_str().unwrap().to_owned())
         };
-        found["rolls"][0]["rolls"].as_array().unwrap().iter().map(of).collect::<Vec<String>>()
+        let rolls = found["rolls"][0]["rolls"].as_array().unwrap();
+        checks.iter().map(|check| rolls.iter().map(|roll| of(roll, check)).collect()).collect::<Vec<Vec<String>>>()
     };
     // Steps of the usual size leave the sign of a curvature of this one open.
     const FREE: &str = "--directions 15 --axis below --free width,shear";
     for (name, rest, rolls) in [("squares", FREE, 1), ("cages", "--directions 0,45", 4)] {
         let line = format!("roll {name} {rest} --effort low --out {name} --quiet");
         assert_eq!(code(&maille(dir.path(), &line)), 0, "{line}");
-        for check in ["overlap", "links", "balance", "curvature"] {
-            assert_eq!(verdicts(name, check), vec!["proved"; rolls], "{name} {check}");
-        }
+        let checks = ["overlap", "links", "balance", "curvature"];
+        assert_eq!(verdicts(name, &checks), vec![vec!["proved"; rolls]; checks.len()], "{name}: {checks:?}");
     }
     let head = dir.path().join("cages/roll.json");
     let text = fs::read_to_string(&head).unwrap();
@@ -115,9 +115,7 @@ fn rolls_of_curves_are_proved() {
         let done = maille(dir.path(), "verify cages --quiet");
         assert!(code(&done) == 4 && String::from_utf8_lossy(&done.stdout).contains(edited));
     }
-    for check in ["overlap", "balance"] {
-        assert_eq!(verdicts("cages", check), vec!["false"; 4], "{check}");
-    }
+    assert_eq!(verdicts("cages", &["overlap", "balance"]), [["false"; 4]; 2]);
 }
 
 /// What is known of rings alone says so.
