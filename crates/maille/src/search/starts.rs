@@ -76,9 +76,8 @@ pub(super) fn rng(seed: u64, what: Use, number: u64) -> ChaCha8Rng {
 /// The start of number `k` in a cell: the design's state, every element moved and turned at random in some steps, no circle
 /// across another; see [`EXPLORATIONS`]. Of a design with curves most are [`turned`].
 pub(super) fn explored(model: &Model, seed: u64, k: usize) -> Start {
-    let curved = model.rings.iter().any(|ring| ring.curve.is_some());
     match k % UNTURNED_SHARE {
-        _ if !curved => walked(model, seed, k),
+        _ if model.is_round() => walked(model, seed, k),
         0 => walked(model, seed, k / UNTURNED_SHARE),
         _ => turned(model, seed, k),
     }
