@@ -182,7 +182,8 @@ impl Model {
         }
         let memory = MEMORY_LIMIT_BYTES / 1e9;
         let problem = format!("has {rings} rings; {most:.0} are possible, which take {memory} GB of memory");
-        Err(vec![InvalidInput::new(field, problem, format!("take a smaller {field}"))])
+        let remedy = if cell.copies() > 1 { format!("take a smaller {field}") } else { "write fewer rings".into() };
+        Err(vec![InvalidInput::new(field, problem, remedy)])
     }
 
     /// Refuses elements that lie or reach so far that gaps there are lost to rounding, and those of a periodic sheet that do so
